@@ -397,4 +397,21 @@ def format_quantity(value: float, unit: str, display_unit: str | None = None) ->
     return f"{convert(float(value), unit, target_unit):.10g} {target_unit}".strip()
 
 
+#: Significant digits of a number, tried in order until it reads back.
+_DIGITS = (10, 15, 16, 17)
+
+
+def shortest_quantity(value: float, unit: str, display_unit: str = "") -> str:
+    """Text with a unit in the fewest digits that read back to the same float, within rounding."""
+    for target in (display_unit or unit, unit):
+        number = convert(float(value), unit, target)
+        for digits in _DIGITS:
+            text = f"{number:.{digits}g} {target}"
+            # 0.4 um is read as the float next to 4e-7
+            rounding = 4.5e-16 if digits == _DIGITS[0] else 0.0
+            if math.isclose(parse(text, unit), value, rel_tol=rounding):
+                return text
+    return f"{float(value)!r} {unit}"
+
+
 guard(__name__)

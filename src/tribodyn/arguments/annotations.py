@@ -20,6 +20,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike
 
+from tribodyn.arguments.quantities import ValueRefusedError, is_plain, quantity_in
 from tribodyn.errors import ENDLESS
 
 TINY = 1.0 / ENDLESS
@@ -32,10 +33,6 @@ _ARRAYS = {
     "iu": "an array of integers",
     "fiu": "numbers, in an array or a list of even rows",
 }
-
-
-class ValueRefusedError(TypeError):
-    """The type is right but the value is not; the message says which values are accepted."""
 
 
 class Wanted(NamedTuple):
@@ -55,7 +52,7 @@ class Wanted(NamedTuple):
         """Quick check of a value."""
         accepted_types, (least, most), kinds = self.types, self.numbers, self.kinds
         if not self.description:
-            return lambda value: True
+            return (lambda value: True) if self is ANYTHING else is_plain
 
         def quick(value: Any) -> bool:
             kind = type(value)
@@ -74,6 +71,7 @@ def _require(holds: Any) -> None:
 
 def _array(value: Any, kinds: str) -> Any:
     """Array of numbers of one of these kinds; entries may be NaN for missing values."""
+    _require(quantity_in(value) is None)  # NumPy would drop its unit
     array = np.asarray(value)
     if array.dtype.kind == "O" and all(isinstance(item, Real | Decimal) for item in array.flat):
         _require(not any(isinstance(item, bool) for item in array.flat))

@@ -21,11 +21,12 @@ from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from importlib import import_module
 from itertools import chain
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
-from tribodyn.arguments.annotations import ANYTHING, ValueRefusedError, Wanted, wanted
+from tribodyn.arguments.annotations import ANYTHING, Wanted, wanted
+from tribodyn.arguments.quantities import UnitRefusedError, ValueRefusedError, without_units
 from tribodyn.errors import Argument, ComputationError, InputError, Problem, shortened
 
 _FUNCTIONS = (types.FunctionType, functools._lru_cache_wrapper)
@@ -39,6 +40,12 @@ _WRITES = {"path", "directory", "folder", "place", "force"}
 #: here rounds to zero where it does so on purpose.
 _USUAL: dict[str, Any] = {"divide": "warn", "over": "warn", "under": "ignore", "invalid": "warn"}
 _REFUSED = (TypeError, ValueError, OverflowError)
+#: Packages whose values without an annotation are those of cases, which read units themselves.
+_CASES = re.compile(r"tribodyn\.(study|exchange|cases|variants|plot|report)\b")
+#: Iterators that are used up by one reading.
+_ONCE = (types.GeneratorType, map, filter, zip)
+#: Name for the arguments that no parameter names.
+_OTHERS = "**"
 #: Modules of the package, which call guarded functions without checks.
 _INSIDE = f"{__name__.partition('.')[0]}."
 
@@ -70,9 +77,9 @@ def _parameters(function: Any, owner: type | None, strict: bool = False) -> dict
     homes = [each.__module__ for each in getattr(owner, "__mro__", [])]
     names = _Names([*homes, getattr(function, "__module__", "")])
     wants, makes = {}, _makes(function)
+    reads_units = _CASES.match(getattr(function, "__module__", "") or "")
+    documents = [*owner.__mro__[:-1]] if owner and makes else [function]
     for name, parameter in inspect.signature(function).parameters.items():
-        if parameter.kind is parameter.VAR_KEYWORD:
-            continue
         hint = getattr(parameter.annotation, "__forward_arg__", parameter.annotation)
         hint = eval(hint, {}, names) if isinstance(hint, str) else hint
         # Records may hold what is not there; functions take what a quantity may be, unless their
@@ -81,28 +88,83 @@ def _parameters(function: Any, owner: type | None, strict: bool = False) -> dict
         ends = not (isinstance(default, float) and not np.isfinite(default))
         sized = 0 if makes or not ends or re.search("infinit|NaN", entry) else 1 + (owner is None)
         none = hint is inspect.Parameter.empty
-        wants[name] = ANYTHING if none else wanted(hint, sized, strict, several=not makes)
+        want = ANYTHING if none else wanted(hint, sized, strict, several=not makes)
+        unit = next((u for u in (_unit(each, name) for each in documents) if u is not None), None)
+        if parameter.kind is parameter.VAR_KEYWORD:
+            name, want, unit = _OTHERS, ANYTHING, None
+        anything = none or bool(re.search(r"\bAny\b", str(parameter.annotation)))
+        if "[str, Any]" in str(parameter.annotation):
+            unit = None  # options have units of their own
+        cases = reads_units and anything
+        if name not in ("self", "cls") and not (cases and not unit):
+            want = _with_unit(want, unit, inside=not cases)
+        wants[name] = want
     return wants
+
+
+def _with_unit(want: Wanted, unit: str | None, inside: bool) -> Wanted:
+    """Check that first converts quantities to the unit of the parameter."""
+
+    def read(value: Any) -> Any:
+        return want.read(without_units(value, unit, inside))
+
+    return want._replace(read=read)
 
 
 #: Markup of documentation, which messages do not have.
 _MARKUP = re.compile(r"(?::\w+:)?`+~?([^`]+)`+")
+_SECTION = re.compile(r"^Parameters\n-+\n(.*?)(?=\n\n\S[^\n]*\n---|\Z)", re.DOTALL | re.MULTILINE)
+_ENTRY = re.compile(r"^((?:\w+, )*\w+)(?: : (.*))?((?:\n(?: +.*)?)*)", re.MULTILINE)
+#: Units are in brackets; a pure number is written 1 or -.
+_BRACKETS = re.compile(r"\[([^\[\]]+)\]")
+
+
+class _Entry(NamedTuple):
+    """What a docstring says of a parameter."""
+
+    names: tuple[str, ...] = ()
+    kind: str = ""
+    text: str = ""
 
 
 @functools.cache
-def _entries(documented: Any) -> dict[str, str]:
+def _entries(documented: Any) -> dict[str, _Entry]:
     """Entries of the parameters in a docstring."""
-    pattern = r"^ *(?=((?:\w+, )*\w+) : (.*\n +.*(?:\n +[a-z(].*)*))"
-    entries: dict[str, str] = {}
-    docstring = _MARKUP.sub(r"\1", inspect.getdoc(documented) or "")
-    for names, text in re.findall(pattern, docstring, re.MULTILINE):
-        for name in names.split(", "):
-            entries.setdefault(name, re.sub(r"\s+", " ", text.replace("\n", "|", 1)))
+    entries: dict[str, _Entry] = {}
+    section = _SECTION.search(inspect.getdoc(documented) or "")
+    for names, kind, text in _ENTRY.findall(section[1] if section else ""):
+        several = tuple(names.split(", "))
+        for name in several:
+            entries.setdefault(name, _Entry(several, kind, re.sub(r"\s+", " ", text).strip()))
     return entries
 
 
 def _entry(documented: Any, name: str) -> str:
-    return _entries(documented).get(name, "")
+    entry = _entries(documented).get(name, _Entry())
+    return _MARKUP.sub(r"\1", f"{entry.kind}|{entry.text}")
+
+
+def _unit(documented: Any, name: str) -> str | None:
+    """Documented unit of a parameter; empty for a pure number, None where none is known."""
+    entry = _entries(documented).get(name)
+    if entry is None:
+        return None
+    other = re.search(r"\b(?:[Aa]s|for) (?:in|for|of)? ?:\w+:`~?\.?([\w.]+)`", entry.text)
+    if other and not _BRACKETS.search(entry.kind):
+        page = ".".join(getattr(documented, "__module__", "").split(".")[:2])
+        home, _, target = other[1].rpartition(".")
+        there = sys.modules.get(home or page)
+        if (unit := _unit(getattr(there, target, None), name)) is not None:
+            return unit
+    units = _BRACKETS.findall(entry.kind) or _BRACKETS.findall(entry.text)
+    if len(units) > 1 and len(units) != len(entry.names):
+        units = units[:1] if len(entry.names) == 1 else []
+        if not units:
+            return None
+    if not units:
+        return None if re.search(r"\bunits?\b", entry.text) else ""
+    unit = units[entry.names.index(name) if len(units) > 1 else 0]
+    return "" if unit in ("1", "-") else unit
 
 
 def _fault(documented: Any, name: str, value: Any, want: Wanted) -> Problem | None:
@@ -115,11 +177,11 @@ def _fault(documented: Any, name: str, value: Any, want: Wanted) -> Problem | No
         why = f"Wanted: {want.description}"
     else:
         return None
-    kind, _, text = _entry(documented, name).partition("|")
-    unit, meaning = re.search(r"\[(.+?)\]", kind), re.split(r"[.;:](?:\s|$)", text.strip())[0]
-    remedy = f"Give {name}{f' in {unit[1]}' if unit else ''}{': ' * bool(meaning)}{meaning}"
+    unit, text = _unit(documented, name), _entry(documented, name).partition("|")[2]
+    meaning = re.split(r"[.;:](?:\s|$)", re.sub(r" \[[^\[\]]+\]", "", text))[0]
+    remedy = f"Give {name}{f' in {unit}' if unit else ''}{': ' * bool(meaning)}{meaning}"
     if isinstance(value, str) and "number" in want.description:
-        remedy += f". Functions take numbers in {unit[1] if unit else 'SI units'}, not texts"
+        remedy += f". Functions take numbers in {unit or 'SI units'}, not texts"
     shown_value = f'"{value[:60]}"' if isinstance(value, str) else _short_repr(value)
     owner = f"{documented.__name__}." if isinstance(documented, type) else ""
     return Problem(f"{name} = {shown_value}", Argument(owner + name), why, remedy)
@@ -146,6 +208,7 @@ class _Reader:
         self.names = [each.name for each in every if each.kind <= each.VAR_POSITIONAL]
         self.several = any(each.kind is each.VAR_POSITIONAL for each in every)
         self.fits = {name: want.fits() for name, want in self.wanted.items()}
+        self.other_fits = self.fits.get(_OTHERS, lambda value: True)
         self.first = [self.fits[name] for name in self.names]
 
     def named_values(
@@ -163,14 +226,18 @@ class _Reader:
         for quick, value in zip(self.first, args, strict=False):
             if not quick(value):
                 return False
-        fits = self.fits
-        return all(fits[name](value) for name, value in named.items() if name in fits)
+        fits, other = self.fits, self.other_fits
+        return all(fits.get(name, other)(value) for name, value in named.items())
 
     def read(self, args: Any, named: dict[str, Any]) -> tuple[Any, dict[str, Any]]:
-        wants = self.wanted
+        wants, other = self.wanted, self.wanted.get(_OTHERS, ANYTHING)
+        args = [list(value) if isinstance(value, _ONCE) else value for value in args]
+        named = {k: list(v) if isinstance(v, _ONCE) else v for k, v in named.items()}
         try:
             first = [wants[name].read(value) for name, value in self.named_values(args, {})]
-            by_name = {k: wants[k].read(v) if k in wants else v for k, v in named.items()}
+            by_name = {k: wants.get(k, other).read(v) for k, v in named.items()}
+        except UnitRefusedError as error:
+            raise InputError(self.faults(args, named, wants)) from error
         except _REFUSED:
             refused = InputError(self.faults(args, named, wants))
         else:
@@ -186,7 +253,8 @@ class _Reader:
 
     def faults(self, args: Any, named: Any, wants: Mapping[str, Wanted]) -> list[Problem]:
         fault_of = functools.partial(_fault, self.owner if _makes(self.function) else self.function)
-        values = ((n, v, wants[n]) for n, v in self.named_values(args, named) if n in wants)
+        other = wants.get(_OTHERS, ANYTHING)
+        values = ((n, v, wants.get(n, other)) for n, v in self.named_values(args, named))
         return [fault for fault in (fault_of(*each) for each in values) if fault]
 
     def explain(self, error: Exception, args: Any, named: dict[str, Any]) -> Exception:

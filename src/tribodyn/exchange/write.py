@@ -214,7 +214,8 @@ def _relations(case: Case, loaded: int) -> list[dict[str, Any]]:
 
 
 def _part(number: int, kind: str, name: str, attributes: list[Attribute]) -> dict[str, Any]:
-    return {"id": number, "type": kind, "name": name, "attributes": attributes}
+    rounded = [(n, u, float(f"{v:.15g}") if isinstance(v, float) else v) for n, u, v in attributes]
+    return {"id": number, "type": kind, "name": name, "attributes": rounded}
 
 
 def tree_of(case: Case) -> dict[str, Any]:

@@ -213,7 +213,7 @@ def test_spur_stages_make_a_machine_with_computed_teeth(tree, tmp_path) -> None:
     assert pair.operation.torque == pytest.approx(456.0 * 51.0 / 27.0)
     assert pair.lubricant_properties.temperature == pytest.approx(343.15)
     assumed = {a.key: a for a in case.assumptions}
-    assert assumed["gears.gear_15.roughness_ra"].value == "4e-07 m"
+    assert assumed["gears.gear_15.roughness_ra"].value == "0.4 um"
     assert "dynamics.backlash" in assumed
     assert "6210-2Z" in assumed["bearings.bearing_33"].reason
     assert "shaft_12 and shaft_14" in assumed["bearings.bearing_36"].reason
@@ -270,7 +270,7 @@ def test_tables_in_python_hold_lists_of_numbers_and_of_names() -> None:
     assert again.bearings["A"].radial_stiffness == (4e8, 5e8)
     assert again.load_cases[0].speed == 50.0
     assert str(again.assumptions[0]) == (
-        "meshes.first.stiffness = 500000000.0 N/m (assumed): estimated"
+        "meshes.first.stiffness = 500000000 N/m (assumed): estimated"
     )
 
 

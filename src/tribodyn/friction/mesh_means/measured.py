@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from functools import lru_cache
 from typing import Any
@@ -20,7 +21,7 @@ from tribodyn.units import RPM
 #: [rad/s] of the driving gear, and friction coefficient.
 FZG_POINTS = (
     (50.0, 150.0, 300.0, 150.0, 150.0),
-    tuple(RPM * speed for speed in (1400.0, 1400.0, 1400.0, 400.0, 1800.0)),
+    tuple(speed * math.pi / 30.0 for speed in (1400.0, 1400.0, 1400.0, 400.0, 1800.0)),
     (0.0271, 0.0692, 0.119, 0.1505, 0.0554),
 )
 

@@ -15,7 +15,10 @@ from itertools import islice
 from pathlib import Path
 from typing import Any, NamedTuple, TypeVar
 
+import numpy as np
+
 from tribodyn import units
+from tribodyn.arguments.quantities import UnitRefusedError, magnitude, quantity_in
 from tribodyn.errors import Problem, shortened
 from tribodyn.model import REQUIRED, Option
 from tribodyn.nomenclature import GEARS
@@ -133,16 +136,20 @@ def _misread(spec: Option, name: str, value: str, message: str) -> FaultError:
     return FaultError(f"{name} = {written(value)}", reason, remedy)
 
 
+def _in_si(spec: Option, name: str, value: Any) -> Any:
+    """SI number, or list of numbers, of an object with a unit."""
+    try:
+        return np.asarray(magnitude(value, spec.unit)).tolist()
+    except UnitRefusedError as refused:
+        remedy = f"Write for example {spec.example}"
+        raise FaultError(f"{name} = {written(str(value))}", str(refused), remedy) from None
+
+
 def _real(spec: Option, name: str, value: Any, as_text: bool) -> float:
-    """Convert text, a pint quantity or a number to an SI float."""
+    """Convert text, a quantity with a unit or a number to an SI float."""
     entry = f"{name} = {written(value)}"
-    if hasattr(value, "magnitude") and hasattr(value, "to"):
-        try:
-            return float(value.to(spec.unit or "dimensionless").magnitude)
-        except Exception as error:
-            raise FaultError(
-                entry, f"{name} is a quantity in {spec.unit or '1'}", str(error)
-            ) from None
+    if quantity_in(value) is not None:
+        as_text, value = False, _in_si(spec, name, value)
     if isinstance(value, str):
         if grouped := _grouped(spec, name, value):
             raise grouped
@@ -220,6 +227,8 @@ def read_value(spec: Option, name: str, value: Any) -> Any:
     as_text = not isinstance(value, Plain)
     if isinstance(value, Plain):
         value = value.value
+    if quantity_in(value) is not None:
+        as_text, value = False, _in_si(spec, name, value)
     if spec.pair and isinstance(value, list | tuple):
         return _both_gears(spec, name, value, as_text)
     if spec.kind == "number":

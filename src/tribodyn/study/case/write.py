@@ -23,30 +23,20 @@ if TYPE_CHECKING:
     from tribodyn.study.case.case_data import CaseData
 
 
-#: Significant digits of a number, tried in order until it reads back exactly.
-_DIGITS = (10, 15, 16, 17)
-
-
-def _quantity(spec: Option, value: float) -> str:
-    """Format a value with unit in the fewest digits that read back to the same float."""
+def written_number(spec: Option, value: float) -> str:
+    """Format a number as TOML, with its unit."""
     if not spec.unit:
         return repr(value)
-    for unit in (spec.display_unit, spec.unit):
-        display = units.convert(value, spec.unit, unit)
-        for digits in _DIGITS:
-            text = f"{display:.{digits}g} {unit}"
-            if units.parse(text, spec.unit) == value:
-                return f'"{text}"'
-    return f'"{value!r} {spec.unit}"'
+    return f'"{units.shortest_quantity(value, spec.unit, spec.display_unit)}"'
 
 
 def _toml_value(spec: Option, value: Any) -> str:
     if isinstance(value, bool):
         return str(value).lower()
     if isinstance(value, tuple):
-        return f"[{', '.join(_quantity(spec, item) for item in value)}]"
+        return f"[{', '.join(written_number(spec, item) for item in value)}]"
     if spec.kind == "number":
-        return _quantity(spec, value)
+        return written_number(spec, value)
     return str(value) if spec.kind == "integer" else json.dumps(value, ensure_ascii=False)
 
 

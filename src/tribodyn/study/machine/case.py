@@ -289,7 +289,7 @@ class MachineCase(PartsCase):
     @property
     def assumptions(self) -> tuple[Assumption, ...]:
         """What is assumed: reasons in ``[assumed]``, and what the case does not give."""
-        return (*stated_assumptions(self.data), *default_assumptions(self))
+        return (*stated_assumptions(self), *default_assumptions(self))
 
     @property
     def meshes(self) -> tuple[str, ...]:

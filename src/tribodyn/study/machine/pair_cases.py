@@ -17,6 +17,7 @@ from tribodyn.study.case import gears
 from tribodyn.study.case.case import Case
 from tribodyn.study.case.hypoid import blank_of
 from tribodyn.study.case.provenance import spec_of
+from tribodyn.study.case.section import Table
 from tribodyn.study.case.sections import Dynamics
 from tribodyn.study.case.to_models import usual_backlash
 from tribodyn.study.case.user_input import Source
@@ -255,13 +256,13 @@ def constant_law(law: Any) -> dict[str, Any]:
     }
 
 
-def option_of(case: PartsCase, key: str) -> Option | None:
-    """Option of a dotted key of a case: of a part, of a value in a list, or of a model."""
-    if "." not in key:
+def option_at(case: PartsCase, path: tuple[str, ...]) -> Option | None:
+    """Option of the key at a path: of a part, of a value in a list, or of a model."""
+    if len(path) < 2:
         return None
-    group, *names, name = key.split(".")
+    group, *names, name = path
     if name.isdigit():
-        listed = option_of(case, ".".join((group, *names)))
+        listed = option_at(case, (group, *names))
         return replace(listed, kind="number") if listed and listed.kind == "numbers" else None
     table = _table(case.data, [group, *names[:1]])
     rolling = str(table.get("type")) if group == "bearings" and table is not None else ""
@@ -276,8 +277,10 @@ def option_of(case: PartsCase, key: str) -> Option | None:
         option = part.spec(name) or (MeshDynamics.spec(name) if group == "meshes" else None)
         if option is not None:
             return option
-    pair_key = _pair_key(case, group, names, name)
-    return spec_of(*pair_key) if pair_key else None
+    if (pair_key := _pair_key(case, group, names, name)) is not None:
+        return spec_of(*pair_key)
+    shared = Case.fields.get(group) if group in (*SHARED, "dynamics") else None
+    return shared.kind.spec(name) if isinstance(shared, Table) else None
 
 
 def unknown_key(case: PartsCase, key: str) -> Problem:

@@ -16,7 +16,7 @@ from tribodyn.study.case.section import Section as Table
 from tribodyn.study.case.values import FaultError, KeyedProblems, Plain, read_table, read_value
 from tribodyn.study.machine.tables import BearingTable, CouplingTable, GearTable, ShaftTable
 
-_LENGTH = number(
+LENGTH = number(
     REQUIRED, 0.0, 100.0, "guards against a wrong unit", unit="m", display_unit="mm",
     example='"60 mm"', meaning="a length of the shaft",
 )  # fmt: skip
@@ -97,7 +97,7 @@ def _section(key: str, place: int, row: Any, problems: KeyedProblems) -> Section
         problems.append((key, Problem(f"{label} = {row!r}", "", why, _SECTION)))
         return None
     try:
-        values = [read_value(_LENGTH, f"{label}[{i}]", item) for i, item in enumerate(row)]
+        values = [read_value(LENGTH, f"{label}[{i}]", item) for i, item in enumerate(row)]
     except FaultError as fault:
         problems.append((key, fault.problem))
         return None

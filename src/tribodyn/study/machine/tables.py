@@ -9,7 +9,7 @@ from typing import Any
 from tribodyn.machine import STEEL
 from tribodyn.model import REQUIRED, choice, file_path, integer, number, numbers, text
 from tribodyn.study.case import gears
-from tribodyn.study.case.section import Section, Table
+from tribodyn.study.case.section import Section
 from tribodyn.study.case.sections import Dynamics, MaterialData
 from tribodyn.study.faults.machine_section import MachineFaultTable
 
@@ -448,21 +448,3 @@ TABLES: dict[str, type[Section]] = {
     "dynamics": MotionTable,
     "faults": MachineFaultTable,
 }
-
-
-def unit_of(path: tuple[str, ...]) -> str:
-    """SI unit of the key of a machine at a path; empty for a pure number or a text."""
-    *tables, name = path
-    kind: type[Section] | None = TABLES.get(path[0])
-    if path[0] == "shafts" and name == "sections":
-        return "m"
-    if path[0] in ("meshes", "planets") and len(tables) == 3:
-        kind, tables = None, [path[2]]
-    outer = Section.case_class.fields
-    kinds = [kind] if kind else []
-    kinds += [HypoidMeshTable] if path[0] == "meshes" else []
-    for each in (tables[0] if tables else "", "dynamics"):
-        field = outer.get(each)
-        kinds += [field.kind] if isinstance(field, Table) else []
-    specs = (each.spec(name) for each in kinds)
-    return next((spec.unit for spec in specs if spec is not None), "")

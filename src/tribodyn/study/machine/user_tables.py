@@ -11,15 +11,17 @@ from typing import TYPE_CHECKING, Any, Self
 
 import numpy as np
 
+from tribodyn.arguments.quantities import without_units
 from tribodyn.errors import InputError, Problem
 from tribodyn.machine.fields import display
 from tribodyn.study.case.provenance import Assumption
 from tribodyn.study.case.to_models import USUAL_GEARS
 from tribodyn.study.case.user_input import Source, spread_problem
 from tribodyn.study.case.values import FaultError, KeyedProblems, Plain, read_value
-from tribodyn.study.machine.pair_cases import option_of
-from tribodyn.study.machine.read_parts import in_si
-from tribodyn.study.machine.tables import unit_of
+from tribodyn.study.case.write import written_number
+from tribodyn.study.machine.pair_cases import option_at
+from tribodyn.study.machine.read_parts import LENGTH, in_si
+from tribodyn.study.machine.tables import LoadCaseTable
 
 if TYPE_CHECKING:
     from tribodyn.machine import Gear
@@ -113,7 +115,7 @@ class PartsCase(ABC):
         Option or None
             None where the case has no such key.
         """
-        return option_of(self, key)
+        return option_at(self, tuple(key.split(".")))
 
     def replace(self, changes: Mapping[str, Any], *, by: str = "") -> Self:
         """Return a new case with some values changed; it is checked as a whole.
@@ -136,7 +138,7 @@ class PartsCase(ABC):
 
     def to_toml(self) -> str:
         """Write the case file; it reads back to an equal case."""
-        return machine_toml(with_spreads(self.data, self.uncertain))
+        return "\n".join(_lines(self, with_spreads(self.data, self.uncertain), ())).strip() + "\n"
 
     def _check_spreads(self, origin: Source) -> None:
         """Refuse spreads beyond the range of their key, and of keys that have no number."""
@@ -193,15 +195,15 @@ def _set_element(table: dict[str, Any], name: str, number: int, value: Any, key:
     table[name] = [*values[: number - 1], value, *values[number:]]
 
 
-def stated_assumptions(data: Mapping[str, Any]) -> Iterator[Assumption]:
+def stated_assumptions(case: PartsCase) -> Iterator[Assumption]:
     """Reasons in ``[assumed]`` with the values they refer to."""
-    for key, why in data.get("assumed", {}).items():
+    for key, why in case.data.get("assumed", {}).items():
         *names, name = key.split(".")
-        value: Any = data
+        value: Any = case.data
         for each in (*names, name):
             value = value.get(each) if isinstance(value, Mapping) else None
         blank = value is None or isinstance(value, Mapping)
-        text = "" if blank else written_value(value, unit_of((*names, name))).strip('"')
+        text = "" if blank else written_value(value, _option_at(case, (*names, name))).strip('"')
         yield Assumption(key, text, "assumed", why)
 
 
@@ -285,27 +287,32 @@ def with_spreads(tables: Mapping[str, Any], spreads: Mapping[str, str]) -> dict[
     return data
 
 
-def machine_toml(data: Mapping[str, Any]) -> str:
-    """Write nested tables of a machine; values are as they were given."""
-    return "\n".join(_lines(data, ())).strip() + "\n"
+def _option_at(case: PartsCase, path: tuple[str, ...]) -> Option | None:
+    """Option of the key at a path, of the rows of sections and of load cases too."""
+    if path[-1] == "sections":
+        return LENGTH
+    if path[0] == "load_cases":
+        return LoadCaseTable.spec(path[-1])  # type: ignore[no-any-return]
+    return option_at(case, path)
 
 
-def _lines(table: Mapping[str, Any], path: tuple[str, ...]) -> Iterator[str]:
+def _lines(case: PartsCase, table: Mapping[str, Any], path: tuple[str, ...]) -> Iterator[str]:
     values = {k: v.value if isinstance(v, Plain) else v for k, v in table.items()}
     inner = {k: v for k, v in values.items() if isinstance(v, Mapping)}
     rows = {k: v for k, v in values.items() if _is_rows(v)}
     for name, value in table.items():
         if name not in inner and name not in rows and values[name] is not None:
-            yield f"{_key(name)} = {written_value(value, unit_of((*path, name)))}"
+            option = None if isinstance(value, str) else _option_at(case, (*path, name))
+            yield f"{_key(name)} = {written_value(value, option)}"
     for name, body in inner.items():
         place = (*path, name)
         if not body or any(not isinstance(v, Mapping) for v in body.values()):
             yield f"\n[{'.'.join(map(_key, place))}]"
-        yield from _lines(body, place)
+        yield from _lines(case, body, place)
     for name, bodies in rows.items():
         for body in bodies:
             yield f"\n[[{'.'.join(map(_key, (*path, name)))}]]"
-            yield from _lines(body, (*path, name))
+            yield from _lines(case, body, (*path, name))
 
 
 def _is_rows(value: Any) -> bool:
@@ -317,15 +324,18 @@ def _key(name: str) -> str:
     return name if name.replace("_", "").replace("-", "").isalnum() else json.dumps(name)
 
 
-def written_value(value: Any, unit: str) -> str:
-    """Text of a value; a number in SI, as Python gives it, with its unit."""
-    if isinstance(value, Plain) and isinstance(value.value, list | tuple):
+def written_value(value: Any, option: Option | None) -> str:
+    """Text of a value; a number or a quantity from Python with the unit of its key."""
+    if isinstance(value, Plain) and isinstance(value.value, list | tuple | np.ndarray):
         value = [Plain(item) for item in value.value]
+    if isinstance(value, list | tuple):
+        return f"[{', '.join(written_value(item, option) for item in value)}]"
     if isinstance(value, Plain):
-        number = isinstance(value.value, float | int) and not isinstance(value.value, bool)
-        return f'"{value.value!r} {unit}"' if number and unit else written_value(value.value, "")
+        number = without_units(value.value, option.unit if option else None)
+        is_number = isinstance(number, float | int | np.number) and not isinstance(number, bool)
+        if is_number and option is not None and option.kind in ("number", "numbers"):
+            return written_number(option, float(number))
+        value = number.item() if isinstance(number, np.generic) else number
     if isinstance(value, bool):
         return str(value).lower()
-    if isinstance(value, list | tuple):
-        return f"[{', '.join(written_value(item, unit) for item in value)}]"
     return json.dumps(value, ensure_ascii=False) if isinstance(value, str) else repr(value)

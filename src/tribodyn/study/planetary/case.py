@@ -423,7 +423,7 @@ class PlanetaryCase(PartsCase):
     @property
     def assumptions(self) -> tuple[Assumption, ...]:
         """What is assumed: reasons in ``[assumed]``, defaults, and limits of the model."""
-        return (*stated_assumptions(self.data), *self._defaults())
+        return (*stated_assumptions(self), *self._defaults())
 
     def _defaults(self) -> Iterator[Assumption]:
         key, body = f"planets.{self.name}", self.data["planets"][self.name]
