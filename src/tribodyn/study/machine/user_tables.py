@@ -290,9 +290,9 @@ def with_spreads(tables: Mapping[str, Any], spreads: Mapping[str, str]) -> dict[
 def _option_at(case: PartsCase, path: tuple[str, ...]) -> Option | None:
     """Option of the key at a path, of the rows of sections and of load cases too."""
     if path[-1] == "sections":
-        return LENGTH
+        return LENGTH  # type: ignore[no-any-return]
     if path[0] == "load_cases":
-        return LoadCaseTable.spec(path[-1])  # type: ignore[no-any-return]
+        return LoadCaseTable.spec(path[-1])
     return option_at(case, path)
 
 
