@@ -8,12 +8,16 @@ from math import gcd
 import numpy as np
 
 from tribodyn.checks import require_whole
+from tribodyn.errors import Problem
 from tribodyn.measurement.orders import OrderSpectrum
 from tribodyn.measurement.sideband_cursors import CLEAR, LOBE
 from tribodyn.types import Array
 
 #: Fewest lines that stand out where a gear modulates.
 _LEAST = 2
+#: Power of the multiples of another order over that of the mesh from which the teeth are doubted,
+#: the fewest of a gear, and the largest ratio of the true number to the stated one.
+_DOUBT, _FEWEST, _OTHERS = 4.0, 8, 3
 
 
 @dataclass(frozen=True)
@@ -104,6 +108,30 @@ def modulating_shaft(
         if not of_gears[number].number and not of_gears[1 - number].stands_out:
             of_gears[number] = lines_of(families[number], mesh)
     return of_gears[0], of_gears[1]
+
+
+def doubt_teeth(orders: OrderSpectrum, teeth: int) -> Problem | None:
+    """Doubt a number of teeth where multiples of another order hold far more power than its."""
+    highest = float(orders.orders[-1])
+    floor = CLEAR * float(np.median(orders.amplitudes))
+
+    def power(count: int) -> float:
+        size = orders._amplitudes_at(np.arange(float(count), highest + 1e-9, count))
+        return float(np.sum(size[size > floor] ** 2))
+
+    counts = range(max(teeth // _OTHERS, _FEWEST), min(_OTHERS * teeth, int(highest)) + 1)
+    powers = {count: power(count) for count in counts}
+    most = max(powers.values(), default=0.0)
+    if most <= _DOUBT * powers.get(teeth, most):
+        return None
+    likely = max(count for count, value in powers.items() if value > 0.9 * most)
+    times = most / max(powers[teeth], 1e-3 * most)
+    return Problem(
+        f"the mesh lines seem to be multiples of order {likely}, not of {teeth}",
+        "",
+        f"Those hold {times:.3g} times the power or more",
+        "Check the number of teeth, and the pulses of the tachometer in a revolution",
+    )
 
 
 def explain_modulation(

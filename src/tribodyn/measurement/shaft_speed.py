@@ -25,7 +25,7 @@ class ShaftSpeed:
     Parameters
     ----------
     angle : (n,) array
-        Angle from the first sample [rad].
+        Angle, counted from ``zero`` [rad].
     source : str
         Where it comes from: a tachometer, the mesh lines of the recording, or a stated speed.
     mean, lowest, highest : float
@@ -34,6 +34,8 @@ class ShaftSpeed:
         Standard uncertainty of the mean speed [rad/s]; NaN where it is not known.
     steady : bool
         Whether the speed was stated, not measured: orders are right only if it was exactly that.
+    zero : str
+        Where the angle is zero: the first pulse of the tachometer, or the first sample.
     """
 
     angle: Array = field(repr=False)
@@ -43,6 +45,7 @@ class ShaftSpeed:
     highest: float
     uncertainty: float = float("nan")
     steady: bool = False
+    zero: str = "the first sample"
 
     @property
     def varies(self) -> bool:
@@ -63,7 +66,8 @@ def shaft_speed(
     if tacho is not None:
         angle = shaft_angle(recording[tacho], rate, pulses)
         per = "1 pulse" if pulses == 1 else f"{pulses} pulses"
-        return _with_range(angle, rate, f"tachometer {tacho}, {per} per revolution")
+        speed_of_pulses = _with_range(angle, rate, f"tachometer {tacho}, {per} per revolution")
+        return replace(speed_of_pulses, zero="the first pulse of the tachometer")
     if speed is None:
         notes.append(
             Problem(

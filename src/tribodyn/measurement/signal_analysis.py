@@ -26,6 +26,7 @@ from tribodyn.measurement.mean_revolutions import (
     left_out,
     mean_revolutions,
 )
+from tribodyn.measurement.modulating_shaft import doubt_teeth
 from tribodyn.measurement.orders import OrderSpectrum, order_map, order_spectrum
 from tribodyn.measurement.recording import Recording, in_si
 from tribodyn.measurement.shaft_speed import ShaftSpeed, shaft_speed
@@ -416,6 +417,9 @@ def _orders(
         what = f"orders end at {max_order:.4g}, below the mesh at {teeth}"
         why = f"Sampled with {rate:g} Hz, higher ones are not resolved"
         notes.append(Problem(what, "", why, "Sample faster, or run slower"))
+    elif teeth and np.isnan(shaft.uncertainty):  # else the speed is that of the mesh lines
+        doubt = doubt_teeth(parts["orders"], teeth)
+        notes += [] if doubt is None else [doubt]
     return parts
 
 

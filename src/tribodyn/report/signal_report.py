@@ -25,6 +25,8 @@ if TYPE_CHECKING:
     from tribodyn.drawing import Drawing
     from tribodyn.errors import Problem
     from tribodyn.measurement import SignalAnalysis
+    from tribodyn.measurement.shaft_speed import ShaftSpeed
+    from tribodyn.signals.synchronous_average import SynchronousAverage
 
 HEAD = ("Figure", "Value", "Unit", "Meaning")
 _RPM = 30.0 / np.pi
@@ -169,12 +171,11 @@ def _verdicts(analysis: SignalAnalysis) -> list[str]:
         lines = dict(zip((SHAFT, MATE), of_gears, strict=True))
         suspects = [name for name in suspects if lines[name].stands_out]
     for name in suspects:
-        average, fm4 = analysis.averages[name], analysis.indicators[name].fm4
+        fm4 = analysis.indicators[name].fm4
         if fm4 > _LOCAL:
-            place = np.degrees(average.angle[np.argmax(np.abs(average.difference()))])
             verdicts.append(
-                f"FM4 of the {name} is {fm4:.3g}, 3 or less for sound teeth: its difference "
-                f"signal is local, as of one tooth, and largest at {place:.0f}\N{DEGREE SIGN}."
+                f"FM4 of the {name} is {fm4:.3g}, 3 or less for sound teeth: "
+                + _local_fault(analysis.averages[name], analysis.speed)
             )
     return [text for text in verdicts if text]
 
@@ -192,6 +193,22 @@ def _modulation(numbers: dict[str, float]) -> list[str]:
     rate = significant(numbers["coherence_frequency"], _DIGITS)
     return [f"Vibration is modulated at {rate} Hz: cyclic coherence {size}, of noise {limit} at "
             "most in 19 of 20 records."]  # fmt: skip
+
+
+def _local_fault(average: SynchronousAverage, speed: ShaftSpeed | None) -> str:
+    """Sentence about the place of a local difference and its tooth, if it is no chance."""
+    if not average.difference_is_clear:
+        return (
+            "but its difference signal varies from turn to turn as much as it is large, so that "
+            "no tooth is named. Record longer, or at a steadier speed."
+        )
+    place, tooth = average.local_place()
+    zero = "the first sample" if speed is None else speed.zero
+    return (
+        "its difference signal is local, as of one tooth, and largest about "
+        f"{np.degrees(place):.0f}\N{DEGREE SIGN} from {zero}: tooth {tooth} of {average.teeth}, "
+        "counted in the order of contact from the one whose contact begins there."
+    )
 
 
 def _cards(analysis: SignalAnalysis) -> list[tuple[str, str]]:

@@ -99,7 +99,7 @@ class AngularSignal:
     Parameters
     ----------
     rotation : (n,) array
-        Rotation from the first sample [rad].
+        Rotation from the first sample of the record [rad], at whole steps of the rotation.
     signal : (n,) array
         Signal, in its unit.
     time : (n,) array
@@ -217,7 +217,8 @@ def angular_resampling(
         )
     fine_time, fine_signal = _refined(moments, values, top * pace)
     spacing = 2.0 * np.pi / (factor * samples_per_revolution)
-    grid = angle[0] + spacing * np.arange(int((angle[-1] - angle[0]) / spacing + 1e-9) + 1)
+    start = factor * spacing * np.ceil(angle[0] / (factor * spacing) - 1e-9)
+    grid = start + spacing * np.arange(int((angle[-1] - start) / spacing + 1e-9) + 1)
     when = np.clip(_inverse(turning, moments, angle, grid), moments[0], moments[-1])
     even = CubicSpline(fine_time, fine_signal)(when)
     every_nth = slice(None, None, factor)

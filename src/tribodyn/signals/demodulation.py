@@ -17,7 +17,7 @@ class NarrowbandDemodulation(Record):
     Parameters
     ----------
     angle : (n,) array
-        Angle of the shaft from the first sample [rad].
+        Angle of the shaft, that of the mean revolution [rad].
     amplitude_modulation : (n,) array
         Envelope of the harmonic over its mean, less one [-].
     phase_modulation : (n,) array

@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from tribodyn.errors import InputError, require_positive
 from tribodyn.record import Parts, Record, fact, quantity, record
@@ -19,6 +20,10 @@ from tribodyn.types import Array
 
 #: Revolutions from which the ends of the record are left out, so that two remain everywhere.
 _TRIMMED = 4
+#: Pitches that are added to the place of a yielding tooth, so that its number is the nearest one.
+_LATE = 0.1
+#: Largest difference over its standard error from which it is no chance.
+_CLEAR = 5.0
 
 
 @record
@@ -28,7 +33,8 @@ class SynchronousAverage(Record):
     Parameters
     ----------
     angle : (n,) array
-        Angle of the shaft from the first sample [rad].
+        Angle of the shaft [rad], zero where its rotation is: at the first pulse of a tachometer,
+        and at the first sample where only the speed is known.
     signal : (n,) array
         Mean over all revolutions, in the unit of the signal.
     scatter : (n,) array
@@ -39,6 +45,8 @@ class SynchronousAverage(Record):
         Number of teeth on the shaft, the order of the mesh.
     unit : str
         Unit of the signal.
+    difference_error : (n,) array, optional
+        Standard error of the difference at each angle, in the unit of the signal.
     """
 
     angle: Array = quantity("angle", unit="rad", axis=True)
@@ -47,6 +55,7 @@ class SynchronousAverage(Record):
     revolutions: int = fact()
     teeth: int = fact()
     unit: str = ""
+    difference_error: Array | None = None
 
     def __repr__(self) -> str:
         """One line."""
@@ -125,6 +134,49 @@ class SynchronousAverage(Record):
         low = self._lines_to(shaft_orders)
         return np.asarray(self.signal - low - self.difference(shaft_orders))
 
+    @property
+    def difference_is_clear(self) -> bool:
+        """Whether the largest difference exceeds five times its standard error, if it is known.
+
+        That is the larger one of the mean over the turn and of the mean over this tooth pitch.
+        """
+        if self.difference_error is None:
+            return True
+        square = self.difference_error**2
+        local = np.mean(square[self._local_pitch() % square.size])
+        error = np.sqrt(max(float(np.mean(square)), float(local)))
+        return bool(np.abs(self.difference()).max() > _CLEAR * error)
+
+    def local_place(self) -> tuple[float, int]:
+        """Where the difference is largest, and the tooth whose contact that is.
+
+        Returns
+        -------
+        angle : float
+            Centre of the tooth pitch in which the difference has most energy [rad].
+        tooth : int
+            In the order of contact, from 1 for the tooth whose contact begins at angle zero.
+
+        Notes
+        -----
+        The contact of tooth k begins at k - 1 pitches and lasts 1.2 to 2 of them. A tooth that
+        yields shows most where it carries alone: 0.4 to 1.3 pitches after the begin.
+        """
+        place, size = self._local_pitch(), self.angle.size
+        energy = self.difference()[place % size] ** 2
+        centre = float(place @ energy) / max(float(energy.sum()), 1e-300)
+        pitches = (centre / size * self.teeth) % self.teeth
+        tooth = (round(pitches + _LATE) - 1) % self.teeth + 1
+        return 2.0 * np.pi * pitches / self.teeth, tooth
+
+    def _local_pitch(self) -> NDArray[np.int_]:
+        """Indices of the tooth pitch in which the difference has most energy, without wrap."""
+        energy = self.difference() ** 2
+        width = max(round(energy.size / self.teeth), 1)
+        around = np.append(energy, energy[: width - 1])
+        sums = np.convolve(around, np.ones(width), "valid")
+        return np.arange(width) + int(np.argmax(sums))
+
     def _lines_to(self, order: int) -> Array:
         """Mean and shaft orders up to one."""
         lines = np.fft.rfft(self.signal)
@@ -132,17 +184,22 @@ class SynchronousAverage(Record):
         return np.asarray(np.fft.irfft(lines, self.signal.size))
 
     def _without(self, shaft_orders: int, sidebands: int) -> Array:
-        lines = np.fft.rfft(self.signal)
-        lines[: shaft_orders + 1] = 0.0
-        for mesh in range(self.teeth, lines.size + sidebands, self.teeth):
-            lines[max(mesh - sidebands, 0) : mesh + sidebands + 1] = 0.0
-        return np.asarray(np.fft.irfft(lines, self.signal.size))
+        return _without_mesh(self.signal, self.teeth, shaft_orders, sidebands)
 
     def _parts(self) -> Parts:
         parts, units = super()._parts(), self._units("@unit")
         parts.variables["residual"] = ("angle", self.residual(), units)
         parts.variables["difference"] = ("angle", self.difference(), units)
         return parts
+
+
+def _without_mesh(signal: Array, teeth: int, shaft_orders: int, sidebands: int) -> Array:
+    """Revolutions (..., n) less shaft orders, mesh harmonics and some of their sidebands."""
+    lines = np.fft.rfft(signal)
+    lines[..., : shaft_orders + 1] = 0.0
+    for mesh in range(teeth, lines.shape[-1] + sidebands, teeth):
+        lines[..., max(mesh - sidebands, 0) : mesh + sidebands + 1] = 0.0
+    return np.asarray(np.fft.irfft(lines, signal.shape[-1]))
 
 
 def time_synchronous_average(
@@ -219,11 +276,16 @@ def time_synchronous_average(
     number = clean.sum(axis=0)
     mean = (clean * turns).sum(axis=0) / number
     variance = (clean * (turns - mean) ** 2).sum(axis=0) / (number - 1.0)
+    inner = slice(1, -1) if count > _TRIMMED else slice(None)
+    apart = _without_mesh(turns[inner], teeth, 2, 1)
+    error = np.sqrt(apart.var(axis=0, ddof=1) / count)
+    begin = round((angle[0] + resampled.rotation[0]) * per_turn / (2.0 * np.pi))
     return SynchronousAverage(
         2.0 * np.pi * np.arange(per_turn) / per_turn,
-        mean,
-        np.sqrt(variance / number),
+        np.roll(mean, begin),
+        np.roll(np.sqrt(variance / number), begin),
         count,
         teeth,
         unit,
+        np.roll(error, begin),
     )

@@ -8,7 +8,7 @@ import numpy as np
 
 from tribodyn.drawing import drawing
 from tribodyn.plot.signals.maps import with_unit
-from tribodyn.plot.theme.labels import readable, significant
+from tribodyn.plot.theme.labels import readable
 from tribodyn.plot.theme.panels import Panel, stack
 from tribodyn.plot.theme.style import FILLS, PINION, TOTAL, WHEEL, Trace, line
 from tribodyn.types import Array
@@ -32,10 +32,11 @@ def finer(values: Array) -> Array:
 @drawing(
     "synchronous_average",
     heading="Mean revolution",
-    caption="Vibration synchronous with the shaft, over its angle from the first sample. Above, "
-    "the mean revolution with a band of two standard errors; below, the residual, without the "
-    "mesh harmonics and the lowest shaft orders, and the difference, without their first "
-    "sidebands too. A local bump of the difference indicates a faulty tooth.",
+    caption="Vibration synchronous with the shaft, over its angle from the first pulse of the "
+    "tachometer, or from the first sample where there is none. Above, the mean revolution with a "
+    "band of two standard errors; below, the residual, without the mesh harmonics and the lowest "
+    "shaft orders, and the difference, without their first sidebands too. A local bump of the "
+    "difference indicates a faulty tooth.",
     of="SynchronousAverage",
     made_by="Call tribodyn.analysis.time_synchronous_average(...) and its plot method.",
 )
@@ -71,12 +72,13 @@ def synchronous_average(average: SynchronousAverage) -> Any:
             zero,
         ),
     ]
-    top = int(np.argmax(np.abs(difference)))
-    swing, bump = float(np.ptp(mean)), float(abs(difference[top]))
+    swing, bump = float(np.ptp(mean)), float(np.abs(difference).max())
+    place, tooth = average.local_place()
+    of_tooth = f", tooth {tooth} of {average.teeth}" if average.difference_is_clear else ""
     return stack(
         f"{average.revolutions} revolutions: {with_unit(swing, average.unit)} peak to peak, "
         f"difference up to {with_unit(bump, average.unit)} "
-        f"at {significant(float(angle[top]))}°",
+        f"about {np.degrees(place):.0f}°{of_tooth}",
         "Angle of the shaft [°]",
         panels,
         {"xaxis": {"range": [0.0, 360.0], "dtick": 45}},
