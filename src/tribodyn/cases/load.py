@@ -59,11 +59,18 @@ def load_changed_case(
         from tribodyn.exchange.to_machine import case_from_model
 
         return case_from_model(read_rexs(path), dict(changes), by)
-    case = _load_toml(name_or_path)
+    try:
+        case = _load_toml(name_or_path, {})
+    except InputError:
+        if not changes:
+            raise
+        return _load_toml(name_or_path, changes, by)  # which may mend the file
     return case.replace(changes, by=by) if changes else case
 
 
-def _load_toml(name_or_path: str | os.PathLike[str]) -> Any:
+def _load_toml(
+    name_or_path: str | os.PathLike[str], changes: Mapping[str, Any], by: str = ""
+) -> Any:
     from tribodyn.cases.catalogue import with_known_reasons
     from tribodyn.study.case.case import Case
     from tribodyn.study.case.read import read_text
@@ -84,8 +91,8 @@ def _load_toml(name_or_path: str | os.PathLike[str]) -> Any:
     if not kind:
         raise InputError(_not_found(name, path, list(paths)))
     if name in paths:
-        return read_any_case(read_text(path), path.name, path.parent)
-    case = read_any_case(read_text(path), name)
+        return read_any_case(read_text(path), path.name, path.parent, changes, by)
+    case = read_any_case(read_text(path), name, None, changes, by)
     return with_known_reasons(case) if isinstance(case, Case) else case
 
 

@@ -169,16 +169,8 @@ class Case(CaseData, case=True):
         if not by and (changed := self._with_numbers(changes)) is not None:
             return changed
         ready = changes if by else {key: Plain(value) for key, value in changes.items()}
-        dropped = dropped_options(self._user_input, ready, self._chosen_by(ready))
-        spread = {key: text for key, text in self._spread.items() if key not in dropped}
-        data = self._user_input.merged({**spread, **dict.fromkeys(dropped), **ready})
-        if "assumed" in data:
-            marks = {
-                k: w for k, w in data["assumed"].items() if k not in changes and k not in dropped
-            }
-            data["assumed"] = marks
         source = self._source.with_replaced(changes, by or "replace:")
-        return type(self)(source, **data)
+        return type(self)(source, **changed_tables(self._user_input, ready, self._spread))
 
     def _with_numbers(self, changes: Mapping[str, Any]) -> Case | None:
         """Return a copy with changed numbers, checked by a fast path; None if that does not apply.
@@ -216,26 +208,6 @@ class Case(CaseData, case=True):
         changed._source = self._source.with_replaced(changes, "replace:")
         changed_after(self, changed, numbers)
         return changed
-
-    def _chosen_by(self, changes: Mapping[str, Any]) -> dict[str, str]:
-        """Return the models, laws and methods that changes select, without unknown names."""
-        selectors = [
-            f"{name}.{t.kind.selector}"
-            for name, t in self.fields.items()
-            if isinstance(t, Table) and t.kind.selector
-        ]
-        chosen = {}
-        for key in (*selectors, *_DECIDES):
-            if key not in changes:
-                continue
-            section, _, name = key.partition(".")
-            spec = type(getattr(self, section)).fields[name]
-            value = changes[key]
-            value = value.value if isinstance(value, Plain) else value
-            value = spec.default if value is None else value
-            if value in spec.names():
-                chosen[key] = value
-        return chosen
 
     def option_of(self, key: str) -> Option | None:
         """Unit and range of a key.
@@ -287,3 +259,32 @@ class Case(CaseData, case=True):
 
 
 Case.__signature__ = signature_of(Case)
+
+
+def changed_tables(
+    inputs: UserInput, changes: Mapping[str, Any], spread: Mapping[str, str] | None = None
+) -> dict[str, Any]:
+    """Tables with values changed by dotted key, without options of models that are replaced."""
+    dropped = dropped_options(inputs, changes, _chosen_by(changes))
+    kept = {key: text for key, text in (spread or {}).items() if key not in dropped}
+    data = inputs.merged({**kept, **dict.fromkeys(dropped), **changes})
+    if isinstance(marks := data.get("assumed"), Mapping):
+        data["assumed"] = {k: w for k, w in marks.items() if k not in changes and k not in dropped}
+    return data
+
+
+def _chosen_by(changes: Mapping[str, Any]) -> dict[str, str]:
+    """Return the models, laws and methods that changes select, without unknown names."""
+    kinds = {name: t.kind for name, t in Case.fields.items() if isinstance(t, Table)}
+    selectors = [f"{name}.{kind.selector}" for name, kind in kinds.items() if kind.selector]
+    chosen = {}
+    for key in (*selectors, *_DECIDES):
+        if key not in changes:
+            continue
+        section, _, name = key.partition(".")
+        spec, value = kinds[section].fields[name], changes[key]
+        value = value.value if isinstance(value, Plain) else value
+        value = spec.default if value is None else value
+        if value in spec.names():
+            chosen[key] = value
+    return chosen

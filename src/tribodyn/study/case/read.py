@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 import tomllib
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from contextlib import contextmanager, suppress
 from functools import partial
 from pathlib import Path
@@ -12,9 +12,9 @@ from typing import Any
 
 from tribodyn import units
 from tribodyn.errors import InputError, Problem
-from tribodyn.study.case.case import Case
+from tribodyn.study.case.case import Case, changed_tables
 from tribodyn.study.case.section import file_keys
-from tribodyn.study.case.user_input import Source
+from tribodyn.study.case.user_input import Source, UserInput
 from tribodyn.validated_files import read_bytes
 
 _SPACE = " \t\r"
@@ -188,14 +188,20 @@ def read_case(text: str, name: str = "") -> Case:
     my.toml: gears: the table [gears] is missing. The case cannot be computed without it. \
 Add it with normal_module, normal_pressure_angle, driver, pinion, wheel.
     """
+    return changed_file(text, name, {})
+
+
+def changed_file(text: str, name: str, changes: Mapping[str, Any], by: str = "") -> Case:
+    """Check the text of a case file with values replaced by dotted key."""
     data = parse_toml(text, name)
-    if not data:
+    if not data and not changes:
         remedy = "Create a case to start from: tribodyn new my.toml"
         raise InputError(
             "the file has no values", name, "A case needs gears, speed and torque", remedy
         )
     _place_files(data, Path(name).parent)
-    return Case(Source(name or "case", partial(key_lines, text)), **data)
+    source = Source(name or "case", partial(key_lines, text)).with_replaced(changes, by)
+    return Case(source, **(changed_tables(UserInput(data), changes) if changes else data))
 
 
 @contextmanager

@@ -7,12 +7,13 @@ from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from tribodyn.study.case.read import key_lines, parse_toml, read_case
+from tribodyn.model import NO_OPTIONS
+from tribodyn.study.case.read import changed_file, key_lines, parse_toml
 from tribodyn.study.case.section import file_keys
 from tribodyn.study.case.user_input import Source
 from tribodyn.study.machine.case import MachineCase, is_machine
 from tribodyn.study.machine.tables import HousingTable
-from tribodyn.study.machine.user_tables import flat_keys
+from tribodyn.study.machine.user_tables import changed_tables, flat_keys
 from tribodyn.study.planetary.case import PlanetaryCase
 
 if TYPE_CHECKING:
@@ -35,18 +36,22 @@ def is_double(stage: Any) -> bool:
 
 
 def read_any_case(
-    text: str, name: str = "", folder: Path | None = None
+    text: str,
+    name: str = "",
+    folder: Path | None = None,
+    changes: Mapping[str, Any] = NO_OPTIONS,
+    by: str = "",
 ) -> Case | MachineCase | PlanetaryCase:
-    """Check the text of a case file: of a stage with planets, of a machine, or of a pair."""
+    """Check the text of a case file of any kind, with values replaced by dotted key."""
     data = parse_toml(text, name)
-    source = Source(name or "case", partial(key_lines, text))
+    source = Source(name or "case", partial(key_lines, text)).with_replaced(changes, by)
     stages = data.get("planets")
     bodies = [*stages.values()] if isinstance(stages, Mapping) else []
     several = len(bodies) > 1 or any(is_double(body) for body in bodies)
     if "planets" in data and not (is_machine(data) or several):
-        return PlanetaryCase(source, **data)
+        return PlanetaryCase(source, **changed_tables(data, changes, by=by))
     if not (is_machine(data) or several):
-        return read_case(text, name)
+        return changed_file(text, name, changes, by)
     place = Path(name).parent if folder is None else folder
     faults = data.get("faults")
     tables: list[tuple[Any, tuple[str, ...]]] = [(data.get("housing"), tuple(HousingTable.fields))]
@@ -57,4 +62,4 @@ def read_any_case(
         for key in keys if isinstance(table, dict) else ():
             if isinstance(table.get(key), str):
                 table[key] = str((place / table[key]).absolute())
-    return MachineCase(source, **data)
+    return MachineCase(source, **changed_tables(data, changes, by=by))
