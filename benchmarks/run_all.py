@@ -28,6 +28,7 @@ SCRIPTS = (
     "fe2d_speed",
     "stiffness_speed",
     "fault_speed",
+    "phase_speed",
     "helical_speed",
     "learning_speed",
     "signals_speed",

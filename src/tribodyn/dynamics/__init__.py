@@ -6,6 +6,7 @@ from tribodyn.dynamics.equations.lane_parameters import LaneParameters
 from tribodyn.dynamics.equations.step_limit import recommended_steps
 from tribodyn.dynamics.equations.system import Contact, LoadFriction, System
 from tribodyn.dynamics.harmonic.harmonic_balance import harmonic_balance
+from tribodyn.dynamics.harmonic.phase_response import Lines, PhaseResponse
 from tribodyn.dynamics.harmonic.radial_clearance import RadialClearance, clearance_motion
 from tribodyn.dynamics.linear.campbell import Campbell, Resonance, campbell
 from tribodyn.dynamics.linear.forced_response import ForcedResponse, forced_response
@@ -64,9 +65,11 @@ __all__ = [
     "Jump",
     "LaneParameters",
     "LaneStatistics",
+    "Lines",
     "LoadFriction",
     "MeshForce",
     "NaturalModes",
+    "PhaseResponse",
     "RadialClearance",
     "Resonance",
     "Response",

@@ -307,9 +307,11 @@ def _refuse_large(lead: Series, cycles: int) -> None:
 
 def _on_longer_clock(system: System, periods: int) -> System:
     """The system over several of its periods."""
+    from tribodyn.dynamics.equations.phases import on_one_clock
+
     if periods == 1:
         return system
-    contacts = [replace(each, cycles=periods * each.cycles) for each in system.contacts]
+    contacts = [replace(each, cycles=periods * each.cycles) for each in on_one_clock(system)]
     return replace(system, contacts=contacts)
 
 

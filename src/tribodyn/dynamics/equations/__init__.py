@@ -3,6 +3,7 @@
 | module | content |
 |---|---|
 | `system` | a structure with its contacts and frictions |
+| `phases` | cycles over several independent phases, and errors that turn with shafts |
 | `entry` | entries as constants or functions of the mesh phase |
 | `grid` | division of the mesh cycle into steps that end at events |
 | `nodes` | entries of a system at both ends and in the middle of every step |

@@ -22,6 +22,14 @@ from tribodyn.arrays.memo import Memo
 from tribodyn.checks import require_flag, require_number, require_whole
 from tribodyn.dynamics.equations.clock import on_clock, refuse_several_clocks
 from tribodyn.dynamics.equations.entry import Entry, read_events, varies
+from tribodyn.dynamics.equations.phases import (
+    Cycles,
+    Turning,
+    count_phases,
+    on_one_clock,
+    read_cycles,
+    read_turning,
+)
 from tribodyn.errors import InputError, real_numbers, require_between, require_positive
 from tribodyn.types import Array
 
@@ -53,13 +61,19 @@ class Contact:
         a function that jumps anywhere else or depends on more than the phase is refused.
     damping_in_gap : bool
         Keep the damping in free flight. Unphysical; for comparison with published models.
-    cycles : int
-        Mesh cycles of this contact in one period of the clock.
+    cycles : int or tuple of int
+        Mesh cycles of this contact in one period of the clock; or, for a motion over independent
+        phases, in one period of each of them.
     offset : float
         Mesh phase of this contact when the clock starts, in [0, 1).
     ramp_stiffness, ramp_gap : (m,) array or function
         Ramps of a force law: stiffnesses that are added beyond further half dead zones [N/m], [m];
         functions return (p, m). Harmonic balance and the modal engine take them.
+    turning_error : function or sequence of function
+        Errors that turn with a shaft and add to ``error``, such as that of an eccentric gear:
+        functions of the phase of that shaft [m]. Harmonic balance takes them.
+    turning_cycles : tuple of int or sequence of these
+        For each turning error, the turns of its shaft in one period of each phase.
 
     Raises
     ------
@@ -86,15 +100,20 @@ class Contact:
     friction: Entry | None = None
     events: tuple[float, ...] = (0.0,)
     damping_in_gap: bool = False
-    cycles: int = 1
+    cycles: Cycles = 1
     offset: float = 0.0
     ramp_stiffness: Entry = ()
     ramp_gap: Entry = ()
+    turning_error: Any = ()
+    turning_cycles: Any = ()
+    #: Turning errors with their cycles.
+    turning: tuple[Turning, ...] = field(init=False, repr=False, compare=False)
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "events", read_events(self.events, "Contact.events"))
         require_flag("damping_in_gap", self.damping_in_gap)
-        object.__setattr__(self, "cycles", require_whole("cycles", self.cycles))
+        object.__setattr__(self, "cycles", read_cycles("cycles", self.cycles))
+        object.__setattr__(self, "turning", read_turning(self.turning_error, self.turning_cycles))
         require_number("offset", self.offset)
         require_between("offset", self.offset, 0.0, float(np.nextafter(1.0, 0.0)), "")
         where = "Contact.direction"
@@ -237,6 +256,8 @@ class System:
     balance: ArrayLike | None = None
     frictions: Sequence[LoadFriction] = ()
     gyroscopic: ArrayLike | None = None
+    #: Independent phases; 0 where all contacts follow one clock.
+    phases: int = field(default=0, init=False, repr=False, compare=False)
     #: Largest rate of the motion by the number of steps with which it was computed.
     _rates: dict[int, float] = field(default_factory=dict, init=False, repr=False, compare=False)
     #: Matrices about the static load, by the phase at which they were computed.
@@ -276,6 +297,7 @@ class System:
         object.__setattr__(self, "names", names)
         _inverse_of(matrices["mass"], names)
         _refuse_missing_contacts(self)
+        object.__setattr__(self, "phases", count_phases(self.contacts))
         for f, friction in enumerate(self.frictions):
             refuse_several_clocks(friction, self.contacts, f"System.frictions[{f}]")
         if self.gyroscopic is not None:
@@ -313,17 +335,18 @@ class System:
     @cached_property
     def cycles(self) -> int:
         """Mesh cycles of the fastest contact in one period of the clock."""
-        return max((contact.cycles for contact in self.contacts), default=1)
+        return max((contact.cycles for contact in on_one_clock(self)), default=1)
 
     @cached_property
     def clocked_contacts(self) -> tuple[Contact, ...]:
         """Contacts whose entries and events are over the clock."""
-        return tuple(on_clock(c, CONTACT_ENTRIES, c.cycles, c.offset) for c in self.contacts)
+        return tuple(on_clock(c, CONTACT_ENTRIES, c.cycles, c.offset) for c in on_one_clock(self))
 
     @cached_property
     def clocked_frictions(self) -> tuple[LoadFriction, ...]:
         """Frictions whose entries and events are over the clock."""
-        clocks = [self.contacts[friction.contacts[0]] for friction in self.frictions]
+        clocked = on_one_clock(self)
+        clocks = [clocked[friction.contacts[0]] for friction in self.frictions]
         return tuple(
             on_clock(friction, FRICTION_ENTRIES, clock.cycles, clock.offset)
             for friction, clock in zip(self.frictions, clocks, strict=True)

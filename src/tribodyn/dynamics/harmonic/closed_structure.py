@@ -105,12 +105,9 @@ class ClosedStructure:
         values = np.linalg.eigvals(self.matrix) if self.modes is None else self.modes[0]
         still = np.abs(values.real) <= _UNDAMPED * np.abs(values)
         for value in np.abs(values[still & (values.imag > 0.0)]):
-            order = int(np.argmin(np.abs(omega - value)))
-            if abs(omega[order] - value) <= _UNDAMPED * value:
+            if np.abs(np.abs(omega) - value).min() <= _UNDAMPED * value:
                 what = f"a mode of {value / (2.0 * np.pi):.6g} Hz has no damping"
-                why = (
-                    f"It is harmonic {order} of the clock, so that its motion grows without bounds"
-                )
+                why = "It is a harmonic of the meshes, so that its motion grows without bounds"
                 remedy = "Give System.damping or Contact.damping, or another frequency"
                 raise ComputationError(Problem(what, "System.damping", why, remedy))
 
@@ -154,7 +151,9 @@ class ClosedStructure:
         c, count = self.coordinates, self.places.shape[1]
         state = self.respond(omega, force)
         elastic, moving = state[:, :count] @ self.places.T, state[:, count:]
-        per_omega = np.divide(1.0, 1j * omega, where=omega > 0.0, out=np.zeros(omega.size, complex))
+        per_omega = np.divide(
+            1.0, 1j * omega, where=omega != 0.0, out=np.zeros(omega.size, complex)
+        )
         turned = (moving @ c.braked) * per_omega[:, None] @ (c.moving @ c.braked).T
         positions = state[:, :count] @ np.linalg.inv(self.root).T
         pushed = force @ (c.free.T @ self.push).T

@@ -77,9 +77,10 @@ class Law(NamedTuple):
 
 
 class Breaks(NamedTuple):
-    """Jumps of the force between samples ``step`` and ``step + 1``, at a fraction of the step."""
+    """Jumps of the force between samples ``step`` and ``after``, at a fraction of the step."""
 
     step: Index
+    after: Index
     fraction: Array
     jump: Array  #: change of the force at the jump (b, s)
     correction: Array  #: correction of the sum of both samples (b, s)
@@ -89,10 +90,18 @@ class Breaks(NamedTuple):
         """Shares of the samples in the values at the jumps, (steps, b)."""
         from scipy.sparse import csr_matrix
 
-        at = np.concatenate([self.step, (self.step + 1) % steps])
+        at = np.concatenate([self.step, self.after])
         shares = np.concatenate([1.0 - self.fraction, self.fraction])
         columns = np.tile(np.arange(self.step.size), 2)
         return csr_matrix((shares, (at, columns)), (steps, self.step.size))
+
+    def scatter(self, force: Array, values: Array) -> None:
+        """Add values (b, s) to the two samples about each jump, by its distance from them."""
+        part = self.fraction[:, None]
+        at = np.concatenate([self.step, self.after])
+        shares = np.concatenate([(1.0 - part) * values, part * values])
+        for column, share in zip(force.T, shares.T, strict=True):
+            column += np.bincount(at, share, len(force))
 
 
 @dataclass(frozen=True)
@@ -115,6 +124,20 @@ class ContactEquations:
         rows = self.rows.at(slice(None, None, 2))
         rows = rows._replace(nodes=rows.nodes._replace(weight=2.0 * rows.nodes.weight))
         return replace(self, rows=rows, steps=self.steps // 2)
+
+    def event_places(self) -> tuple[Index, Index, Array]:
+        """Samples before and after each row of ``before``, and the fraction of the step."""
+        place = self.events * self.steps
+        step = np.ceil(place - 1e-6).astype(np.int64) - 1
+        return step % self.steps, (step + 1) % self.steps, place - step
+
+    def neighbour(self, sample: Index, contact: Index, by: int) -> Index:
+        """Sample ``by`` steps of the mesh of a contact ahead of another one."""
+        return np.asarray((sample + by) % self.steps)
+
+    def next_samples(self, values: Array | Mask) -> Array | Mask:
+        """Values (steps, contacts, ...) of the next samples."""
+        return np.roll(values, -1, axis=0)
 
     def law(
         self,
@@ -176,10 +199,8 @@ class ContactEquations:
     def _event_breaks(
         self, frequency: float, y: Array, rate: Array, excess: Array, closed: Mask | None
     ) -> Breaks:
-        place = self.events * self.steps
-        step = np.ceil(place - 1e-6).astype(np.int64) - 1
-        fraction = place - step
-        at, pace = (_between(values, step, fraction) for values in (y, rate))
+        step, after, fraction = self.event_places()
+        at, pace = (_between(values, step, after, fraction) for values in (y, rate))
         left, right = (
             self.law(rows, frequency, at, pace, excess, closed)
             for rows in (self.before, self.after)
@@ -187,16 +208,16 @@ class ContactEquations:
         weight = 0.5 - fraction
         jump = right.force - left.force
         tangent = -weight[:, None, None] * (right.stiffness - left.stiffness)
-        return Breaks(step % self.steps, fraction, jump, weight[:, None] * jump, tangent)
+        return Breaks(step, after, fraction, jump, weight[:, None] * jump, tangent)
 
     def _crossings(self, law: Law, frequency: float, y: Array, rate: Array, edge: float) -> Breaks:
         clearance = edge * law.compression[..., None] - self.rows.gap
         inside = (clearance > 0.0) & self.dead
-        step, contact, spring = np.nonzero(inside != np.roll(inside, -1, axis=0))
-        after = (step + 1) % self.steps
+        step, contact, spring = np.nonzero(inside != self.next_samples(inside))
+        before, after = (self.neighbour(step, contact, by) for by in (-1, 1))
         begin, end = clearance[step, contact, spring], clearance[after, contact, spring]
         fraction = begin / (begin - end)
-        touch = _touch_factor((step, contact, spring), fraction, inside.shape)
+        touch = _touch_factor((step, contact, spring), (before, after), fraction, inside.shape)
         rows = self.rows.at(step)
         each = np.arange(step.size)
 
@@ -205,7 +226,7 @@ class ContactEquations:
             return np.asarray(wide[each, contact])
 
         along = of_contact(rows.along)
-        at_y, at_rate = (_between(values, step, fraction) for values in (y, rate))
+        at_y, at_rate = (_between(values, step, after, fraction) for values in (y, rate))
         speed = np.einsum("br,br->b", along, at_rate) + frequency * (
             np.einsum("br,br->b", of_contact(rows.along_slope), at_y)
             - of_contact(rows.nodes.error_slope)
@@ -220,19 +241,22 @@ class ContactEquations:
         slope = edge * (jump - (fraction - 0.5) * bend) / (end - begin)
         push = -law.push[step if len(law.push) > 1 else 0 * step, contact]
         tangent = slope[:, None, None] * push[:, :, None] * along[:, None, :]
-        return Breaks(step, fraction, jump[:, None] * push, total[:, None] * push, tangent)
+        return Breaks(step, after, fraction, jump[:, None] * push, total[:, None] * push, tangent)
 
 
 def _touch_factor(
-    crossing: tuple[Index, Index, Index], fraction: Array, shape: Sequence[int]
+    crossing: tuple[Index, Index, Index],
+    neighbours: tuple[Index, Index],
+    fraction: Array,
+    shape: Sequence[int],
 ) -> Array:
     """Factor of each crossing that vanishes with a side that lasts for a single sample."""
     # Without it the correction of a spring that just touches would begin with a jump.
     step, *spring = crossing
     before, after = np.zeros(shape), np.ones(shape)
     before[step, *spring], after[step, *spring] = fraction, fraction
-    ahead = fraction * (1.0 - after[(step + 1) % shape[0], *spring])
-    behind = before[step - 1, *spring] * (1.0 - fraction)
+    ahead = fraction * (1.0 - after[neighbours[1], *spring])
+    behind = before[neighbours[0], *spring] * (1.0 - fraction)
     return np.asarray((1.0 - ahead**_TOUCH) * (1.0 - behind**_TOUCH))
 
 
@@ -273,31 +297,35 @@ def contact_equations(
     every = system_events(system)
     nodes = evaluate_rows(system, PointEvaluator(np.arange(steps) / steps, every))
     inverse, bases = structure.coordinates.inverse, (structure.along, structure.push)
-    into_along, into_push = (inverse.T @ basis for basis in bases)
-
-    def rows(part: Nodes) -> Rows:
-        return Rows(
-            Nodes(*(values[:, 0] for values in part)),
-            _distinct(part.direction) @ into_along,
-            _distinct(part.direction_slope) @ into_along,
-            _distinct(part.force_direction) @ into_push,
-            _distinct(part.friction_direction) @ into_push,
-            _distinct(part.force) @ into_push,
-            *(values[:, 0] for values in springs(part)),
-        )
-
+    into = [inverse.T @ basis for basis in bases]
     if template is not None:
-        return replace(template, rows=rows(nodes), steps=steps)
+        return replace(template, rows=project_rows(nodes, *into), steps=steps)
     points = np.array(every)
     before, after = (
         evaluate_rows(system, PointEvaluator(points, every, before=side)) for side in (True, False)
     )
-    jumping = _jumping(before, after)
+    jumping = jumping_events(before, after)
     in_gap = np.array([contact.damping_in_gap for contact in system.contacts], dtype=bool)
-    left, right = (rows(Nodes(*(values[jumping] for values in part))) for part in (before, after))
-    at = rows(nodes)
+    left, right = (
+        project_rows(Nodes(*(values[jumping] for values in part)), *into)
+        for part in (before, after)
+    )
+    at = project_rows(nodes, *into)
     return ContactEquations(
         system, at, left, right, points[jumping], *bases, with_dead_zone(nodes), in_gap, steps
+    )
+
+
+def project_rows(nodes: Nodes, along: Array, push: Array) -> Rows:
+    """Entries (p, 1, ...) with directions by their components along the columns of two bases."""
+    return Rows(
+        Nodes(*(values[:, 0] for values in nodes)),
+        _distinct(nodes.direction) @ along,
+        _distinct(nodes.direction_slope) @ along,
+        _distinct(nodes.force_direction) @ push,
+        _distinct(nodes.friction_direction) @ push,
+        _distinct(nodes.force) @ push,
+        *(values[:, 0] for values in springs(nodes)),
     )
 
 
@@ -312,7 +340,7 @@ def _distinct(values: Array) -> Array:
     return unrepeated(values[:, 0], values.ndim - 2)
 
 
-def _jumping(before: Nodes, after: Nodes) -> Index:
+def jumping_events(before: Nodes, after: Nodes) -> Index:
     """Numbers of the events at which an entry jumps."""
     jumps = np.zeros(len(before.phase), dtype=bool)
     for name, left, right in zip(Nodes._fields, before, after, strict=True):
@@ -370,7 +398,7 @@ def outer(push: Array, factor: Array, along: Array) -> Array:
     return np.swapaxes(push * factor[..., None], -1, -2) @ along
 
 
-def _between(values: Array, step: Index, fraction: Array) -> Array:
+def _between(values: Array, step: Index, after: Index, fraction: Array) -> Array:
     """Samples (p, r) interpolated at fractions of steps."""
     part = fraction[:, None]
-    return np.asarray((1.0 - part) * values[step] + part * values[(step + 1) % len(values)])
+    return np.asarray((1.0 - part) * values[step] + part * values[after])

@@ -1,4 +1,4 @@
-"""Periodic motion of a machine by harmonic balance at its contacts.
+"""Steady motion of a machine by harmonic balance at its contacts.
 
 The unknowns are the motions at the contacts over one period of the clock. The linear structure
 appears by its receptances only, so that the cost hardly depends on the number of coordinates.
@@ -7,6 +7,7 @@ appears by its receptances only, so that the cost hardly depends on the number o
 from __future__ import annotations
 
 import weakref
+from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from typing import Any
 
@@ -27,6 +28,7 @@ from tribodyn.dynamics.harmonic.modal_kernel import Trace
 from tribodyn.dynamics.harmonic.modal_march import ModalMotion
 from tribodyn.dynamics.harmonic.newton import Residual, Solution, newton, refined
 from tribodyn.dynamics.harmonic.orbit_response import orbit_response, starting_state
+from tribodyn.dynamics.harmonic.phase_balance import phase_balance
 from tribodyn.dynamics.orbits.coordinates import (
     orbit_coordinates,
     refuse_disconnected,
@@ -109,24 +111,25 @@ _cache: list[tuple[weakref.ref[System], Prepared]] = []
 
 def harmonic_balance(
     system: System,
-    frequency: float,
+    frequency: float | Sequence[float] | Array,
     *,
-    steps: int | None = None,
+    steps: int | Sequence[int] | None = None,
     start: Response | tuple[ArrayLike, ArrayLike] | None = None,
     tolerance: float = TOLERANCE,
     stability: bool = False,
     progress: Progress = SILENT,
 ) -> Response:
-    """Find the periodic motion of a machine with several meshes on one clock.
+    """Find the motion of a machine with several meshes, on one clock or over independent phases.
 
     Parameters
     ----------
     system : System
-    frequency : float
-        Frequency of the clock: periods of the motion per second [Hz].
-    steps : int, optional
-        Steps per cycle of the fastest mesh. By default steps are halved until the motion changes
-        by less than 2e-7 of its size.
+    frequency : float or (phases,) array
+        Frequency of the clock: periods of the motion per second [Hz]. A system whose contacts give
+        ``cycles`` for each of several phases takes the frequency of each.
+    steps : int or sequence of int, optional
+        Steps per cycle of the fastest mesh; over several phases the points of each. By default
+        they are doubled until the motion changes by less than 2e-7 of its size.
     start : Response or (position, velocity), optional
         Motion, or position and velocity [m or rad, m/s or rad/s], from which the search starts;
         the static equilibrium by default.
@@ -144,7 +147,9 @@ def harmonic_balance(
         Over one period of the clock, with ``error``, ``step_error`` and ``converged``. A warning
         is issued when the motion is not converged (``steady-state``), is not stable
         (``unstable-orbit``) or depends on the steps by more than 1 % of its size (``step-size``).
-        Floquet multipliers are those that ``stability`` asks for.
+        Floquet multipliers are those that ``stability`` asks for. A motion over several phases has
+        no period: it is a :class:`PhaseResponse`, which gives the motion at any time, and its
+        spectral lines with the cycles of each phase.
 
     Raises
     ------
@@ -161,6 +166,10 @@ def harmonic_balance(
     ``steps`` is chosen automatically. With dead zones the start decides which of several motions
     is found, and without ``stability`` it may be an unstable one.
 
+    Over several phases the unknowns are functions of all of them: a line of the whole numbers k has
+    the frequency ``k.f``, so that no common period is needed. ``step_error`` is then the sum of the
+    changes of the motion with twice the points over each phase.
+
     Examples
     --------
     >>> from tribodyn.dynamics import Contact
@@ -169,12 +178,38 @@ def harmonic_balance(
     >>> machine = System(np.eye(2), 0.2 * np.eye(2), np.eye(2), [1.0, 0.0], [first, second])
     >>> harmonic_balance(machine, 0.3).converged
     True
+    >>> from dataclasses import replace
+    >>> contacts = [replace(first, cycles=(1, 0)), replace(second, cycles=(0, 1))]
+    >>> apart = replace(machine, contacts=contacts)
+    >>> harmonic_balance(apart, (0.3, 0.9 / np.sqrt(2.0))).points
+    (16, 16)
     """
-    require_number("frequency", frequency)
-    require_positive("frequency", frequency, "Hz")
     require_number("tolerance", tolerance)
     require_positive("tolerance", tolerance, "")
     require_flag("stability", stability)
+    if system.phases:
+        if stability:
+            what, why = "stability = True", "Motions over several phases have no multipliers"
+            raise InputError(what, "stability", why, "Integrate disturbances over time instead")
+        progress.start("Steady motion", None)
+        motion = phase_balance(system, frequency, steps, start, tolerance)
+        progress.finish()
+        return motion
+    return _on_clock(system, frequency, steps, start, tolerance, stability, progress)
+
+
+def _on_clock(
+    system: System,
+    frequency: Any,
+    steps: Any,
+    start: Response | tuple[ArrayLike, ArrayLike] | None,
+    tolerance: float,
+    stability: bool,
+    progress: Progress,
+) -> Response:
+    """Periodic motion on one clock."""
+    require_number("frequency", frequency)
+    require_positive("frequency", frequency, "Hz")
     count = _FIRST if steps is None else require_whole("steps", steps, 8)
     progress.start("Steady motion", None)
     prepared = prepare(system, frequency, 0 if steps is None else count)

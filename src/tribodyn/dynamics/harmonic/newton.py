@@ -19,7 +19,7 @@ from tribodyn.types import Array, Mask
 #: Newton steps, halvings of a step, and steps over which the residual may rise.
 _LIMIT, _HALVINGS, _MEMORY = 40, 4, 3
 #: Accuracy of a linear solution and its largest number of vectors.
-_LINEAR, _VECTORS = 1e-4, 120
+_LINEAR, VECTORS = 1e-4, 120
 #: Residual over the size of the motion that is rounding.
 _ROUNDING = 3e-14
 
@@ -83,7 +83,7 @@ class Residual:
         breaks = contacts.breaks(law, *motion)
         force = law.force + y @ self.structure.contact_stiffness.T
         force += rate @ self.structure.contact_damping.T
-        _scatter(force, breaks, breaks.correction)
+        breaks.scatter(force, breaks.correction)
         return State(y, rate, law, breaks, force, y - self.response(force))
 
     def derivative(self, state: State) -> Callable[[Array], Array]:
@@ -108,6 +108,9 @@ class Residual:
         """Newton step of a motion, and the number of products that it took."""
         if np.linalg.norm(state.residual, axis=1).max(initial=0.0) <= _ROUNDING * state.size:
             return -state.residual, 0  # rounding: a body that nothing holds would magnify it
+        return self._corrected(state, accuracy)
+
+    def _corrected(self, state: State, accuracy: float) -> tuple[Array, int]:
         product = self.derivative(state)
         if self.structure.modes is None:
             return solve_linear(product, -state.residual, accuracy)
@@ -118,16 +121,8 @@ class Residual:
         return nearly(solution), count
 
 
-def _scatter(force: Array, breaks: Breaks, values: Array) -> None:
-    part = breaks.fraction[:, None]
-    at = np.concatenate([breaks.step, (breaks.step + 1) % len(force)])
-    shares = np.concatenate([(1.0 - part) * values, part * values])
-    for column, share in zip(force.T, shares.T, strict=True):
-        column += np.bincount(at, share, len(force))
-
-
 def solve_linear(
-    product: Callable[[Array], Array], right: Array, accuracy: float, limit: int = _VECTORS
+    product: Callable[[Array], Array], right: Array, accuracy: float, limit: int = VECTORS
 ) -> tuple[Array, int]:
     """Solution and number of products. Source: Saad and Schultz (1986), SIAM SISC 7, 856."""
     size = float(np.linalg.norm(right))
@@ -198,5 +193,5 @@ def refined(y: Array, steps: int) -> Array:
 def uncorrected(state: State) -> Array:
     """Forces on the closed structure (steps, s) without the corrections for their jumps."""
     force, breaks = state.force.copy(), state.breaks
-    _scatter(force, breaks, (breaks.fraction - 0.5)[:, None] * breaks.jump)
+    breaks.scatter(force, (breaks.fraction - 0.5)[:, None] * breaks.jump)
     return force

@@ -1,0 +1,251 @@
+"""Entries of the contacts at points of several independent phases.
+
+Contacts with the same cycles and offset are a mesh. The entries of a mesh depend on its mesh phase
+alone, so that they are evaluated once at each different mesh phase and distributed to the points.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+
+from tribodyn.dynamics.equations.compiled import Compiled, sample_system
+from tribodyn.dynamics.equations.entry import entry_values
+from tribodyn.dynamics.equations.grid import PointEvaluator, RowEvaluator, build_grid, system_events
+from tribodyn.dynamics.equations.nodes import Nodes, evaluate_rows
+from tribodyn.dynamics.equations.phases import Turning, phase_sum
+from tribodyn.dynamics.equations.system import System
+from tribodyn.dynamics.harmonic.contact_equations import Rows, jumping_events, project_rows
+from tribodyn.errors import InputError
+from tribodyn.types import Array, Index
+
+#: Mesh phases nearer than this are the same; part of a turning error that is no jump.
+_SAME, _CLOSED = 1e-12, 1e-6
+#: Steps of a mesh cycle on which entries are searched for jumps and averaged.
+_STEPS = 128
+#: Points over each phase at which the direction of the external force is sampled.
+_SAMPLED = 8
+#: Fields that have a column for each contact, or for each friction.
+_OF_CONTACTS = (
+    "stiffness", "damping", "error", "error_slope", "gap", "direction", "direction_slope",
+    "force_direction", "ramp_stiffness", "ramp_gap",
+)  # fmt: skip
+_OF_FRICTIONS = ("friction_direction", "friction_coefficients", "rub")
+
+
+@dataclass(frozen=True, eq=False)
+class Mesh:
+    """Contacts at one mesh phase."""
+
+    system: System  #: the structure with these contacts alone, on one mesh cycle
+    cycles: Array  #: mesh cycles over each phase (phases,)
+    offset: float
+    contacts: Index  #: their numbers in the system
+    frictions: Index
+
+    @cached_property
+    def events(self) -> tuple[float, ...]:
+        """Mesh phases at which an entry may jump."""
+        return system_events(self.system)
+
+    @cached_property
+    def jumps(self) -> Array:
+        """Mesh phases at which an entry jumps."""
+        at = np.array(self.events)
+        before, after = (self.nodes(at, 0.0, before=side) for side in (True, False))
+        return np.asarray(at[jumping_events(before, after)])
+
+    def nodes(self, phase: Array, rate: float, before: bool = False) -> Nodes:
+        """Entries at mesh phases (p, 1, ...), slopes over time at a mesh frequency [Hz]."""
+        nodes = evaluate_rows(self.system, PointEvaluator(phase, self.events, before=before))
+        slopes = {name: rate * getattr(nodes, name) for name in ("error_slope", "direction_slope")}
+        return nodes._replace(**slopes)
+
+    def at(self, points: Array, rate: float, before: bool = False) -> tuple[Nodes, Index]:
+        """Entries at the different mesh phases of points (p, phases), and the row of each."""
+        different, rows = _different(phase_sum(points, self.cycles, self.offset))
+        return self.nodes(different, rate, before), rows
+
+
+@dataclass(frozen=True, eq=False)
+class PhaseRows:
+    """A system over several phases, ready to be evaluated at any point of them."""
+
+    system: System
+    frequency: Array  #: of each phase [Hz]
+    meshes: tuple[Mesh, ...]
+    mean: System  #: the system with one cycle of every mesh in a period, for mean values
+
+    @classmethod
+    def of(cls, system: System, frequency: Array) -> PhaseRows:
+        """Divide the contacts of a system into meshes."""
+        groups: dict[Any, list[int]] = {}
+        for number, contact in enumerate(system.contacts):
+            groups.setdefault((contact.cycles, contact.offset), []).append(number)
+        clock: dict[str, Any] = {"cycles": 1, "offset": 0.0}
+        clock |= {"turning_error": (), "turning_cycles": ()}
+        contacts = [replace(contact, **clock) for contact in system.contacts]
+        still = replace(system, force=np.zeros(system.size), contacts=contacts)
+        meshes = tuple(
+            _mesh(still, cycles, offset, numbers) for (cycles, offset), numbers in groups.items()
+        )
+        _check_turning(system)
+        rows = cls(system, frequency, meshes, still)
+        return replace(rows, mean=replace(still, force=rows.sampled_forces().mean(axis=0)))
+
+    @cached_property
+    def means(self) -> Compiled:
+        """Entries of every mesh over one cycle of its own, with checked functions."""
+        return sample_system(self.mean, _STEPS)
+
+    def force(self, points: Array) -> Array:
+        """External force at points (p or 1, n)."""
+        if not callable(self.system.force):
+            return entry_values("force", self.system.force, np.zeros(1), self.system.size)
+        values = np.asarray(self.system.force(points), dtype=float)
+        return np.asarray(np.broadcast_to(values, (len(points), self.system.size)))
+
+    def sampled_forces(self) -> Array:
+        """External forces at some points of all phases (p or 1, n)."""
+        axes = [np.arange(_SAMPLED) / _SAMPLED] * self.system.phases
+        return self.force(np.stack(np.meshgrid(*axes), axis=-1).reshape(-1, len(axes)))
+
+    def rate(self, cycles: Any) -> float:
+        """Frequency of so many cycles over each phase [Hz]."""
+        return float(np.asarray(cycles, dtype=float) @ self.frequency)
+
+    def nodes(self, points: Array) -> Nodes:
+        """Entries at points (p, phases), (p or 1, 1, ...); slopes are those over time."""
+        parts = [mesh.at(points, self.rate(mesh.cycles)) for mesh in self.meshes]
+        fields = self._joined([(vars_of(nodes), rows) for nodes, rows in parts], axis=2)
+        error, slope = self._turned(points, fields["error"][:, 0], fields["error_slope"][:, 0])
+        fields |= {"error": error[:, None], "error_slope": slope[:, None]}
+        phase = phase_sum(points, self.meshes[0].cycles)[:, None]
+        force = self.force(points)[:, None]
+        return Nodes(phase=phase, weight=np.ones((1, 1)), force=force, **fields)
+
+    def projected(
+        self, points: Array, along: Array, push: Array, before: Mesh | None = None
+    ) -> Rows:
+        """Rows at points along two bases; those of the mesh ``before`` just before its phase."""
+        parts = []
+        for mesh in self.meshes:
+            nodes, rows = mesh.at(points, self.rate(mesh.cycles), before is mesh)
+            part = project_rows(nodes, along, push)
+            columns = vars_of(part.nodes) | {
+                "along": part.along, "along_slope": part.along_slope, "push": part.push,
+                "rub": part.rub, "springs": part.stiffness, "gaps": part.gap,
+            }  # fmt: skip
+            parts.append((columns, rows))
+        fields = self._joined(parts, axis=1)
+        error, slope = self._turned(points, fields["error"], fields["error_slope"])
+        fields |= {"error": error, "error_slope": slope}
+        nodes = Nodes(**{name: fields.get(name, np.zeros((1, 1))) for name in Nodes._fields})
+        stiffness, gap = (
+            np.broadcast_to(fields[name], (len(points), *fields[name].shape[1:]))
+            for name in ("springs", "gaps")
+        )
+        return Rows(
+            nodes, fields["along"], fields["along_slope"], fields["push"], fields["rub"],
+            self.force(points) @ push, stiffness, gap,
+        )  # fmt: skip
+
+    def _joined(
+        self, parts: Sequence[tuple[dict[str, Array], Index]], axis: int
+    ) -> dict[str, Array]:
+        """Fields with a column for each contact or friction, from those of the meshes."""
+        fields = {}
+        for name in parts[0][0]:
+            if name in ("phase", "weight", "force"):
+                continue
+            of_frictions = name in _OF_FRICTIONS
+            count = len(self.system.frictions if of_frictions else self.system.contacts)
+            numbers = [mesh.frictions if of_frictions else mesh.contacts for mesh in self.meshes]
+            pieces = [(each[name], rows) for each, rows in parts]
+            filler = 1.0 if name in ("ramp_gap", "gaps") else 0.0
+            fields[name] = _join(list(zip(numbers, pieces, strict=True)), count, axis, filler)
+        return fields
+
+    def _turned(self, points: Array, error: Array, slope: Array) -> tuple[Array, Array]:
+        """Errors and their rates (p or 1, contacts) with those that turn with shafts."""
+        for contact, terms in enumerate(each.turning for each in self.system.contacts):
+            for term in terms:
+                wide = (len(points), error.shape[1])
+                error, slope = (np.array(np.broadcast_to(part, wide)) for part in (error, slope))
+                values, rates = _turning_values(term, phase_sum(points, term.cycles))
+                error[:, contact] += values
+                slope[:, contact] += self.rate(term.cycles) * rates
+        return error, slope
+
+
+def vars_of(part: Nodes) -> dict[str, Array]:
+    """Fields by name, (1, ...) where all rows are one item."""
+    return {
+        name: values[:1] if values.strides[0] == 0 else values
+        for name, values in part._asdict().items()
+    }
+
+
+def _different(phase: Array) -> tuple[Array, Index]:
+    """Different phases among phases (p,), and the number of each."""
+    values, rows = np.unique(np.round(phase / _SAME) * _SAME % 1.0, return_inverse=True)
+    return values, rows.reshape(-1)
+
+
+def _join(
+    pieces: list[tuple[Index, tuple[Array, Index]]], count: int, axis: int, filler: float
+) -> Array:
+    """Columns of all contacts from those of the meshes, filled up to the longest."""
+    values = [piece for _, (piece, _) in pieces]
+    shape = [max(sizes) for sizes in zip(*(piece.shape for piece in values), strict=True)]
+    shape[0] = 1 if all(len(piece) == 1 for piece in values) else len(pieces[0][1][1])
+    shape[axis] = count
+    joined = np.full(shape, filler)
+    for numbers, (piece, rows) in pieces:
+        chosen = piece if len(piece) == 1 else piece[rows]
+        part: list[Any] = [slice(None), *map(slice, chosen.shape[1:])]
+        for source, target in enumerate(numbers.tolist()):
+            part[axis] = target
+            joined[tuple(part)] = np.take(chosen, source, axis)
+    return joined
+
+
+def _mesh(still: System, cycles: Any, offset: float, numbers: list[int]) -> Mesh:
+    """Mesh of some contacts of a system, in which each contact is on one cycle."""
+    place = {number: at for at, number in enumerate(numbers)}
+    chosen = [f for f, friction in enumerate(still.frictions) if friction.contacts[0] in place]
+    frictions = [
+        replace(still.frictions[f], contacts=tuple(place[j] for j in still.frictions[f].contacts))
+        for f in chosen
+    ]
+    contacts = [still.contacts[number] for number in numbers]
+    alone = replace(still, contacts=contacts, frictions=frictions, balance=None)
+    counts = np.atleast_1d(np.asarray(cycles, dtype=float))
+    return Mesh(alone, counts, offset, np.array(numbers), np.array(chosen, dtype=np.int64))
+
+
+def _turning_values(term: Turning, phase: Array) -> tuple[Array, Array]:
+    """Turning error and its derivative by the phase of the shaft (p,)."""
+    different, numbers = _different(phase)
+    rows = PointEvaluator(different, (0.0,))
+    values, rates = (
+        read("turning_error", term.error)[numbers, 0, 0] for read in (rows.values, rows.derivatives)
+    )
+    return values, rates
+
+
+def _check_turning(system: System) -> None:
+    """Refuse turning errors that jump, or depend on more than the phase of the shaft."""
+    rows = RowEvaluator(build_grid((0.0,), _STEPS))
+    for number, contact in enumerate(system.contacts):
+        for term in contact.turning:
+            where = f"contacts[{number}].turning_error"
+            values = rows.values(where, term.error)[..., 0]
+            jump = abs(values[-1, -1] - values[0, 0])
+            if jump > _CLOSED * np.abs(values).max():
+                what, why = f"it jumps by {jump:.4g} m at the phase 0", "A shaft turns steadily"
+                raise InputError(what, where, why, "Give a function that continues after a turn")

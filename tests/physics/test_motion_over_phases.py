@@ -1,0 +1,236 @@
+"""Motion over independent phases: against one clock, a march over time, and printed figures."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from math import pi
+
+import numpy as np
+import pytest
+from scipy.integrate import solve_ivp
+
+from tribodyn.dynamics import Contact, LoadFriction, System, harmonic_balance, simulate
+from tribodyn.errors import InputError
+
+
+def wave(*terms):
+    """Sum of cosines of the mesh phase, each an amplitude and an angle."""
+    return lambda x: sum(a * np.cos(2 * pi * n * x + b) for n, (a, b) in enumerate(terms, 1))
+
+
+BASE = np.array([0.0311, 0.0698, 0.0405, 0.0992, 0.0432, 0.1259])
+FREQUENCIES = 1430.0 * np.array([1.0, 29 / 83, 29 / 83 * 23 / 71])
+
+
+def three_meshes():
+    """Three spur meshes in a row: rotation times base radius and shift of each of six gears."""
+    inertia = np.array([0.0006, 0.011, 0.0011, 0.033, 0.0019, 0.08])
+    body = np.array([1.9, 8, 2.6, 14, 3.5, 21])
+    support = np.array([1.7, 2.4, 2.0, 2.9, 2.6, 3.6]) * 1e8
+    mass = np.diag(np.stack((inertia / BASE**2, body), axis=1).ravel())
+    stiffness, damping = np.zeros((2, 12, 12))
+    shift = np.arange(1, 12, 2)
+    stiffness[shift, shift] = support
+    damping[shift, shift] = 2 * 0.03 * np.sqrt(support * body)
+    for first, k, c in ((1, 2.4e5, 12), (3, 4.1e5, 25)):
+        twist = np.zeros(12)
+        twist[2 * first], twist[2 * first + 2] = 1 / BASE[first], -1 / BASE[first + 1]
+        stiffness += k * np.outer(twist, twist)
+        damping += c * np.outer(twist, twist)
+    force = np.zeros(12)
+    force[0] = 60 / BASE[0]
+    force[10] = -force[0] * BASE[1] / BASE[2] * BASE[3] / BASE[4]
+    laws = (
+        (2.6e8, ((0.2, 0.9), (0.07, 0.1), (0.02, 2.0)), 900, ((3, 0),), 35, 0.15),
+        (3.3e8, ((0.09, -0.7), (0.05, 0.3)), 1400, ((5, 0.8), (2, -0.4)), 45, 0.72),
+        (4.1e8, ((0.14, 0.2), (0.03, 1.0)), 1900, ((7, -1.1),), 50, 0.40),
+    )
+    contacts = []
+    for number, (k, terms, c, errors, gap, offset) in enumerate(laws):
+        direction = np.zeros(12)
+        direction[4 * number : 4 * number + 4] = 1, 1, -1, -1
+        cycles = tuple(int(axis == number) for axis in range(3))
+        law, error = wave(*terms), wave(*errors)
+        contacts.append(
+            Contact(
+                direction, lambda x, k=k, law=law: k * (1 + law(x)), c,
+                lambda x, error=error: 1e-6 * error(x), gap * 1e-6, cycles=cycles, offset=offset,
+            )
+        )  # fmt: skip
+    return System(mass, damping, stiffness, force, contacts)
+
+
+@pytest.fixture(scope="module")
+def three():
+    return harmonic_balance(three_meshes(), FREQUENCIES)
+
+
+def test_three_meshes_have_the_forces_of_an_independent_solution(three):
+    force = three.fine.contact_force
+    mean = three.fine.mean(force)
+    assert mean == pytest.approx([1929.2604502, 3324.9970227, 7635.1783486], rel=1e-9)
+    rms = np.sqrt(three.fine.mean((force - mean) ** 2))
+    assert rms == pytest.approx([354.8064884, 588.1488718, 877.8570914], rel=1e-8)
+    assert three.step_error < 2e-7
+    torque = BASE[1] / BASE[2], BASE[3] / BASE[4]  # each shaft is in equilibrium on average
+    assert mean == pytest.approx(60 / BASE[0] * np.cumprod([1.0, *torque]), rel=1e-9)
+
+
+def test_a_march_that_starts_on_the_motion_stays_on_it(three):
+    system = three_meshes()
+    contacts, matrices = system.contacts, (system.stiffness, system.damping)
+    rows = np.array([contact.direction for contact in contacts])
+
+    def law(time, q, v):
+        x = (FREQUENCIES * time + [c.offset for c in contacts]) % 1.0
+        k, e = (np.array([getattr(c, name)(p) for c, p in zip(contacts, x, strict=True)])
+                for name in ("stiffness", "error"))  # fmt: skip
+        step = 1e-5
+        ahead = np.array([c.error(p + step) - c.error(p - step)
+                          for c, p in zip(contacts, x, strict=True)])  # fmt: skip
+        d, rate = rows @ q - e, rows @ v - FREQUENCIES * ahead / (2 * step)
+        gap = np.array([c.gap for c in contacts])
+        return k * (d - gap) + np.array([c.damping for c in contacts]) * rate  # stays closed
+
+    def slope(time, state):
+        q, v = np.split(state, 2)
+        force = system.force - matrices[0] @ q - matrices[1] @ v - rows.T @ law(time, q, v)
+        return np.concatenate((v, np.linalg.solve(system.mass, force)))
+
+    start = three.at([0.0])
+    begin = np.concatenate((start.position[0], start.velocity[0]))
+    times = np.linspace(0.0, 12 / FREQUENCIES[0], 25)
+    marched = solve_ivp(slope, times[[0, -1]], begin, "DOP853", times, rtol=1e-10, atol=1e-14)
+    at = three.at(times)
+    assert np.abs(marched.y[:12].T - at.position).max() < 1e-6 * np.ptp(at.deflection)
+    force = np.array([law(t, *np.split(y, 2)) for t, y in zip(times, marched.y.T, strict=True)])
+    assert at.contact_force == pytest.approx(force, rel=1e-6)
+
+
+def test_lines_are_those_of_whole_numbers_and_add_up_to_the_motion(three):
+    lines = three.lines()
+    assert lines.frequency == pytest.approx(lines.numbers @ FREQUENCIES, rel=1e-14, abs=1e-9)
+    assert lines.frequency.min() == 0.0
+    assert len({tuple(numbers) for numbers in lines.numbers}) == len(lines.numbers)
+    times = np.array([0.0, 0.0123, 4.56])
+    turns = np.exp(2j * pi * times[:, None] * lines.frequency)
+    assert (turns @ lines.amplitude).real == pytest.approx(three.at(times).contact_force, rel=1e-6)
+
+
+def step_law(x):
+    return 1.0 + 0.3 * ((x >= 0.2) & (x < 0.65))
+
+
+def two_meshes(cycles, *, gap=0.0, jumps=False, friction=False, amplitude=0.2):
+    """Three bodies between two contacts, on one clock or on two phases."""
+    first = Contact(
+        [1.0, -1.0, 0.0],
+        (lambda x: 3.0 * step_law(x)) if jumps else (lambda x: 3 + 0.9 * np.cos(2 * pi * x)),
+        0.03, lambda x: amplitude * np.cos(2 * pi * x), gap,
+        (lambda x: np.outer(np.sin(2 * pi * x), [0.05, 0.0, 0.02])) if friction else None,
+        events=(0.0, 0.2, 0.65) if jumps else (0.0,), cycles=cycles[0], offset=0.15,
+    )  # fmt: skip
+    second = Contact(
+        [0.0, 1.0, -1.0], lambda x: 4 + 0.8 * np.sin(2 * pi * x), 0.03,
+        lambda x: 0.7 * amplitude * np.cos(4 * pi * x + 1), gap, cycles=cycles[1], offset=0.4,
+    )  # fmt: skip
+    rubbing = LoadFriction(
+        [0.3, 0.0, -0.2], lambda x: np.stack((0.05 * np.sin(2 * pi * x), 0.01 + 0 * x), 1), 1.0,
+        (1,), limit=100.0,
+    )  # fmt: skip
+    stiffness = np.array([[0.6, -0.3, 0.0], [-0.3, 0.8, -0.2], [0.0, -0.2, 0.5]])
+    mass = np.diag([1.0, 0.6, 1.4])
+    return System(
+        mass, 0.05 * stiffness + 0.02 * mass, stiffness, [2.0, 0.3, -1.5], [first, second],
+        frictions=[rubbing] if friction else [],
+    )  # fmt: skip
+
+
+@pytest.mark.parametrize(
+    ("options", "accuracy"),
+    [
+        ({}, 1e-7),
+        ({"friction": True, "amplitude": 0.02}, 1e-6),
+        ({"jumps": True, "amplitude": 0.02}, 5e-4),
+    ],
+)
+def test_two_phases_give_the_motion_of_a_common_period(options, accuracy):
+    clock = harmonic_balance(two_meshes((5, 3), **options), 0.05)
+    phases = harmonic_balance(two_meshes(((1, 0), (0, 1)), **options), (0.25, 0.15), steps=96)
+    assert phases.converged
+    at = phases.at(clock.time)
+    for name in ("position", "contact_force"):
+        expected = getattr(clock, name)
+        assert np.abs(getattr(at, name) - expected).max() < accuracy * np.abs(expected).max()
+
+
+def test_flanks_that_separate_are_solved_with_second_order():
+    clock = harmonic_balance(two_meshes((5, 3), gap=0.1, amplitude=0.12), 0.05)
+    system, errors = two_meshes(((1, 0), (0, 1)), gap=0.1, amplitude=0.12), []
+    for points in (24, 48, 96):
+        phases = harmonic_balance(system, (0.25, 0.15), steps=points)
+        assert phases.converged
+        assert 0.03 < np.mean(phases.fine.contact_force == 0.0) < 0.06
+        at = phases.at(clock.time)
+        errors.append(np.sqrt(np.mean((at.position - clock.position) ** 2)))
+    assert errors[2] < 1e-3 * np.abs(clock.position).max()
+    assert errors[0] / errors[2] > 8.0  # two halvings; 16 for an even second order
+
+
+def test_eccentric_gears_turn_with_their_shafts():
+    teeth, frequency, amplitudes = (3, 4), 1200.0, (3e-6, 8e-6)
+    mass, stiffness = np.diag([1.2, 2.5, 0.8, 1.7]), np.diag([0.0, 2e8, 0.0, 3e8])
+    law, error = wave((0.15, 0.0), (0.05, 1.0)), wave((2e-6, 0.4))
+    runs_out = [lambda x, a=a: a * np.cos(2 * pi * x + 0.3) for a in amplitudes]
+    contact = Contact(
+        [1.0, 1.0, -1.0, -1.0], lambda x: 3e8 * (1 + law(x)), 800.0, error, 20e-6,
+        cycles=(1, 0, 0), offset=0.2, turning_error=runs_out,
+        turning_cycles=[(0, 1, 0), (0, 0, 1)],
+    )  # fmt: skip
+    system = System(
+        mass, np.diag([20.0, 1500.0, 20.0, 2000.0]), stiffness, [3e3, 0, -3e3, 0], [contact]
+    )
+    shafts = harmonic_balance(system, (frequency, frequency / teeth[0], frequency / teeth[1]))
+    whole = replace(
+        contact, cycles=1, offset=0.0, turning_error=(), turning_cycles=(),
+        stiffness=lambda x: contact.stiffness((12 * x + 0.2) % 1),
+        error=lambda x: error(12 * x + 0.2) + runs_out[0](4 * x) + runs_out[1](3 * x),
+    )  # fmt: skip
+    clock = harmonic_balance(replace(system, contacts=[whole]), frequency / 12)
+    at = shafts.at(clock.time)
+    assert at.contact_force == pytest.approx(clock.contact_force, rel=1e-7)
+    # Alone, the wheel's run-out is a line of one cycle of its shaft.
+    lines = shafts.lines("deflection")
+    strongest = np.abs(lines.amplitude[:, 0]) * (np.abs(lines.numbers).sum(axis=1) == 1)
+    named = [tuple(n) for n in lines.numbers[np.argsort(-strongest)[:3]]]
+    assert (0, 0, 1) in named
+
+
+def test_a_sweep_continues_from_the_last_motion():
+    system = two_meshes(((1, 0), (0, 1)))
+    first = harmonic_balance(system, (0.25, 0.15))
+    again = harmonic_balance(system, (0.2501, 0.15 * np.sqrt(1.001)), start=first)
+    alone = harmonic_balance(system, (0.2501, 0.15 * np.sqrt(1.001)))
+    at = np.linspace(0.0, 30.0, 50)
+    assert again.at(at).position == pytest.approx(alone.at(at).position, rel=1e-7, abs=1e-9)
+
+
+def test_what_needs_one_clock_refuses_phases():
+    system = two_meshes(((1, 0), (0, 1)))
+    with pytest.raises(InputError, match="2 phases without a common clock"):
+        simulate(system, 0.2, 3, start=([0.0] * 3, [0.0] * 3))
+    with pytest.raises(InputError, match="2 independent phases"):
+        harmonic_balance(system, 0.2)
+    with pytest.raises(InputError, match="no multipliers"):
+        harmonic_balance(system, (0.2, 0.3), stability=True)
+    with pytest.raises(InputError, match="same phases"):
+        replace(system, contacts=[system.contacts[0], replace(system.contacts[1], cycles=2)])
+    with pytest.raises(InputError, match="at least one phase"):
+        replace(system.contacts[0], cycles=(0, 0))
+    with pytest.raises(InputError, match="1 turning errors and 0 turning cycles"):
+        replace(system.contacts[0], turning_error=np.cos)
+
+
+def test_a_tuple_of_one_number_is_the_clock():
+    contact = two_meshes((5, 3)).contacts[0]
+    assert replace(contact, cycles=(5,)).cycles == 5
