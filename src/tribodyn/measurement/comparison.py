@@ -179,7 +179,7 @@ def compare(
         Teeth of the gear on the shaft with angle or tachometer; of the pinion, or of the first gear
         of the mesh of a machine, by default.
     tacho : str, optional
-        Channel with the pulses of a tachometer.
+        Channel with the pulses of a tachometer, or with the speed, by its unit of rpm or rad/s.
     pulses : int
         Pulses of the tachometer in a revolution.
     mesh : str, optional

@@ -17,7 +17,7 @@ from tribodyn.errors import Argument, InputError, warn
 from tribodyn.measurement.mesh_speed import MeshSpeed, mesh_speed
 from tribodyn.measurement.orders import order_spectrum
 from tribodyn.measurement.recording import Recording
-from tribodyn.measurement.tacho import angle_and_jitter
+from tribodyn.measurement.tacho import angle_of_channel
 from tribodyn.types import Array, Mask
 
 #: Least mesh cycles, amplitude over noise of a line, and share of the mean square in harmonics.
@@ -53,9 +53,9 @@ class MeshHarmonics:
 def speed_by_tacho(
     recording: Recording, tacho: str, pulses: int, teeth: int, frequency: float
 ) -> MeshSpeed:
-    """Mesh frequency and mesh angle of a recording by a channel with pulses of a shaft."""
-    angle, jitter = angle_and_jitter(recording[tacho], recording.sample_rate, pulses)
-    method = f'tachometer "{tacho}", {pulses} pulses in a revolution of the gear of {teeth} teeth'
+    """Mesh frequency and mesh angle of a recording by a channel with pulses or the speed."""
+    angle, jitter, source, _ = angle_of_channel(recording, tacho, pulses)
+    method = f"{source}, of the gear of {teeth} teeth"
     return _of_shaft(recording, angle, jitter, teeth, frequency, method)
 
 

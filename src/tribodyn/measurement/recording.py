@@ -11,7 +11,15 @@ from typing import Any
 
 import numpy as np
 
-from tribodyn.errors import Argument, InputError, Problem, did_you_mean, require_positive, shortened
+from tribodyn.errors import (
+    Argument,
+    InputError,
+    Problem,
+    did_you_mean,
+    require_positive,
+    shortened,
+    warn,
+)
 from tribodyn.measurement.readers.detect_format import read_recording_data
 from tribodyn.measurement.readers.recording_data import (
     MEASURED,
@@ -24,6 +32,8 @@ from tribodyn.signals.angular_resampling import checked_signal
 from tribodyn.types import Array
 from tribodyn.units import UnitProblemError, convert
 
+#: Samples up to which channels start at the same time.
+_SAME_START = 0.01
 _SENSITIVITY = re.compile(r"\s*([0-9.eE+-]+)\s*([^/]+)/\s*(.+?)\s*")
 
 
@@ -213,13 +223,21 @@ def read(
     ------
     InputError
         If the file cannot be read, contradicts its suffix, is truncated, or has samples that are
-        not finite, times that are not evenly spaced, or no sampling rate.
+        not finite, times that are not evenly spaced, or no sampling rate, or if its channels have
+        no time in common.
+
+    Warns
+    -----
+    ModelWarning
+        ``channels-aligned`` where channels start at different times: they are shifted by whole
+        samples and cut to the time that all of them have.
 
     Notes
     -----
     A CSV file may begin with header lines. Its columns are delimited by commas, semicolons, tabs
     or blanks; the decimal sign may be a comma unless commas delimit the columns. The unit of a
-    column follows its name in brackets, or is in a separate line. Integer samples of a WAV file
+    column follows its name in brackets, or is in a separate line. Each time column is that of the
+    columns after it. Integer samples of a WAV file
     are scaled to a full scale of 1. UFF and TDMS files need ``pip install "tribodyn[io]"``.
 
     Examples
@@ -241,7 +259,8 @@ def read(
         if name in samples:
             factor, channel_units[name] = _from_sensor(text, channel_units[name] or "V", name)
             samples[name] = samples[name] * factor
-    return Recording(samples, _rate(data, names, sample_rate, path), channel_units)
+    rate = _rate(data, names, sample_rate, path)
+    return Recording(_aligned(samples, data, rate, path), rate, channel_units)
 
 
 def _requested_names(channels: Iterable[str]) -> list[str]:
@@ -272,6 +291,38 @@ def _rate(data: RecordingData, names: list[str], user_rate: float | None, path: 
         raise InputError(f"{path} has no sampling rate", Argument("sample_rate"), why, remedy)
     remedy = "Select channels of one rate with channels=[...], or omit sample_rate"
     return consistent_rate(rates, str(path), "the sampling rates differ", remedy)
+
+
+def _aligned(
+    samples: dict[str, Array], data: RecordingData, rate: float, path: Any
+) -> dict[str, Array]:
+    """Samples of channels that start at different times, cut to the time that all of them have."""
+    known = {name: start for name in samples if (start := data.start(name)) is not None}
+    first = min(known.values(), default=0.0)
+    late = {name: (start - first) * rate for name, start in known.items()}
+    if max(late.values(), default=0.0) <= _SAME_START:
+        return samples
+    starts = ", ".join(f"{name} {start - first:.7g} s" for name, start in list(known.items())[:20])
+    what, remedy = "its channels start at different times", "Select others with channels=[...]"
+    unknown = [name for name in samples if name not in known]
+    if unknown or (rate == 1.0 and not (data.rates or data.times)):
+        why = f"They are {starts}; that of {unknown[0]} is not known" if unknown else (
+            f"They are {starts}, and the sampling rate is not known"
+        )  # fmt: skip
+        raise InputError(what, str(path), why, remedy)
+    begin = {name: round(number) for name, number in late.items()}
+    start, end = max(begin.values()), min(begin[name] + v.size for name, v in samples.items())
+    if end - start < 2:
+        raise InputError(what, str(path), f"They have no time in common: {starts}", remedy)
+    rest = max(abs(late[name] - begin[name]) for name in late)
+    warn(
+        "channels-aligned",
+        f"{path}: {what} ({starts} after the first). They are cut to the {end - start} samples "
+        f"from {start / rate:.7g} to {end / rate:.7g} s that all of them have"
+        + (f", and remain up to {rest:.2g} of a sample apart." if rest > _SAME_START else "."),
+        stacklevel=3,
+    )
+    return {name: v[start - begin[name] : end - begin[name]] for name, v in samples.items()}
 
 
 def _from_sensor(text: str, unit: str, name: str) -> tuple[float, str]:

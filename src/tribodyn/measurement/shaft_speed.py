@@ -9,7 +9,7 @@ import numpy as np
 from tribodyn.errors import InputError, Problem, require_positive
 from tribodyn.measurement.mesh_speed import mesh_speed
 from tribodyn.measurement.recording import Recording
-from tribodyn.measurement.tacho import shaft_angle
+from tribodyn.measurement.tacho import angle_of_channel
 from tribodyn.types import Array
 
 #: Change of the speed over its mean from which it counts as changing.
@@ -64,10 +64,8 @@ def shaft_speed(
     tacho, pulses, speed = source
     rate = recording.sample_rate
     if tacho is not None:
-        angle = shaft_angle(recording[tacho], rate, pulses)
-        per = "1 pulse" if pulses == 1 else f"{pulses} pulses"
-        speed_of_pulses = _with_range(angle, rate, f"tachometer {tacho}, {per} per revolution")
-        return replace(speed_of_pulses, zero="the first pulse of the tachometer")
+        angle, _, method, zero = angle_of_channel(recording, tacho, pulses)
+        return replace(_with_range(angle, rate, method), zero=zero)
     if speed is None:
         notes.append(
             Problem(

@@ -268,7 +268,7 @@ def analyse_signal(
     channel : str
         Channel to analyse.
     tacho : str, optional
-        Channel with the pulses of a tachometer.
+        Channel with the pulses of a tachometer, or with the speed, by its unit of rpm or rad/s.
     pulses_per_revolution : int
         Its pulses in one revolution.
     speed : float, optional

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from itertools import pairwise
 from typing import Any, Literal
 
@@ -16,6 +17,7 @@ from tribodyn.errors import (
     require_positive,
     warn,
 )
+from tribodyn.measurement.recording import Recording, in_si
 from tribodyn.signals.angular_resampling import checked_signal
 from tribodyn.types import Array
 
@@ -33,6 +35,8 @@ _SMOOTH_ENOUGH = 1.05
 _WIDER = 1.5
 #: Ratio to the adjacent gaps from which a gap is a rest, at which the angle is split.
 _REST = 8.0
+#: Speed below zero over the highest up to which a shaft counts as at rest.
+_BACKWARDS = 0.01
 #: Maximum number of pulses per piece of the smoothing spline.
 _MAX_PER_PIECE = 4096
 
@@ -119,6 +123,33 @@ def angle_and_jitter(
     pulse_count = _pulses_passed(moments, count, time, unsure / sample_rate)
     jitter = pitch * float(np.std(np.interp(moments, time, pulse_count) - count))
     return np.asarray(np.maximum.accumulate(pitch * pulse_count)), jitter
+
+
+def angle_of_channel(recording: Recording, name: str, pulses: int) -> tuple[Array, float, str, str]:
+    """Angle of a shaft, rms jitter [rad], source and zero, of pulses or a speed in rpm or rad/s."""
+    # A channel without a unit holds a speed where its name ends with one, such as "speed_rpm".
+    values, rate = recording[name], recording.sample_rate
+    unit = recording.units[name] or re.split(r"[\s_]", name)[-1]
+    speed, si = in_si(values, unit)
+    if si != "rad/s":
+        per = "1 pulse" if pulses == 1 else f"{pulses} pulses"
+        angle, jitter = angle_and_jitter(values, rate, pulses)
+        source = f"tachometer {name}, {per} per revolution"
+        return angle, jitter, source, "the first pulse of the tachometer"
+    if pulses != 1:
+        what, why = f"pulses_per_revolution = {pulses}", f"Channel {name} holds the speed in {unit}"
+        remedy = "Leave it out, or correct the unit of the channel"
+        raise InputError(what, Argument("pulses_per_revolution"), why, remedy)
+    speed = np.sign(speed.mean()) * speed
+    top = float(speed.max())
+    if not top > 0.0 or speed.min() < -_BACKWARDS * top:
+        ends = f"{values.min():.4g} to {values.max():.4g} {unit}"
+        what = f"the speed of channel {name} goes from {ends}"
+        why, remedy = "The shaft must turn, and in one direction", "Check the channel, or cut it"
+        raise InputError(what, Argument("tacho"), why, remedy)
+    steps = np.maximum(0.5 * (speed[1:] + speed[:-1]), 0.0) / rate
+    angle = np.concatenate(([0.0], np.cumsum(steps)))
+    return angle, 0.0, f"speed of channel {name}", "the first sample"
 
 
 def find_edges(values: Array, threshold: float | None, edge: str = "rising") -> tuple[Array, float]:

@@ -25,6 +25,7 @@ _OPTIONS = {
     "band": "--band",
     "max_order": "--max-order",
     "tacho": "--tacho",
+    "pulses_per_revolution": "--pulses",
     "speed": "--speed",
     "line": "--line",
     "mesh_frequency": "--line",
@@ -55,7 +56,10 @@ def _help(text: str) -> Any:
 class Shaft:
     """Speed and teeth of the shaft."""
 
-    tacho: Annotated[Text, _help("Channel with the pulses of a tachometer.")] = None
+    tacho: Annotated[
+        Text,
+        _help("Channel with the pulses of a tachometer, or with the speed in rpm or rad/s."),
+    ] = None
     pulses: Annotated[int, _help("Pulses of the tachometer in one revolution.")] = 1
     speed: Annotated[
         Text,

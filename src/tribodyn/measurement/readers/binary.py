@@ -26,8 +26,8 @@ from tribodyn.validated_files import read_dataset
 #: Warning of SciPy.
 _DUPLICATE = re.compile(r'Duplicate variable name "(.*?)"')
 #: UFF 58: function types of time histories and abscissa types of time; HDF5: depth to which groups
-#: are read.
-_GENERAL, _HISTORY, _TIME, _DEEPEST = 0, 1, (0, 17), 8
+#: are read; UFF 58: most samples in a line of text.
+_GENERAL, _HISTORY, _TIME, _DEEPEST, _ROW = 0, 1, (0, 17), 8, 6
 
 
 def wav(path: Path) -> RecordingData:
@@ -65,6 +65,7 @@ def uff(path: Path) -> RecordingData:
     channels: dict[str, Array] = {}
     units: dict[str, str] = {}
     rates: dict[str, float] = {}
+    starts: dict[str, float] = {}
     left_out = []
     for index, kind in enumerate(kinds):
         if int(kind) != 58:
@@ -79,14 +80,18 @@ def uff(path: Path) -> RecordingData:
         ):
             left_out.append(str(dataset["id1"]))
             continue
-        if data.size != dataset["num_pts"]:
-            what = f"holds {data.size} of {dataset['num_pts']} samples"
-            raise InputError(what, where=str(path), why="The file is cut short")
+        size = int(dataset["num_pts"])
+        if data.size < size or np.any(data[size:]) or data.size - size >= _ROW:
+            what = f"has {data.size} samples in a dataset that announces {size}"
+            why = "The file is cut short" if data.size < size else "Only zeros may fill a last line"
+            raise InputError(what, str(path), why, "Export it from the measuring system again")
         name = _uff_name(dataset, channels)
-        channels[name] = data.astype(float)
+        channels[name] = data[:size].astype(float)
+        starts[name] = float(dataset["abscissa_min"])
         units[name] = _label(dataset["ordinate_axis_units_lab"])
         if dataset["abscissa_spacing"] != 1 or not dataset["abscissa_inc"] > 0.0:
-            rates[name] = rate_of(np.asarray(dataset["x"], dtype=float), path)
+            time = np.asarray(dataset["x"], dtype=float)[:size]
+            rates[name], starts[name] = rate_of(time, path), float(time[0])
         else:
             rates[name] = 1.0 / float(dataset["abscissa_inc"])
     if not channels:
@@ -101,7 +106,7 @@ def uff(path: Path) -> RecordingData:
         )
         remedy = "Export the time histories as dataset 58, and check that the file is complete"
         raise InputError("holds no time history", str(path), f"It has {content}", remedy)
-    return RecordingData(channels, units, rates)
+    return RecordingData(channels, units, rates, starts=starts)
 
 
 def _label(text: Any) -> str:

@@ -35,8 +35,11 @@ _HEADER_STEPS = {"dt", "deltat", "sampletime", "samplingtime", "sampleperiod", "
 #: Names that mean this only where they are right at the channel.
 _RATES, _STEPS = _HEADER_RATES | {"rate"}, _HEADER_STEPS | {"ts", "step"}
 _LABELS = {"unit", "units", "unitstring"}
+#: Names of the time of the first sample: a date, or seconds.
+_STARTS = {"wfstarttime", "wfstartoffset", "starttime", "startoffset", "tstart", "xstart", "t0"}
 #: End of the name of a structure that describes the channel or the group before it.
 _HEADER = re.compile(r"(header|hdr|info|properties|settings|param\w*|meta\w*)$", re.IGNORECASE)
+_ISO_DATE = re.compile(r"\d{4}-\d\d-\d\d([T ]\d\d:\d\d(:\d\d(\.\d{1,9})?)?)?")
 _KINDS = {"c": "complex numbers", "O": "objects", "U": "text", "S": "text", "V": "records"}
 
 
@@ -48,6 +51,11 @@ class RecordingData:
     units: Mapping[str, str] = field(default_factory=dict)
     rates: Mapping[str, float] = field(default_factory=dict)  #: of single channels [Hz]
     times: Mapping[str, Array] = field(default_factory=dict)  #: of single channels [s]
+    starts: Mapping[str, float] = field(default_factory=dict)  #: of channels without times [s]
+
+    def start(self, name: str) -> float | None:
+        """Time of the first sample of a channel on the axis of all; None if not known [s]."""
+        return float(self.times[name][0]) if name in self.times else self.starts.get(name)
 
 
 def is_time(name: str, unit: str = "") -> bool:
@@ -104,8 +112,8 @@ def rate_of(time: Array, path: Any, sample_rate: float | None = None) -> float:
 
 
 def is_metadata(name: str) -> bool:
-    """Whether a scalar of this name is a sampling rate, a time step or a unit."""
-    return _plain(name) in _RATES | _STEPS | _LABELS
+    """Whether a scalar of this name is a sampling rate, a time step, a start or a unit."""
+    return _plain(name) in _RATES | _STEPS | _STARTS | _LABELS
 
 
 def text_of(value: Any) -> str:
@@ -122,7 +130,8 @@ def from_arrays(named: Mapping[str, Any], path: Path) -> RecordingData:
     channels: dict[str, Array] = {}
     rates: dict[str, dict[str, float]] = {}
     labels: dict[str, str] = {}
-    clocks: dict[str, tuple[str, Array]] = {}
+    clocks: dict[str, tuple[str, Any]] = {}
+    starts: dict[str, dict[str, Any]] = {}
     left_out = []
     for name, value in named.items():
         scope, last = _split_name(name)
@@ -131,11 +140,13 @@ def from_arrays(named: Mapping[str, Any], path: Path) -> RecordingData:
         if array.ndim == 0 and is_metadata(last):
             if _plain(last) in _LABELS:
                 labels[scope] = text_of(array.item())
+            elif _plain(last) in _STARTS:
+                starts.setdefault(scope, {})[last] = array
             elif number := _number(array):
                 rate = number if _plain(last) in _RATES else 1.0 / number
                 rates.setdefault(scope, {})[last] = rate
         elif array.dtype.kind == "M" and array.ndim == 1:
-            clocks[scope] = name, (array - array[0]) / np.timedelta64(1, "s")
+            clocks[scope] = name, array
         elif array.dtype.kind not in "biuf" or array.ndim not in (1, 2) or not array.size:
             kind = _KINDS.get(array.dtype.kind, f"{array.ndim} dimensions")
             left_out.append(f"{name} ({'one value' if array.ndim == 0 else kind})")
@@ -150,7 +161,7 @@ def from_arrays(named: Mapping[str, Any], path: Path) -> RecordingData:
         what = "holds no numeric vector"
         why = f"It holds {', '.join(left_out[:20]) or 'nothing'}"
         raise InputError(what, str(path), why, "Save each channel as a vector and the rate as fs")
-    times = {at: in_seconds(v, labels.get(name, ""), path) for at, (name, v) in clocks.items()}
+    times = _times(clocks, labels, path)
     scopes = [_split_name(name)[0] for name in channels]
     units = {
         name: labels.get(name) or (labels.get(scope, "") if scopes.count(scope) == 1 else "")
@@ -169,6 +180,7 @@ def from_arrays(named: Mapping[str, Any], path: Path) -> RecordingData:
         units,
         {name: consistent_rate(each, *differ) for name, each in channel_rates.items() if each},
         {name: each for name, each in channel_times.items() if each is not None},
+        _starts({name: each for name in channels if (each := _nearest(name, starts))}),
     )
 
 
@@ -192,6 +204,47 @@ def _enclosing_scopes(name: str) -> Iterator[str]:
 def _nearest(name: str, by_scope: Mapping[str, Any]) -> Any:
     """Value of the innermost scope around a channel: the channel, its groups, or the file."""
     return next((by_scope[scope] for scope in _enclosing_scopes(name) if scope in by_scope), None)
+
+
+def _times(
+    clocks: Mapping[str, tuple[str, Any]], labels: Mapping[str, str], path: Path
+) -> dict[str, Array]:
+    """Times of every scope, of dates those from the earliest on [s]."""
+    first = min((array[0] for _, array in clocks.values() if array.dtype.kind == "M"), default=None)
+    return {
+        scope: (array - first) / np.timedelta64(1, "s")
+        if array.dtype.kind == "M"
+        else in_seconds(array, labels.get(name, ""), path)
+        for scope, (name, array) in clocks.items()
+    }
+
+
+def _starts(values: Mapping[str, Mapping[str, Any]]) -> dict[str, float]:
+    """Times of the first samples: a date less the earliest, if any has one, and an offset [s]."""
+    dates: dict[str, Any] = {}
+    offsets: dict[str, float] = {}
+    for name, each in values.items():
+        for value in each.values():
+            date, number = _date(value), _real(value)
+            if date is not None:
+                dates[name] = date
+            elif number is not None:
+                offsets[name] = offsets.get(name, 0.0) + number
+    if not dates:
+        return offsets
+    first = min(dates.values())
+    return {
+        name: float((date - first) / np.timedelta64(1, "s")) + offsets.get(name, 0.0)
+        for name, date in dates.items()
+    }
+
+
+def _date(value: Any) -> Any:
+    """Date of a scalar that may be text; None otherwise."""
+    if value.dtype.kind == "M":
+        return value[()]
+    match = _ISO_DATE.match(text_of(value.item()))
+    return np.datetime64(match[0]) if match else None
 
 
 def _headers(
@@ -249,13 +302,19 @@ def consistent_rate(rates: Mapping[str, float], where: str, what: str, remedy: s
     return first
 
 
-def _number(value: Any) -> float | None:
-    """Positive number of a value that may be text; None otherwise."""
+def _real(value: Any) -> float | None:
+    """Finite number of a value that may be text; None otherwise."""
     try:
         number = float(text_of(value.item()))
     except (TypeError, ValueError):
         return None
-    return number if 0.0 < number < np.inf else None
+    return number if np.isfinite(number) else None
+
+
+def _number(value: Any) -> float | None:
+    """Positive number of a value that may be text; None otherwise."""
+    number = _real(value)
+    return number if number is not None and number > 0.0 else None
 
 
 def refuse_table(kind: Any, path: Path) -> None:

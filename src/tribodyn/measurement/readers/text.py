@@ -5,7 +5,7 @@ from __future__ import annotations
 import csv
 import gzip
 import re
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import NamedTuple
 
@@ -35,6 +35,8 @@ _FACT = re.compile(
     r"([0-9.,]+(?:e[+-]?\d+)?)[\";,\t ]*([a-zµμ]*)[\";,\t ]*",
     re.IGNORECASE,
 )
+#: Number at the end of the name of one of several columns of times.
+_REPEATED = re.compile(r" \(\d+\)$|(?<=\w{3})[ _.]?\d+$")
 #: Lines that are searched for the first row of numbers; rows at the end that the truncation check
 #: compares.
 _HEAD, _LOOK = 200, 100
@@ -71,17 +73,31 @@ def read_columns(path: Path) -> RecordingData:
         _refuse_cut(lines[layout.first :], layout, path)
     columns = dict(zip(names, table.T, strict=True))
     unit_of = dict(zip(names, units, strict=True))
-    clock = next((name for name in names if is_time(name, unit_of[name])), None)
-    if clock is None:
+    clocks = _clocks(names, unit_of, columns)
+    if not clocks:
         what, remedy = "has different sampling rates in its header", "Correct one of them"
         rate = consistent_rate(rates, str(path), what, remedy) if rates else None
         return RecordingData(columns, unit_of, dict.fromkeys(columns, rate) if rate else {})
-    time = in_seconds(columns.pop(clock), unit_of.pop(clock), path)
+    axes = {name: in_seconds(columns.pop(name), unit_of.pop(name), path) for name in clocks}
     if not columns:
         raise InputError(
             "has a time column but no channels", where=str(path), remedy="Add a column"
         )
-    return RecordingData(columns, unit_of, times=dict.fromkeys(columns, time))
+    times, clock = {}, clocks[0]
+    for name in names:
+        clock = name if name in axes else clock
+        if name in columns:
+            times[name] = axes[clock]
+    return RecordingData(columns, unit_of, times=times)
+
+
+def _clocks(
+    names: Sequence[str], units: Mapping[str, str], columns: Mapping[str, Array]
+) -> list[str]:
+    """Columns of times: each is that of the columns after it, the first of those before it too."""
+    clocks = [name for name in names if is_time(_REPEATED.sub("", name), units[name])]
+    rising = [name for name in clocks[1:] if np.all(np.diff(columns[name]) >= 0.0)]
+    return clocks[:1] + [name for name in rising if np.ptp(columns[name]) > 0.0]
 
 
 def _header_rates(head: Sequence[str]) -> tuple[dict[str, float], list[str]]:
@@ -223,7 +239,8 @@ def _numbers(lines: Sequence[str], layout: _Layout, path: Path) -> Array:
     rows, shape = lines[layout.first :], (len(lines) - layout.first, layout.width)
     try:
         if '"' in rows[0] or ":" in rows[0]:
-            table = np.array([_values(layout.cells(row), layout.cells(rows[0])) for row in rows])
+            first = next((cell for cell in layout.cells(rows[0]) if _CLOCK.fullmatch(cell)), "")
+            table = np.array([_values(layout.cells(row), first) for row in rows])
         else:
             plain = [row.rstrip().removesuffix(layout.delimiter or " ") for row in rows]
             if layout.delimiter != ",":
@@ -249,11 +266,11 @@ def _numbers(lines: Sequence[str], layout: _Layout, path: Path) -> Array:
     raise InputError("holds numbers that are not finite", where=str(path))
 
 
-def _values(cells: Sequence[str], first: Sequence[str]) -> list[float]:
+def _values(cells: Sequence[str], first: str) -> list[float]:
     """Numbers of a row; times of day in seconds from the first date, to preserve precision."""
     values = []
-    for cell, above in zip(cells, first, strict=True):
-        clock, start = _CLOCK.fullmatch(cell), _CLOCK.fullmatch(above)
+    for cell in cells:
+        clock, start = _CLOCK.fullmatch(cell), _CLOCK.fullmatch(first)
         if clock is None or start is None:
             values.append(float(cell.replace(",", ".")))
             continue
