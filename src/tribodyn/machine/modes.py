@@ -14,12 +14,12 @@ from tribodyn.machine.mesh import mean_over_phase
 from tribodyn.machine.reduction import machine_structure
 from tribodyn.machine.structure import MachineStructure
 from tribodyn.record import Record, fact, quantity, record
-from tribodyn.types import Array, ComplexArray
+from tribodyn.types import Array, ComplexArray, Mask
 
 
 @record
 class MachineModes(Record):
-    """Natural modes of a machine, without its free rotation.
+    """Natural modes of a machine without its free rotation, of a reduced one up to its limit.
 
     Parameters
     ----------
@@ -90,7 +90,8 @@ def machine_modes(machine: Machine | MachineStructure, speed: float | None = Non
     Notes
     -----
     Backlash is closed, as under load. Motions without strain, of which the rotation of the whole
-    drive is one, are left out.
+    drive is one, are left out, and so are modes above the limit of a reduced structure, which its
+    coordinates do not hold: ``MachineStructure(machine)`` has them all.
 
     Examples
     --------
@@ -112,7 +113,7 @@ def machine_modes(machine: Machine | MachineStructure, speed: float | None = Non
         _with_mean_stiffness(structure), gyroscopic=structure.gyroscopic(speed) if speed else None
     )
     modes = natural_modes(linear, elements=structure.elements)
-    elastic = modes.frequency > 0.0
+    elastic = _reliable(structure, modes.frequency)
     shape = modes.shape[elastic].astype(complex)
     top = np.take_along_axis(shape, np.abs(shape).argmax(axis=1)[:, None], axis=1)
     return MachineModes(
@@ -131,7 +132,13 @@ def machine_frequencies(structure: MachineStructure, speeds: Array) -> list[Arra
     """Natural frequencies [Hz] at each speed of the input [rad/s], as :func:`machine_modes`."""
     linear = linear_system(_with_mean_stiffness(structure))
     turning = [structure.gyroscopic(float(speed)) if speed else None for speed in speeds]
-    return [each[each > 0.0] for each in frequencies_at(linear, turning)]
+    return [each[_reliable(structure, each)] for each in frequencies_at(linear, turning)]
+
+
+def _reliable(structure: MachineStructure, frequency: Array) -> Mask:
+    """Which frequencies are those of elastic modes within the limit of a reduction."""
+    limit = np.inf if structure.reduction is None else structure.reduction.limit
+    return np.asarray((frequency > 0.0) & (frequency <= limit))
 
 
 def _with_mean_stiffness(structure: MachineStructure) -> System:

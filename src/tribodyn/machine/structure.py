@@ -21,6 +21,7 @@ from tribodyn.machine.mesh import mean_over_phase
 from tribodyn.machine.planetary.centrifugal import centrifugal_force
 from tribodyn.machine.shaft import Shaft
 from tribodyn.machine.shaft_matrices import ShaftMatrices
+from tribodyn.machine.static.clearance import linear_load
 from tribodyn.types import Array, Mask
 
 #: Eigenvalues below this share of the largest are rounding: the motion is free.
@@ -332,15 +333,14 @@ class MachineStructure:
     def bearing_load(
         self, name: str, position: ArrayLike, velocity: ArrayLike | None = None
     ) -> Array:
-        """Force and moment of the shaft on a bearing.
+        """Force and moment of the shaft on a bearing, with those at its working load.
 
         Parameters
         ----------
         name : str
             Name of the bearing.
         position, velocity : (..., n) array
-            Motion, such as that of a response [SI]; without a velocity the damping of the bearing
-            is left out.
+            Motion, such as that of a response [SI]; without a velocity the damping is left out.
 
         Returns
         -------
@@ -348,10 +348,10 @@ class MachineStructure:
             ``F_x, F_y, F_z, M_x, M_y, M_z`` [N and N*m].
         """
         bearing, motion = self.machine.bearings[name], self.bearing(name)
-        load = np.asarray(position) @ motion.T @ bearing.stiffness_matrix
+        load = linear_load(bearing, np.asarray(position) @ motion.T)
         if velocity is not None:
             load = load + np.asarray(velocity) @ motion.T @ bearing.damping_matrix
-        return np.asarray(load)
+        return load
 
     def mesh(self, name: str) -> Array:
         """Compression of a mesh per coordinate.

@@ -27,6 +27,7 @@ from tribodyn.machine.machine import Machine
 from tribodyn.machine.planetary.centrifugal import centrifugal_force
 from tribodyn.machine.rolling.element_ring import BearingState, RollingElementBearing
 from tribodyn.machine.static.face_law import FaceLaw
+from tribodyn.machine.static.least_load import least_stiffness
 from tribodyn.machine.static.static_model import MeshLaw, StaticModel
 from tribodyn.types import Array
 
@@ -155,12 +156,19 @@ class StaticBalance:
         Returns
         -------
         Machine
+            A rolling bearing without preload that carries less than its share of the weight of its
+            shaft has the stiffness that it has under this share.
+
+        Warns
+        -----
+        ModelWarning
+            ``unloaded-bearing`` names such a bearing.
         """
         bearings = dict(self.machine.bearings)
         for name, bearing in bearings.items():
             if bearing.nonlinear:
                 state = self.bearings[name]
-                stiffness = state.stiffness
+                stiffness = self._stiffness(name)
                 force = state.load - stiffness @ state.displacement
                 loose = bearing if bearing.clearance else None
                 bearings[name] = replace(
@@ -176,6 +184,20 @@ class StaticBalance:
                         "its clearance, or preload it",
                     )
         return replace(self.machine, bearings=bearings)
+
+    def _stiffness(self, name: str) -> Array:
+        """Stiffness of a bearing at its load, of a rolling one at least at that of a weight."""
+        state = self.bearings[name]
+        least = least_stiffness(self.machine, name, state.load)
+        if least is None:
+            return state.stiffness
+        warn(
+            "unloaded-bearing",
+            f'bearing "{name}" carries no load, or less than its share of the weight of shaft '
+            f'"{self.machine.bearings[name].shaft}", {least[1]:.4g} N: it has the stiffness that '
+            "it has under this share; preload it, or give stiffnesses in place of its type",
+        )
+        return least[0]
 
 
 def static_balance(

@@ -56,12 +56,10 @@ def without_clearance_supports(structure: MachineStructure, system: System) -> S
     return replace(system, stiffness=stiffness, force=force)
 
 
-def spring_loads(structure: MachineStructure, name: str, position: Array) -> Array:
-    """Force and moment of a shaft on the springs of a bearing along a motion (s, 6)."""
-    bearing = structure.machine.bearings[name]
-    displacement = position @ structure.bearing(name).T
-    loads = displacement @ bearing.stiffness_matrix + bearing.rest_load
+def linear_load(bearing: Bearing, displacement: Array) -> Array:
+    """Force and moment on a bearing about its working load, of displacements (..., 6)."""
+    load = displacement @ bearing.stiffness_matrix + bearing.rest_load
     if bearing.unloaded is not None:
-        law = radial_law(bearing.unloaded, structure.bearing(name)[_RADIAL])
-        loads[:, _RADIAL] = law.force(law.displacement(position))
-    return np.asarray(loads)
+        law = radial_law(bearing.unloaded)
+        load[..., _RADIAL] = law.force(law.displacement(displacement[..., _RADIAL]))
+    return np.asarray(load)

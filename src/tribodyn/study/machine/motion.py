@@ -9,7 +9,6 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from tribodyn.errors import Argument, InputError
-from tribodyn.machine.static.clearance import spring_loads
 from tribodyn.record import Record, fact, quantity, record
 from tribodyn.types import Array, ComplexArray
 
@@ -213,11 +212,10 @@ def machine_motion(structure: MachineStructure, response: Response) -> MachineMo
         separated[name] = (force[name] == 0.0).astype(float)
         error[name] = fine.position @ mesh_rotation(structure, name)
         first += count
-    bearings = {}
-    for name, bearing in machine.bearings.items():
-        motion = structure.bearing(name).T
-        dampers = fine.velocity @ motion @ bearing.damping_matrix
-        bearings[name] = spring_loads(structure, name, fine.position) + dampers
+    bearings = {
+        name: structure.bearing_load(name, fine.position, fine.velocity)
+        for name in machine.bearings
+    }
     nodes = machine.housing.nodes if machine.housing is not None else {}
     accelerations = {n: fine.acceleration @ structure.housing_node(n)[:3].T for n in nodes or {}}
     return MachineMotion(
