@@ -9,8 +9,17 @@ import pytest
 
 import tribodyn
 
-FOUND = [info.name for info in pkgutil.walk_packages(tribodyn.__path__, "tribodyn.")]
-NAMES = ["tribodyn", *(name for name in FOUND if not name.endswith("__main__"))]
+_ROOT = Path(tribodyn.__path__[0]).parent
+FOUND = ["tribodyn", *(i.name for i in pkgutil.walk_packages(tribodyn.__path__, "tribodyn."))]
+
+
+def _has_examples(name: str) -> bool:
+    path = _ROOT.joinpath(*name.split("."))
+    path = path / "__init__.py" if path.is_dir() else path.with_suffix(".py")
+    return ">>>" in path.read_text("utf-8")
+
+
+NAMES = [name for name in FOUND if not name.endswith("__main__") and _has_examples(name)]
 # Their examples compile kernels of their own.
 SLOW = {
     "tribodyn.ehl.transient.transient",
