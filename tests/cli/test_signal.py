@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 import pytest
 
+import tribodyn
 from tribodyn.cli import call
 
 RATE, SPEED = 6400.0, 2.0 * np.pi * 15.0
@@ -178,3 +179,26 @@ def test_wrong_input_names_the_option_and_the_remedy(
 def test_a_file_that_is_none_is_refused(capsys: pytest.CaptureFixture[str]) -> None:
     assert call(["signal", "nowhere.csv"]) == 2
     assert "there is no such file" in capsys.readouterr().err
+
+
+def test_teeth_and_speed_of_a_gear_of_a_machine_are_taken(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    time = np.arange(0.0, 1.0, 1e-4)
+    table = np.column_stack([time, np.sin(2.0 * np.pi * 1150.0 * time)])
+    path = tmp_path / "rig.csv"
+    np.savetxt(path, table, delimiter=",", header="time [s],acc [m/s^2]", comments="")
+    base = [path, "--channel", "acc"]
+    written = run_json(capsys, *base, "--teeth", "23/57", "--speed", "3000 rpm")
+    of_case = run_json(capsys, *base, "--case", "two-stage-spur", "--gear", "z1")
+    case = tribodyn.load_case("two-stage-spur")
+    assert (case.gears["z1"].teeth, case.gears["z2"].teeth) == (23, 57)
+    assert of_case == written
+    for name, gear, message in (
+        ("two-stage-spur", "pinion", 'there is no gear "pinion". Gears of two-stage-spur: z1'),
+        ("planetary-stage", "sun", "turns with a carrier"),
+        ("fzg-roughness", "z1", "Gears of fzg-roughness: pinion, wheel"),
+    ):
+        arguments = [*map(str, base), "--case", name, "--gear", gear]
+        assert call(["signal", *arguments]) == 2
+        assert message in capsys.readouterr().err

@@ -33,3 +33,11 @@ def test_unknown_cases_are_refused_before_anything_compiles() -> None:
         tribodyn.warm_up("nowhere")
     with pytest.raises(InputError, match="jobs = 0"):
         tribodyn.warm_up("fzg-roughness", jobs=0)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", ["two-stage-spur", "planetary-stage"])
+def test_machines_and_stages_compile_by_a_run(name: str) -> None:
+    with _children([name], 1) as results:
+        (report,) = results
+    assert report["compiled"] or report["loaded"]

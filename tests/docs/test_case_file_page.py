@@ -78,5 +78,5 @@ def test_options_on_the_page_belong_to_their_models() -> None:
 
 def test_every_command_is_on_its_page() -> None:
     page = (_DOCS / "command-line.md").read_text(encoding="utf-8")
-    for name, _, _ in COMMANDS:
-        assert f"`tribodyn {name}" in page
+    for command in COMMANDS:
+        assert f"`tribodyn {command.name}" in page

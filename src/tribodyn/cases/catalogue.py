@@ -53,6 +53,11 @@ def planetary_files() -> dict[str, Path]:
     return {path.stem: path for path in sorted(folder.glob("*.toml"), key=_name)}
 
 
+def all_files() -> dict[str, Path]:
+    """Files of all named cases: gear pairs, machines and planetary stages."""
+    return {**case_files(), **machine_files(), **planetary_files()}
+
+
 @lru_cache(maxsize=1)
 def _external_cases() -> EntryPoints:
     """Cases of other packages; cached, since searching the installed packages takes a while."""
@@ -85,10 +90,7 @@ def cases(*, machines: bool = False) -> dict[str, str]:
 
     return {
         name: tomllib.loads(path.read_text(encoding="utf-8")).get("title", "")
-        for name, path in {
-            **case_files(),
-            **({**machine_files(), **planetary_files()} if machines else {}),
-        }.items()
+        for name, path in (all_files() if machines else case_files()).items()
     }
 
 

@@ -146,11 +146,11 @@ def compile_for(job: str) -> None:
     if job == _ENGINE:
         first_use.compile_marches()
     else:
-        from tribodyn.study.pipeline.run import run
+        from tribodyn.cases.load import run
 
         first_use.allowed = False  # Other processes are running already.
         with TemporaryDirectory() as place:  # Some figures of the report compute too.
-            run(load_case(job)).save(f"{place}/result")
+            run(job).save(f"{place}/result")
     loaded = sorted({_name(kernel) for kernel in kernels if kernel.stats.cache_hits})
     sys.stdout.write(text.dumps({"compiled": compiled, "loaded": loaded}) + "\n")
 

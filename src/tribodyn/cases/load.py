@@ -8,7 +8,7 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from tribodyn.cases.catalogue import case_files, machine_files, planetary_files
+from tribodyn.cases.catalogue import all_files
 from tribodyn.errors import InputError, Problem
 from tribodyn.progress import SILENT, Progress
 
@@ -77,7 +77,7 @@ def _load_toml(
     from tribodyn.study.machine.read import read_any_case
     from tribodyn.validated_files import file_kind
 
-    paths = {**case_files(), **machine_files(), **planetary_files()}
+    paths = all_files()
     name = os.fspath(name_or_path)
     path = paths.get(name, Path(name))
     kind = file_kind(path)

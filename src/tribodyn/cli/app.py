@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Any
+from typing import Annotated, Any, NamedTuple
 
 from cyclopts import App, Parameter
 
@@ -17,108 +17,194 @@ tribodyn: from gear and lubricant data to tooth contact, friction and vibration.
 
 tribodyn --help shows all commands."""
 
-#: Command, its function within ``commands``, and one line of help.
+
+#: Kinds of cases.
+ANY, PAIR = "any", "pair"
+
+
+class Command(NamedTuple):
+    """A command: its function within ``commands``, and what it takes."""
+
+    name: str
+    place: str
+    help: str  #: one line
+    example: str = ""  #: what to write after it
+    takes: str = ANY  #: kind of its case; empty without one
+
+
 COMMANDS = (
-    ("cases", "case_commands:cases", "List the built-in cases."),
-    ("app", "app_command:app", "Serve a page in the browser for the whole job."),
-    ("run", "run_command:run", "Compute a case and write its report."),
-    ("sweep", "sweep_command:sweep", "Compute a case at many values of its keys."),
-    (
+    Command("cases", "case_commands:cases", "List the built-in cases.", takes=""),
+    Command(
+        "app", "app_command:app", "Serve a page in the browser for the whole job.", "fzg-roughness"
+    ),
+    Command("run", "run_command:run", "Compute a case and write its report.", "fzg-roughness"),
+    Command(
+        "sweep",
+        "sweep_command:sweep",
+        "Compute a case at many values of its keys.",
+        'fzg-roughness "operation.speed=400..3500 rpm:60"',
+    ),
+    Command(
         "ensemble",
         "ensemble_command:ensemble",
         "Compute many variants of a case with spread inputs, and draw bands.",
+        'fzg-roughness --set "operation.torque=150 N*m +- 2 %"',
     ),
-    (
+    Command(
         "bifurcation",
         "nonlinear_commands:bifurcation",
         "Follow the motion of a case over one value.",
+        'fzg-roughness "operation.speed=400..3500 rpm:300"',
+        takes=PAIR,
     ),
-    (
+    Command(
         "continuation",
         "nonlinear_commands:continuation",
         "Follow the periodic motion of a case over one value, stable or not.",
+        'fzg-roughness "operation.speed=400..3500 rpm"',
+        takes=PAIR,
     ),
-    (
+    Command(
         "basins",
         "nonlinear_commands:basins",
         "Find which motion of a case a disturbed start comes to.",
+        "fzg-roughness",
+        takes=PAIR,
     ),
-    (
+    Command(
         "lyapunov",
         "nonlinear_commands:lyapunov",
         "Find the Lyapunov exponents of a case: whether it is chaos.",
+        "fzg-roughness",
+        takes=PAIR,
     ),
-    (
+    Command(
         "sobol",
         "ensemble_command:sobol",
         "Find which tolerance of a case the spread of its figures comes from.",
+        'fzg-roughness peak_mesh_force --set "operation.torque=150 N*m +- 2 %"',
     ),
-    (
+    Command(
         "study",
         "study_command:study",
         "Compute many runs of a case into a store, here or on a cluster.",
+        "study.toml",
     ),
-    ("modes", "study_commands:modes", "Find natural frequencies and critical speeds of a case."),
-    ("harris", "study_commands:harris", "Find the static transmission error over the torque."),
-    ("relief", "study_commands:relief", "Find the best tip relief of a case."),
-    ("run-up", "study_commands:run_up", "Integrate a case in time while its speed rises."),
-    (
+    Command(
+        "modes",
+        "study_commands:modes",
+        "Find natural frequencies and critical speeds of a case.",
+        "fzg-roughness",
+    ),
+    Command(
+        "harris",
+        "study_commands:harris",
+        "Find the static transmission error over the torque.",
+        "fzg-roughness",
+        takes=PAIR,
+    ),
+    Command(
+        "relief",
+        "study_commands:relief",
+        "Find the best tip relief of a case.",
+        "fzg-roughness",
+        takes=PAIR,
+    ),
+    Command(
+        "run-up",
+        "study_commands:run_up",
+        "Integrate a case in time while its speed rises.",
+        'fzg-roughness "400..3500 rpm"',
+    ),
+    Command(
         "losses",
         "losses_commands:losses",
         "Find losses and efficiency of a case over torque and speed.",
+        "fzg-roughness",
+        takes=PAIR,
     ),
-    (
+    Command(
         "friction-from-loss",
         "losses_commands:friction_from_loss",
         "Find friction coefficients from measured torque losses.",
+        "losses.csv --case fzg-roughness",
+        takes=PAIR,
     ),
-    (
+    Command(
         "experiment",
         "experiment_command:experiment",
         "Judge published claims on one gear pair: friction.",
+        "friction",
+        takes=PAIR,
     ),
-    (
+    Command(
         "surrogate",
         "surrogate_command:surrogate",
         "Learn the steady response of a case, and predict it at once.",
+        "train fzg-roughness",
+        takes=PAIR,
     ),
-    (
+    Command(
         "paper",
         "experiment_command:paper",
         "Compare the printed tables of a source with computed figures.",
+        takes=PAIR,
     ),
-    ("compare", "compare_command:compare", "Show what differs between two results."),
-    (
+    Command(
+        "compare",
+        "compare_command:compare",
+        "Show what differs between two results.",
+        "first second",
+    ),
+    Command(
         "recording",
         "recordings.recording_command:recording",
         "Record what a sensor sees of a case with faults, or a labelled set.",
+        "fzg-roughness --sensor pinion_y --out rig.mat",
     ),
-    (
+    Command(
         "signal",
         "signal_command:signal",
         "List the channels of a recording, or analyse one: spectra, orders, indicators.",
+        "rig.csv --channel acc --tacho pulses --pulses 60 --teeth 29",
     ),
-    ("check", "case_commands:check", "Check a case and show its geometry."),
-    (
+    Command("check", "case_commands:check", "Check a case and show its geometry.", "fzg-roughness"),
+    Command(
         "import",
         "exchange_commands:import_",
         "List a gearbox model of another program (REXS), and make a case of it.",
+        "gearbox.rexs --out my.toml",
+        takes="",
     ),
-    (
+    Command(
         "export",
         "exchange_commands:export",
         "Write a case for other gear programs (REXS), or the tables of a result.",
+        "fzg-roughness --rexs gearbox.rexs",
+        takes=PAIR,
     ),
-    ("new", "case_commands:new", "Write a commented case file to start from."),
-    (
+    Command("new", "case_commands:new", "Write a commented case file to start from.", "my.toml"),
+    Command(
         "cookbook",
         "explain_commands:cookbook",
         "Print a short script for a common task, or list all of them.",
+        takes="",
     ),
-    ("explain", "explain_commands:explain", "Explain a symbol, key, model or warning."),
-    ("units", "explain_commands:units", "List the units and their spellings."),
-    ("warm-up", "run_command:warm_up", "Compile what runs need, ahead of the first one."),
-    ("cite", "explain_commands:cite", "Print the papers behind a result."),
+    Command(
+        "explain",
+        "explain_commands:explain",
+        "Explain a symbol, key, model or warning.",
+        "epsilon_alpha",
+        takes="",
+    ),
+    Command("units", "explain_commands:units", "List the units and their spellings.", takes=""),
+    Command(
+        "warm-up",
+        "run_command:warm_up",
+        "Compile what runs need, ahead of the first one.",
+        "fzg-roughness",
+    ),
+    Command("cite", "explain_commands:cite", "Print the papers behind a result.", "fzg-roughness"),
 )
 
 
@@ -165,6 +251,11 @@ class _Help:
         DefaultFormatter().render_description(console, options, description)
 
 
+def names_of_commands(takes: str) -> str:
+    """Names of the commands whose case is of a kind."""
+    return ", ".join(each.name for each in COMMANDS if each.takes == takes)
+
+
 def make_app() -> App:
     """Build the command line; nothing heavy is imported."""
     app = App(
@@ -181,6 +272,6 @@ def make_app() -> App:
     app.register_install_completion_command(
         help="Let the shell complete commands and options: bash, zsh or fish."
     )
-    for name, place, help_text in COMMANDS:
-        app.command(f"tribodyn.cli.commands.{place}", name=name, help=help_text)
+    for each in COMMANDS:
+        app.command(f"tribodyn.cli.commands.{each.place}", name=each.name, help=each.help)
     return app

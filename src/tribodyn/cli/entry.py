@@ -96,37 +96,6 @@ def _interrupt() -> None:
 #: Exit code of a command that was stopped by Ctrl-C.
 INTERRUPTED = 130
 
-#: What to write after a command, for those that need something.
-_EXAMPLES = {
-    "app": "fzg-roughness",
-    "run": "fzg-roughness",
-    "check": "fzg-roughness",
-    "sweep": 'fzg-roughness "operation.speed=400..3500 rpm:60"',
-    "bifurcation": 'fzg-roughness "operation.speed=400..3500 rpm:300"',
-    "continuation": 'fzg-roughness "operation.speed=400..3500 rpm"',
-    "basins": "fzg-roughness",
-    "lyapunov": "fzg-roughness",
-    "ensemble": 'fzg-roughness --set "operation.torque=150 N*m +- 2 %"',
-    "sobol": 'fzg-roughness peak_mesh_force --set "operation.torque=150 N*m +- 2 %"',
-    "study": "study.toml",
-    "modes": "fzg-roughness",
-    "harris": "fzg-roughness",
-    "relief": "fzg-roughness",
-    "run-up": 'fzg-roughness "400..3500 rpm"',
-    "losses": "fzg-roughness",
-    "friction-from-loss": "losses.csv --case fzg-roughness",
-    "experiment": "friction",
-    "compare": "first second",
-    "recording": "fzg-roughness --sensor pinion_y --out rig.mat",
-    "signal": "rig.csv --channel acc --tacho pulses --pulses 60 --teeth 29",
-    "import": "gearbox.rexs --out my.toml",
-    "export": "fzg-roughness --rexs gearbox.rexs",
-    "new": "my.toml",
-    "explain": "epsilon_alpha",
-    "cite": "fzg-roughness",
-    "warm-up": "fzg-roughness",
-}
-
 _TRACEBACK = "TRIBODYN_TRACEBACK"
 #: A negative quantity or range, such as "-5 N*m": no option begins with a digit.
 _NEGATIVE = re.compile(r"-\s*\.?\d")
@@ -225,7 +194,7 @@ def _dispatch(arguments: list[str]) -> int:
     from tribodyn.cli.settings import reserved_outputs
     from tribodyn.errors import InputError
 
-    names = [name for name, _, _ in COMMANDS]
+    names = [each.name for each in COMMANDS]
     if arguments and not arguments[0].startswith("-") and arguments[0] not in names:
         raise InputError(_no_command(arguments[0], names))
     # A leading space marks a negative value as an argument: the parser takes "-..." for an option.
@@ -242,15 +211,17 @@ def _dispatch(arguments: list[str]) -> int:
 
 def _remedy(arguments: list[str], what: str) -> str:
     """Return what to write instead of an invalid command."""
+    from tribodyn.cli.app import COMMANDS
+
     settings = [
         argument for argument in arguments if "=" in argument and not argument.startswith("-")
     ]
     if len(settings) > arguments.count("--set") and arguments[0] not in ("sweep", "bifurcation"):
         return "Repeat --set before every KEY=VALUE"
-    if arguments[0] in _EXAMPLES and "requires an argument" in what:
-        return f"Write for example: tribodyn {arguments[0]} {_EXAMPLES[arguments[0]]}"
-    is_command = arguments and arguments[0] in _EXAMPLES
-    return f"See: tribodyn {arguments[0]} --help" if is_command else "See: tribodyn --help"
+    command = next((each for each in COMMANDS if arguments[:1] == [each.name]), None)
+    if command is not None and command.example and "requires an argument" in what:
+        return f"Write for example: tribodyn {command.name} {command.example}"
+    return f"See: tribodyn {command.name} --help" if command else "See: tribodyn --help"
 
 
 def _no_command(name: str, names: list[str]) -> Problem:

@@ -25,6 +25,9 @@ Words = Annotated[list[str] | None, Parameter(name="--set", negative="")]
 CaseName = Annotated[
     str, Parameter(help="Built-in case, or path of a case file or of a REXS model.")
 ]
+PairName = Annotated[
+    str, Parameter(help="Built-in gear pair, or path of the case file of one; no machine.")
+]
 Force = Annotated[bool, Parameter(negative="", help="Replace an earlier result in that directory.")]
 Settings = Annotated[
     list[str] | None,
@@ -91,13 +94,12 @@ def changed_case(name_or_path: str, settings: Sequence[str]) -> Case:
     case = changed_any_case(name_or_path, settings)
     if isinstance(case, Case):
         return case
+    from tribodyn.cli.app import ANY, names_of_commands
+
     kind = "machine" if hasattr(case, "machine") else "planetary stage"
-    why = "This command computes one pair of gears"
-    remedy = (
-        "Machines and planetary stages: tribodyn run, check, modes, sweep, run-up, ensemble, sobol "
-        "and compare"
-    )
-    raise InputError(f"this is a {kind}", name_or_path, why, remedy)
+    why = f"Commands for machines and planetary stages: {names_of_commands(ANY)}"
+    remedy = "Name a case of one pair of gears (tribodyn cases), or use one of these commands"
+    raise InputError(f"this is a {kind}, not a gear pair", name_or_path, why, remedy)
 
 
 def changed_any_case(name_or_path: str, settings: Sequence[str]) -> Case | PartsCase:

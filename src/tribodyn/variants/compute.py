@@ -15,10 +15,12 @@ from tribodyn.interrupt import deferred
 from tribodyn.mesh.film.film_lookup import shared_films
 from tribodyn.progress import SILENT, Progress
 from tribodyn.study.pipeline.summary import SUMMARY
+from tribodyn.study.pipeline.summary_figures import figure_of, in_order, is_figure
 from tribodyn.types import Array
 
 if TYPE_CHECKING:
     from tribodyn.study.case.case import Case
+    from tribodyn.study.machine.user_tables import PartsCase
 
 Columns = Mapping[str, list[Any]]
 
@@ -48,7 +50,7 @@ class Job(NamedTuple):
     """Input for the computation of a chunk, which is sent to a worker."""
 
     kind: str
-    case: Case
+    case: Case | PartsCase
     keep: tuple[str, ...]  #: figures to store; all if it is empty
     columns: Columns
 
@@ -56,9 +58,7 @@ class Job(NamedTuple):
         """Compute the members."""
         with quiet(), shared_films(persistent=True):
             part = _each(partial(KINDS[self.kind].compute, self.case), self.columns, progress)
-        names = self.keep or tuple(
-            name for name in KINDS[self.kind].figures if name in part.figures
-        )
+        names = self.keep or in_order(part.figures, KINDS[self.kind].figures)
         absent = np.full(len(part.failed), np.nan)
         return part._replace(figures={name: part.figures.get(name, absent) for name in names})
 
@@ -72,7 +72,7 @@ class Job(NamedTuple):
         """Result as netCDF; built in memory, as HDF5 does not handle a full disk well."""
         import h5py
 
-        figures, count = KINDS[self.kind].figures, len(part.failed)
+        figure, count = KINDS[self.kind].figure, len(part.failed)
         buffer = io.BytesIO()
         with h5py.File(buffer, "w") as file:
             # A dimension without values, as netCDF marks it.
@@ -83,10 +83,10 @@ class Job(NamedTuple):
             _put(file, "failed", part.failed, member)
             _put(file, "warnings", part.warned, member)
             if part.figures:
-                figure = _put(file, "figure", [*part.figures])
-                _scale(figure, 1, "figure")
-                _put(file, "units", [figures[name][0] for name in part.figures], figure)
-                _put(file, "value", np.stack([*part.figures.values()], 1), member, figure)
+                axis = _put(file, "figure", [*part.figures])
+                _scale(axis, 1, "figure")
+                _put(file, "units", [figure(name)[0] for name in part.figures], axis)
+                _put(file, "value", np.stack([*part.figures.values()], 1), member, axis)
         return buffer.getvalue()
 
 
@@ -148,13 +148,13 @@ def _reason(error: Exception) -> str:
     return str(Problem(what, why="This is an error in tribodyn, not in the input"))
 
 
-def _summaries(case: Case, columns: Columns, progress: Progress) -> Part:
+def _summaries(case: Case | PartsCase, columns: Columns, progress: Progress) -> Part:
     """Every figure of the summary of each member."""
     from tribodyn.study.studies.sweep import points_under
 
     rows = zip(*columns.values(), strict=True)
     points = points_under(case, [dict(zip(columns, row, strict=True)) for row in rows], progress)
-    names = [name for name in SUMMARY if any(name in point.figures for point in points)]
+    names = in_order(name for point in points for name in point.figures)
     figures = {
         name: np.array([point.figures.get(name, np.nan) for point in points], dtype=float)
         for name in names
@@ -227,8 +227,19 @@ class Kind:
 
     meaning: str
     compute: Callable[[Any, Columns, Progress], Part]
-    figures: Mapping[str, tuple[str, str]]  #: unit and meaning by name
+    figures: Mapping[str, tuple[str, str]]  #: unit and meaning by name, of gear pairs
     chunk: int  #: default number of members of a chunk
+
+    def has_figure(self, name: str) -> bool:
+        """Whether it computes a figure, of a pair or of a part of a machine."""
+        return name in self.figures or (self.compute is _summaries and is_figure(name))
+
+    def figure(self, name: str) -> tuple[str, str]:
+        """Unit and meaning of a figure."""
+        if name in self.figures:
+            return self.figures[name]
+        entry = figure_of(name)
+        return entry.unit or "1", entry.meaning
 
 
 KINDS = {

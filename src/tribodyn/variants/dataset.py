@@ -11,6 +11,7 @@ import numpy as np
 
 from tribodyn.errors import Argument, InputError
 from tribodyn.interrupt import deferred
+from tribodyn.study.pipeline.summary_figures import in_order
 from tribodyn.variants.compute import KINDS
 from tribodyn.variants.members import Grid
 from tribodyn.variants.store import Manifest, chunk_path, read_chunk
@@ -54,15 +55,16 @@ def open_study(path: str | os.PathLike[str]) -> xarray.Dataset:
             coords[axis.key] = (axis.key, values, {"units": axis.unit or "1"})
     else:
         dims = {"member": layout.count}
-    names = {name for facts in manifest.chunks.values() for name in facts["figures"]}
+    names = (name for facts in manifest.chunks.values() for name in facts["figures"])
+    kind = KINDS[manifest.kind]
 
     def lazy(name: str, kind: Any, **facts: str) -> Any:
         return (tuple(dims), _lazy(manifest, name, tuple(dims.values()), kind), facts)
 
     variables = {
         name: lazy(name, float, units=unit, long_name=meaning)
-        for name, (unit, meaning) in KINDS[manifest.kind].figures.items()
-        if name in names
+        for name in in_order(names, kind.figures)
+        for unit, meaning in (kind.figure(name),)
     }
     variables |= {name: lazy(name, object) for name in ("failed", "warnings")}
     if not isinstance(layout, Grid):

@@ -14,16 +14,17 @@ from typing import Any
 import numpy as np
 
 from tribodyn.aliases import with_old_names
-from tribodyn.cases.catalogue import case_files
+from tribodyn.cases.catalogue import all_files
 from tribodyn.cases.load import load_case
 from tribodyn.errors import InputError, Problem, did_you_mean
 from tribodyn.model import REQUIRED, Option, choice, integer, number, text
 from tribodyn.nonlinear.parameter_map import SCALES
 from tribodyn.study.case.case import Case
-from tribodyn.study.case.provenance import spec_of
 from tribodyn.study.case.read import key_lines, parse_toml, read_text
 from tribodyn.study.case.user_input import Source, unsound
 from tribodyn.study.case.values import FaultError, read_value, written
+from tribodyn.study.machine.user_tables import PartsCase
+from tribodyn.study.pipeline.summary_figures import in_order
 from tribodyn.study.studies.range_syntax import UnreadError, read_values, toml_value
 from tribodyn.study.studies.study_axes import Axis, member_value, read_axis
 from tribodyn.study.uncertain.lanes import draw
@@ -89,7 +90,7 @@ class Study:
     ----------
     title : str
         One line.
-    case : Case
+    case : Case, MachineCase or PlanetaryCase
         With the values that all members share.
     compute : str
         Kind of computation: ``"summary"`` or ``"motions"``.
@@ -106,7 +107,7 @@ class Study:
     """
 
     title: str
-    case: Case
+    case: Case | PartsCase
     compute: str
     keep: tuple[str, ...]
     chunk: int
@@ -185,6 +186,9 @@ class _Reader:
             why = f"Exactly one of {', '.join(_VARIES)} defines what varies"
             self.put("".join(varies[-1:]), Problem(what, "", why, _EXAMPLE))
         case = self._case(top.get("case"))
+        if isinstance(case, PartsCase) and kind == "motions":
+            what, why = f'compute = "{kind}"', "It integrates the motions of gear pairs in batches"
+            self.put("compute", Problem(what, "", why, 'Write compute = "summary"'))
         if self.faults or case is None:
             return None
         layout, request = self._layout(case, kind, varies[0], top)
@@ -219,25 +223,27 @@ class _Reader:
 
     def _keep(self, kind: str) -> tuple[str, ...]:
         names, figures = self.data.get("keep", []), KINDS[kind].figures
+        known = KINDS[kind].has_figure
         if not isinstance(names, list) or not all(isinstance(name, str) for name in names):
             remedy = f'Write for example keep = ["{next(iter(figures))}"]'
             self.put("keep", Problem(f"keep = {written(names)}", "", "It is a list", remedy))
             return ()
-        for name in (name for name in names if name not in figures):
+        for name in (name for name in names if not known(name)):
             remedy = did_you_mean(name, figures, "List the names by: tribodyn run CASE --json")
             gives = ", ".join(figures) if len(figures) <= _LISTED else "the figures of a summary"
             why = f'compute = "{kind}" gives {gives}'
             self.put("keep", Problem(f'there is no figure "{name}"', "", why, remedy))
-        return tuple(name for name in figures if name in names)
+        return tuple(in_order(filter(known, names), figures))
 
-    def _case(self, name: str | None) -> Case | None:
+    def _case(self, name: str | None) -> Case | PartsCase | None:
         """The case with the values that all members share."""
         if name is None:
             return None
         try:
-            case: Case = load_case(name if name in case_files() else self.folder / name)
+            case: Any = load_case(name if name in all_files() else self.folder / name)
             changes = self._keys("set", self.data)
-            return case.replace(changes, by="set") if changes else case
+            changed: Case | PartsCase = case.replace(changes, by="set") if changes else case
+            return changed
         except InputError as error:
             for problem in error.problems:
                 self._tell("case", problem)
@@ -267,7 +273,7 @@ class _Reader:
         return {}
 
     def _layout(
-        self, case: Case, kind: str, varies: str, top: Mapping[str, Any]
+        self, case: Case | PartsCase, kind: str, varies: str, top: Mapping[str, Any]
     ) -> tuple[Layout | None, Mapping[str, Any]]:
         """The members and their specification."""
         free = SCALES if kind == "motions" else ()
@@ -277,7 +283,7 @@ class _Reader:
             return self._sampled(case)
         return self._listed(case, top["table"], free)
 
-    def _grid(self, case: Case, free: Any) -> tuple[Layout | None, Mapping[str, Any]]:
+    def _grid(self, case: Case | PartsCase, free: Any) -> tuple[Layout | None, Mapping[str, Any]]:
         axes: list[Axis] = []
         wrong = bool(self.faults)
         for key, entry in self._keys("axes", self.data).items():
@@ -304,7 +310,7 @@ class _Reader:
         grid = Grid(tuple(axes))
         return (grid if axes and not wrong else None), {"axes": [axis.key for axis in axes]}
 
-    def _sampled(self, case: Case) -> tuple[Layout | None, Mapping[str, Any]]:
+    def _sampled(self, case: Case | PartsCase) -> tuple[Layout | None, Mapping[str, Any]]:
         table = self.data["samples"]
         if not isinstance(table, dict):
             self.put("samples", Problem(written(table), "", "It is a table", "Write [samples]"))
@@ -329,7 +335,7 @@ class _Reader:
         return listed(floats, units), request
 
     def _listed(
-        self, case: Case, path: str | None, free: Any
+        self, case: Case | PartsCase, path: str | None, free: Any
     ) -> tuple[Layout | None, Mapping[str, Any]]:
         key = "table" if path is not None else "cases"
         try:
@@ -367,16 +373,16 @@ def _flat(table: Mapping[str, Any], prefix: str = "") -> dict[str, Any]:
     return flat
 
 
-def _axis(case: Case, key: str, entry: Any) -> Axis:
+def _axis(case: Case | PartsCase, key: str, entry: Any) -> Axis:
     return read_axis(case, key, entry, "axes")
 
 
-def _value(case: Case, key: str, entry: Any) -> Any:
+def _value(case: Case | PartsCase, key: str, entry: Any) -> Any:
     return member_value(case, key, entry, "cases")
 
 
-def _unit(case: Case, key: str) -> str:
-    spec = None if key in SCALES else spec_of(case, key)
+def _unit(case: Case | PartsCase, key: str) -> str:
+    spec = None if key in SCALES else case.option_of(key)
     return spec.unit if spec else ""
 
 

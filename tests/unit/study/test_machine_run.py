@@ -9,6 +9,7 @@ import pytest
 import tribodyn as td
 from tribodyn import plot
 from tribodyn.cli import main
+from tribodyn.cli.app import ANY, COMMANDS
 from tribodyn.machine import machine_modes
 from tribodyn.study.machine.modes import axial_notes, mode_rows, structure_at_rest
 from tribodyn.study.machine.read import read_any_case
@@ -167,10 +168,11 @@ def test_every_key_of_the_summary_has_a_meaning_and_a_unit(result):
 
 def test_commands_for_pairs_name_those_for_machines(capsys):
     assert command("harris", "two-stage-spur") == 2
-    assert (
-        "Machines and planetary stages: tribodyn run, check, modes, sweep"
-        in capsys.readouterr().err
-    )
+    message = capsys.readouterr().err
+    assert "this is a machine, not a gear pair" in message
+    listed = message.partition("planetary stages: ")[2].partition(". ")[0].split(", ")
+    assert listed == [each.name for each in COMMANDS if each.takes == ANY]
+    assert {"run", "check", "study", "recording", "signal", "cite"} <= set(listed)
 
 
 def test_check_shows_speeds_and_torques(capsys):

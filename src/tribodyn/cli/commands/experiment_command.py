@@ -9,7 +9,7 @@ from cyclopts import Parameter
 
 from tribodyn.cli.commands.sweep_command import INTERRUPTED, report_exit_code, run_checkpointed
 from tribodyn.cli.console import say, say_json, table, tell
-from tribodyn.cli.settings import CaseName, Flag, Force, Settings, changed_case, read_ranges
+from tribodyn.cli.settings import Flag, Force, PairName, Settings, changed_case, read_ranges
 from tribodyn.errors import InputError
 
 if TYPE_CHECKING:
@@ -21,7 +21,7 @@ _EXPERIMENTS = ("friction",)
 
 def experiment(
     kind: str,
-    case: CaseName = "fzg-roughness",
+    case: PairName = "fzg-roughness",
     /,
     *,
     roughness: str = "",

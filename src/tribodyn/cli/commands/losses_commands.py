@@ -11,11 +11,12 @@ from typing import TYPE_CHECKING, Any
 from tribodyn.cli.commands.study_commands import finish, prepare_study
 from tribodyn.cli.console import say, say_json, show_warnings, table, tell
 from tribodyn.cli.settings import (
-    CaseName,
     Flag,
     Force,
     Output,
+    PairName,
     Words,
+    changed_case,
     check_place,
     read_changes,
     read_ranges,
@@ -34,7 +35,7 @@ _EXAMPLES = {"torque": "50,150,300 N*m", "speed": "400..3500 rpm:8"}
 
 
 def losses(
-    case: CaseName,
+    case: PairName,
     /,
     *,
     torque: Text = None,
@@ -237,9 +238,7 @@ def _measured(file: str, case: Text, options: dict[str, Any]) -> PowerLossTable:
         what = f"gear_loss_factor = {factor:g} and --case {case} are both given"
         raise InputError(what, "--set", "The gears of the case have their own", "Keep one of them")
     if case is not None:
-        from tribodyn.cases.load import load_case
-
-        factor = gear_loss_factor(load_case(case).gear_pair)
+        factor = gear_loss_factor(changed_case(case, []).gear_pair)
     if file in TABLES and not Path(file).exists():
         changes: dict[str, Any] = {} if factor is None else {"gear_loss_factor": factor}
         return replace(power_loss_table(file), **changes, **options)

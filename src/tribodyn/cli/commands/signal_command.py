@@ -2,16 +2,18 @@
 
 from __future__ import annotations
 
+import math
+from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import TYPE_CHECKING, Annotated, Any, NamedTuple
 
 from cyclopts import Parameter
 
 from tribodyn.cli.console import say, say_json, show_warnings, table, tell
 from tribodyn.cli.settings import Output, check_place
 from tribodyn.errors import Argument, InputError, Problem, TribodynError, collected, did_you_mean
-from tribodyn.nomenclature import GEARS, GearName
+from tribodyn.nomenclature import GEARS
 
 if TYPE_CHECKING:
     from tribodyn.measurement import Recording, SignalAnalysis
@@ -84,7 +86,9 @@ class Shaft:
             "Built-in case or case file whose teeth are taken, and its speed where none is known."
         ),
     ] = None
-    gear: Annotated[GearName, _help("Gear of the case on that shaft.")] = GEARS[0]
+    gear: Annotated[
+        str, _help("Gear of the case on that shaft: pinion, wheel, or its name in a machine.")
+    ] = GEARS[0]
 
 
 @Parameter(name="*")
@@ -368,14 +372,62 @@ def _teeth_and_speed(turning: Shaft) -> tuple[int | None, int | None, float | No
         raise InputError(what, "", "The case has its own teeth", "Keep one of them")
     from tribodyn.cases.load import load_case
 
-    case = load_case(turning.case)
-    counts = {name: int(gear.teeth) for name, gear in case.gears.by_name.items()}
-    teeth = counts.pop(turning.gear)
-    (mate,) = counts.values()
-    if speed is None:
-        is_speed_of_gear = case.operation.speed_of == turning.gear
-        speed = case.operation.speed * (1.0 if is_speed_of_gear else mate / teeth)
-    return teeth, mate, float(speed)
+    meshes = list(_meshes_of(load_case(turning.case)))
+    named = [mesh for mesh in meshes if turning.gear in mesh.teeth]
+    if not named:
+        names = list(dict.fromkeys(name for mesh in meshes for name in mesh.teeth))
+        why = f"Gears of {turning.case}: {', '.join(names)}"
+        remedy = did_you_mean(turning.gear, names, f"Write for example --gear {names[0]}")
+        raise InputError(f'there is no gear "{turning.gear}"', "--gear", why, remedy)
+    mesh, teeth, of_case = named[0], named[0].teeth[turning.gear], named[0].speeds[turning.gear]
+    if not math.isclose(teeth * of_case, 2.0 * math.pi * mesh.frequency, rel_tol=1e-9):
+        what = f"the axis of {turning.gear} or of its mate turns with a carrier"
+        why = f"Its mesh repeats at {mesh.frequency:.6g} Hz, not {teeth} times a turn of the shaft"
+        raise InputError(
+            what, "--gear", why, f'Write --line "{mesh.frequency:.6g} Hz" in place of --case'
+        )
+    mates = {n for each in named for name, n in each.teeth.items() if name != turning.gear}
+    # The lines of a gear with mates of several numbers of teeth belong to none of them.
+    return teeth, mates.pop() if len(mates) == 1 else None, float(speed or of_case)
+
+
+class _CaseMesh(NamedTuple):
+    """Teeth and speeds [rad/s] of both gears of a mesh by name, and its frequency [Hz]."""
+
+    teeth: dict[str, int]
+    speeds: dict[str, float]
+    frequency: float
+
+
+def _meshes_of(case: Any) -> Iterator[_CaseMesh]:
+    """Meshes of a case of any kind at its operating point."""
+    from tribodyn.study.machine.case import MachineCase
+    from tribodyn.study.planetary.case import PlanetaryCase
+
+    if isinstance(case, MachineCase):
+        machine = case.machine()
+        for name, mesh in machine.meshes.items():
+            gears = {gear: machine.gears[gear] for gear in mesh.gears}
+            shafts = {n: machine.kinematics.shafts[gear.shaft] for n, gear in gears.items()}
+            yield _CaseMesh(
+                {n: abs(gear.teeth) for n, gear in gears.items()},
+                {n: abs(shaft.speed) for n, shaft in shafts.items()},
+                machine.kinematics.meshes[name].mesh_frequency,
+            )
+    elif isinstance(case, PlanetaryCase):
+        flow, table = case.kinematics(case.operating_point), case.table
+        for role in ("sun", "ring"):
+            names = {role: getattr(table, role), "planet": table.planet}
+            yield _CaseMesh(
+                {name: abs(case.gears[name].teeth) for name in names.values()},
+                {name: abs(flow.speeds[each]) for each, name in names.items()},
+                flow.mesh_frequency,
+            )
+    else:
+        teeth = {name: abs(int(gear.teeth)) for name, gear in case.gears.by_name.items()}
+        pitch = case.operation.speed * teeth[case.operation.speed_of]
+        speeds = {name: pitch / count for name, count in teeth.items()}
+        yield _CaseMesh(teeth, speeds, pitch / (2.0 * math.pi))
 
 
 def _written_teeth(text: Text) -> tuple[int | None, int | None]:

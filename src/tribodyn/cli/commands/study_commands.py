@@ -12,6 +12,7 @@ from tribodyn.cli.settings import (
     Flag,
     Force,
     Output,
+    PairName,
     Settings,
     Words,
     changed_any_case,
@@ -102,7 +103,7 @@ def modes(
 
 
 def harris(
-    case: CaseName,
+    case: PairName,
     /,
     *torque: str,
     out: Output = None,
@@ -131,7 +132,7 @@ def harris(
 
 
 def relief(
-    case: CaseName,
+    case: PairName,
     /,
     *torque: str,
     gears: str = "both",

@@ -135,16 +135,18 @@ def with_computed_teeth(
     for mesh in meshes:
         lag = getattr(phases, mesh.member)
         offsets = (-lag if sun_drives else lag) % 1.0 % 1.0
-        (contact,) = mesh.mesh.contacts
         for planet, angle in enumerate(phases.angles):
-            rows = np.zeros((coordinate_count(contact), stage.size))
+            rows = np.zeros((coordinate_count(mesh.mesh.contacts[0]), stage.size))
             onto = mesh.rows(planet, float(angle), len(rows), sun_drives=sun_drives)
             rows[:, : onto.shape[1]] = onto
-            error = without_excess(contact.error, 0.5 * float(excess[planet]))
-            changes: dict[str, Any] = {"offset": float(offsets[planet]), "error": error}
             frictions += [
-                projected(friction, rows, contacts=(len(contacts),))
+                projected(
+                    friction, rows, contacts=tuple(len(contacts) + j for j in friction.contacts)
+                )
                 for friction in mesh.mesh.frictions
             ]
-            contacts.append(projected(contact, rows, **changes))
+            for contact in mesh.mesh.contacts:
+                error = without_excess(contact.error, 0.5 * float(excess[planet]))
+                changes: dict[str, Any] = {"offset": float(offsets[planet]), "error": error}
+                contacts.append(projected(contact, rows, **changes))
     return replace(stage, contacts=contacts, frictions=frictions)

@@ -17,6 +17,8 @@ if TYPE_CHECKING:
 
 #: Fraction of the variants in a band, its least width over the range of the curve, opacity.
 _SHARE, _LEAST, _FAINT = 0.95, 1e-6, 0.22
+#: Traces that have a band or error bars; a field or a body has none.
+_BANDED = ("scatter", "bar")
 #: Most curves of variants where a band is not defined.
 _CURVES = 12
 
@@ -76,17 +78,14 @@ def _banded_figure(result: CaseEnsemble, name: str) -> tuple[Any, bool]:
     if added:
         legend_entry = {"showlegend": True, "name": f"{_SHARE:.0%} of {len(variants)} variants"}
         added[1 if len(added) > 1 else 0] |= legend_entry
-    ends = any(
-        trace.type in ("bar", "scatter") and trace.error_y.array is not None
-        for trace in figure.data
-    )
+    ends = any(each.type in _BANDED and each.error_y.array is not None for each in figure.data)
     return figure.add_traces(added), bool(added) or ends
 
 
 def _by_name_and_axes(traces: Sequence[Any]) -> dict[tuple[Any, ...], Any]:
-    """Map (type, name, axes, number) to a trace, to match the traces of several figures."""
+    """Map (type, name, axes, number) to a curve, to match those of several figures."""
     numbered: dict[tuple[Any, ...], Any] = {}
-    for trace in traces:
+    for trace in (each for each in traces if each.type in _BANDED):
         number = 0
         while (key := (trace.type, trace.name, trace.xaxis, trace.yaxis, number)) in numbered:
             number += 1
@@ -135,9 +134,7 @@ def _spread(trace: Any, others: Sequence[Any]) -> list[Trace]:
 
 
 def _points(trace: Any) -> tuple[Array, Array] | None:
-    """Coordinates of a curve, bars or points as floats; None for any other trace."""
-    if trace.type not in ("scatter", "bar"):
-        return None
+    """Coordinates of a curve, bars or points as floats; None where they are no numbers."""
     try:
         x, y = (np.asarray(each, dtype=float) for each in (trace.x, trace.y))
     except (TypeError, ValueError):

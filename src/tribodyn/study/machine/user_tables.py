@@ -46,6 +46,7 @@ class PartsCase(ABC):
     data: dict[str, Any]  #: tables of the case file, without spreads
     uncertain: dict[str, str]  #: spread of values by key, such as ``"4e8 N/m +- 10 %"``
     title: str
+    origin: str | None
     gears: dict[str, Gear]
     operating_point: LoadCase
 

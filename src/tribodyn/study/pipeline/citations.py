@@ -12,6 +12,8 @@ from tribodyn.nomenclature import GEARS
 from tribodyn.study.case.gears import is_idle
 from tribodyn.study.case.provenance import changed_keys
 from tribodyn.study.case.section import section_at
+from tribodyn.study.machine.case import MachineCase
+from tribodyn.study.machine.user_tables import PartsCase
 
 if TYPE_CHECKING:
     from tribodyn.study.case.case import Case
@@ -34,8 +36,13 @@ def _library() -> dict[str, dict[str, Any]]:
     return tomllib.loads(text)
 
 
-def papers(case: Case) -> dict[str, dict[str, Any]]:
+def papers(case: Case | PartsCase) -> dict[str, dict[str, Any]]:
     """Papers behind the models that a case uses, each once."""
+    if isinstance(case, PartsCase):
+        entries = _package() | _values_source(case)
+        for _, pair, _ in case.mesh_pairs():
+            entries |= papers(pair)
+        return entries | {key: _library()[key] for key in _papers_of_parts(case)}
     keys = ["iso-21771", "hertz"]
     from tribodyn.ehl import SHEAR_MODELS
 
@@ -56,17 +63,29 @@ def papers(case: Case) -> dict[str, dict[str, Any]]:
     if case.friction.variant == "he-singh":
         keys.append("he-gunda-singh")
     keys += _loss_papers(case)
-    package = {
-        "type": "misc",
-        "author": "The tribodyn developers",
-        "title": f"tribodyn {tribodyn.__version__}: gear tribo-dynamics",
-    }
     return (
-        {"tribodyn": package}
+        _package()
         | _data_sources(case)
         | {key: _library()[key] for key in dict.fromkeys(keys)}
         | unlisted
     )
+
+
+def _package() -> dict[str, dict[str, Any]]:
+    title = f"tribodyn {tribodyn.__version__}: gear tribo-dynamics"
+    return {"tribodyn": {"type": "misc", "author": "The tribodyn developers", "title": title}}
+
+
+def _papers_of_parts(case: PartsCase) -> list[str]:
+    """Keys of the papers behind shafts, bearings, reduction and planets."""
+    planets = ["lin-parker", "parker-lin"]
+    if not isinstance(case, MachineCase):
+        return planets
+    keys = planets if case.stages else []
+    keys += ["cowper"] if any(not shaft.is_rigid for shaft in case.shafts.values()) else []
+    keys += ["craig-bampton"] if case.motion.frequency_limit is not None else []
+    rolling = any(bearing.rolling is not None for bearing in case.bearings.values())
+    return [*keys, *(["harris-kotzalas", "iso-16281"] if rolling else [])]
 
 
 def _loss_papers(case: Case) -> list[str]:
@@ -92,24 +111,24 @@ def _is_built_in(model: Model) -> bool:
 def _data_sources(case: Case) -> dict[str, dict[str, Any]]:
     """Sources of the values of a case and of its oil."""
     oil = case.lubricant_properties
-    sources = {}
-    if case.origin:
-        sources["case"] = _origin(case)
+    sources = _values_source(case)
     if oil is not None and oil.source:
         sources["oil"] = {"type": "misc", "title": f"Oil {oil.name}: {oil.source}"}
     return sources
 
 
-def _origin(case: Case) -> dict[str, Any]:
+def _values_source(case: Case | PartsCase) -> dict[str, dict[str, Any]]:
     """The document behind the values of a case, and the values that differ from its own."""
-    changed = changed_keys(case)
+    if not case.origin:
+        return {}
+    changed = () if isinstance(case, PartsCase) else changed_keys(case)
     if not changed:
-        return {"type": "misc", "title": f"Values of the case: {case.origin}"}
+        return {"case": {"type": "misc", "title": f"Values of the case: {case.origin}"}}
     named = ", ".join(changed[:_NAMED])
     more = f" and {len(changed) - _NAMED} more" if len(changed) > _NAMED else ""
     plural = "s" if len(changed) > 1 else ""
     note = f"{len(changed)} value{plural} of the case differ{'' if plural else 's'}: {named}{more}"
-    return {"type": "misc", "title": f"Based on: {case.origin}", "note": note}
+    return {"case": {"type": "misc", "title": f"Based on: {case.origin}", "note": note}}
 
 
 def sources_of(section: str, name: str) -> list[str]:
@@ -150,7 +169,7 @@ def _bibtex(key: str, entry: dict[str, Any]) -> str:
     return f"@{entry['type']}{{{key},\n" + ",\n".join(fields) + "\n}"
 
 
-def cite(case: Case, style: str = "text") -> str:
+def cite(case: Case | PartsCase, style: str = "text") -> str:
     """Write the papers behind a case."""
     entries = papers(case)
     if style == "bibtex":

@@ -43,13 +43,10 @@ class PartsResult:
         return assumptions
 
     def cite(self, style: str = "text") -> str:
-        """Name the papers behind the tooth contacts, as ``"text"`` or ``"bibtex"``."""
+        """Name the papers behind this result, as ``"text"`` or ``"bibtex"``."""
         from tribodyn.study.pipeline.citations import cite
 
-        texts = [cite(pair, style) for _, pair, _ in self.case.mesh_pairs()]
-        separator = "\n\n" if style == "bibtex" else "\n"
-        entries = [entry for text in texts for entry in text.split(separator) if entry.strip()]
-        return separator.join(dict.fromkeys(entries))
+        return cite(self.case, style)
 
     def to_xarray(self) -> Any:
         """Motion at the operating point with units."""

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Mapping
+from collections.abc import Collection, Iterable, Mapping
 from dataclasses import replace
 
 from tribodyn.study.pipeline.summary import SUMMARY, SummaryFigure, summary_entry
@@ -140,10 +140,10 @@ def is_figure(key: str) -> bool:
         return False
 
 
-def in_order(names: Iterable[str]) -> list[str]:
-    """Names of figures of a pair in the order of :data:`SUMMARY`, others as they come."""
+def in_order(names: Iterable[str], first: Collection[str] = SUMMARY) -> list[str]:
+    """Names of figures, each once, in the order of those of a pair; others as they come."""
     names = dict.fromkeys(names)
-    return [name for name in SUMMARY if name in names] + [n for n in names if n not in SUMMARY]
+    return [name for name in first if name in names] + [n for n in names if n not in first]
 
 
 def by_topic(names: Iterable[str]) -> dict[str, list[str]]:

@@ -98,6 +98,10 @@ def planetary_motion(response: Response, data: Mapping[str, Any], turn: int) -> 
     # Radial and tangential forces of the planets on their pins, turned to x and y.
     laws = pins_of(data).supports()
     on_pins = np.stack([law.force(law.displacement(fine.position)) for law in laws], axis=1)
+    # A mesh is one contact, or two of a law that is linear about the load.
+    sun, ring = (
+        fine.contact_force.reshape(len(fine.phase), 2, count, -1).sum(axis=-1).swapaxes(0, 1)
+    )
     turned = (on_pins[..., 0] + 1j * on_pins[..., 1]) * np.exp(1j * angles)
     pin_force = np.stack([turned.real, turned.imag], axis=-1)
     return PlanetaryMotion(
@@ -106,8 +110,8 @@ def planetary_motion(response: Response, data: Mapping[str, Any], turn: int) -> 
         planet=np.arange(1.0, count + 1.0),
         member=("carrier", "ring", "sun"),
         axis=("x", "y", "u"),
-        sun_mesh_force=fine.contact_force[:, :count],
-        ring_mesh_force=fine.contact_force[:, count : 2 * count],
+        sun_mesh_force=sun,
+        ring_mesh_force=ring,
         pin_force=pin_force * np.array([1.0, turn]),
         displacement=position[:, :3] * np.array([1.0, turn, turn]),
         mesh_frequency=response.mesh_frequency,
