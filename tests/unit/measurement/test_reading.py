@@ -408,3 +408,32 @@ def test_recordings_are_whole(tmp_path: Path) -> None:
     with pytest.raises(InputError, match=r"lasts 0\.2 s"):
         recording.cut(0.1, 0.3)
     assert len(recording.plot().data) == 1
+
+
+@pytest.mark.parametrize(
+    ("text", "width"),
+    [
+        ("1," * 100_000, 100_000),
+        ("a," * 50_000 + "\n" + "1," * 50_000 + "\n", 50_000),
+        ("# " * 100_000 + "\n1;2\n3;4\n", 2),
+        ("a" + " " * 100_000 + "b;c\n1;2\n3;4\n", 2),
+        ("x:" + "," * 100_000 + "!\n1;2\n3;4\n", 2),
+    ],
+)
+def test_long_lines_take_time_in_proportion_to_their_length(
+    tmp_path: Path, text: str, width: int
+) -> None:
+    """In proportion to the square of it, each of them takes minutes."""
+    (tmp_path / "a.csv").write_text(text)
+    assert len(read(tmp_path / "a.csv", sample_rate=RATE).channels) == width
+
+
+def test_a_list_above_the_columns_is_no_rate(tmp_path: Path) -> None:
+    (tmp_path / "a.csv").write_text("offsets: 1,2,3.5,4\nSampFreq: 2000 Hz;;;\na;b\n1;2\n3;4\n")
+    assert read(tmp_path / "a.csv").sample_rate == 2000.0
+
+
+def test_names_that_repeat_stay_apart(tmp_path: Path) -> None:
+    (tmp_path / "a.csv").write_text("a;column 3;;a\n1;2;3;4\n5;6;7;8\n")
+    names = list(read(tmp_path / "a.csv", sample_rate=RATE).channels)
+    assert names == ["a", "column 3", "column 3 (3)", "a (4)"]

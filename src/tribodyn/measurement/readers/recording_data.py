@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from collections import Counter
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -163,8 +164,9 @@ def from_arrays(named: Mapping[str, Any], path: Path) -> RecordingData:
         raise InputError(what, str(path), why, "Save each channel as a vector and the rate as fs")
     times = _times(clocks, labels, path)
     scopes = [_split_name(name)[0] for name in channels]
+    alone = Counter(scopes)
     units = {
-        name: labels.get(name) or (labels.get(scope, "") if scopes.count(scope) == 1 else "")
+        name: labels.get(name) or (labels.get(scope, "") if alone[scope] == 1 else "")
         for name, scope in zip(channels, scopes, strict=True)
     }
     channel_times = {name: _nearest(name, times) for name in channels}

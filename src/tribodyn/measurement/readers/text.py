@@ -31,12 +31,14 @@ _CLOCK = re.compile(r"(\d{4}-\d\d-\d\d)?[T ]?(\d\d?):(\d\d):(\d\d(?:[.,]\d*)?)Z?
 _WITH_UNIT = re.compile(r"(.*?)\s*[\[(]([^\])]*)[\])]\s*")
 _BEFORE_UNIT = re.compile(r"(.*?)\s*[/,]\s*([^/,].*)")
 _FACT = re.compile(
-    r"[#% ]*\"?([^:=;,\t\d\[(\"]+?)\"?\s*(?:[\[(]([^\])]*)[\])])?\s*[:=;,\t]+\s*\"?"
-    r"([0-9.,]+(?:e[+-]?\d+)?)[\";,\t ]*([a-zµμ]*)[\";,\t ]*",
+    r"\"?([^:=;,\t\d\[(\"]+?)\"?\s*(?:[\[(]([^\])]*)[\])])?\s*[:=;,\t]+\s*\"?"
+    r"([0-9.,]+(?:e[+-]?\d+)?)[\";,\t ]*([a-zµμ]*)",
     re.IGNORECASE,
 )
 #: Number at the end of the name of one of several columns of times.
 _REPEATED = re.compile(r" \(\d+\)$|(?<=\w{3})[ _.]?\d+$")
+#: Characters of a line or a name in which a rate or a unit is searched, at most.
+_LONGEST = 200
 #: Lines that are searched for the first row of numbers; rows at the end that the truncation check
 #: compares.
 _HEAD, _LOOK = 200, 100
@@ -105,15 +107,23 @@ def _header_rates(head: Sequence[str]) -> tuple[dict[str, float], list[str]]:
     rates: dict[str, float] = {}
     others = []
     for line in head:
-        match = _FACT.fullmatch(line)
-        value = match and header_rate(
-            match[1], float(match[3].rstrip(",").replace(",", ".") or 0), match[4] or match[2] or ""
-        )
+        fact = line.lstrip("#% ").rstrip('";,\t ')
+        match = _FACT.fullmatch(fact) if len(fact) <= _LONGEST else None
+        number = match and _decimal(match[3])
+        value = match and number and header_rate(match[1], number, match[4] or match[2] or "")
         if match and value:
             rates[match[1].strip()] = value
         else:
             others.append(line)
     return rates, others
+
+
+def _decimal(text: str) -> float | None:
+    """Number with a decimal point or comma; None for other text, such as a list."""
+    try:
+        return float(text.rstrip(",").replace(",", "."))
+    except ValueError:
+        return None
 
 
 def _text(path: Path) -> str:
@@ -200,6 +210,8 @@ def _column_names_and_units(
         units = [cell.strip("[]() ") for cell in rows.pop()]
     names = list(rows[-1]) if rows else [f"column {1 + n}" for n in range(width)]
     for column, name in enumerate(names):
+        if len(name) > _LONGEST:
+            continue
         if match := _WITH_UNIT.fullmatch(name):
             names[column], units[column] = match[1] or f"column {1 + column}", match[2]
         elif (match := _BEFORE_UNIT.fullmatch(name)) and match[1] and _is_unit(match[2]):
@@ -227,11 +239,13 @@ def _is_unit(text: str) -> bool:
 
 
 def _distinct(names: Sequence[str]) -> list[str]:
-    distinct: list[str] = []
+    distinct: dict[str, None] = {}
     for column, name in enumerate(names):
         name = name or f"column {1 + column}"
-        distinct.append(name if name not in distinct else f"{name} ({1 + column})")
-    return distinct
+        while name in distinct:
+            name = f"{name} ({1 + column})"
+        distinct[name] = None
+    return list(distinct)
 
 
 def _numbers(lines: Sequence[str], layout: _Layout, path: Path) -> Array:
