@@ -9,7 +9,7 @@ import numpy as np
 from tribodyn.drawing import drawing
 from tribodyn.plot.machine.orders import COLORS
 from tribodyn.plot.theme.labels import axis_label, display_unit, displayed, rounded
-from tribodyn.plot.theme.panels import Panel, stack
+from tribodyn.plot.theme.panels import ROUNDING, Panel, stack
 from tribodyn.plot.theme.style import line
 
 if TYPE_CHECKING:
@@ -51,13 +51,15 @@ def machine_forces(motion: MachineMotion) -> Any:
         panels.append(
             panel("bearing_force", "Radial bearing force", motion.bearing, motion.radial_force)
         )
-    swing = np.ptp(motion.mesh_force, axis=0) / motion.mean(motion.mesh_force)
-    worst = int(np.argmax(np.abs(swing)))
+    swing, mean = np.ptp(motion.mesh_force, axis=0), motion.mean(motion.mesh_force)
+    worst = int(np.argmax(swing))
     title = (
         f"The force of mesh {motion.mesh[worst]} varies most: "
-        f"{rounded('mesh_force', float(np.ptp(motion.mesh_force[:, worst])))} about a mean of "
-        f"{rounded('mesh_force', float(motion.mean(motion.mesh_force)[worst]))}"
+        f"{rounded('mesh_force', float(swing[worst]))} peak to peak about a mean of "
+        f"{rounded('mesh_force', float(mean[worst]))}"
     )
+    if swing[worst] <= ROUNDING * np.abs(mean).max():
+        title = "No mesh force varies"
     milliseconds = 1e3 / motion.frequency
     part = f", its first {100.0 * clock[-1]:.2g} %" if motion.clock.size > _SAMPLES else ""
     return stack(title, f"Phase of the clock, 1 = {milliseconds:.4g} ms{part}", panels)

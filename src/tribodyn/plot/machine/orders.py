@@ -8,7 +8,7 @@ import numpy as np
 
 from tribodyn.drawing import drawing
 from tribodyn.plot.theme.labels import axis_label, display_unit, displayed, rounded
-from tribodyn.plot.theme.panels import Panel, stack
+from tribodyn.plot.theme.panels import ROUNDING, Panel, stack
 from tribodyn.plot.theme.style import INK, PAIR_COLORS, PINION, WHEEL, Trace
 from tribodyn.types import Array
 
@@ -87,7 +87,11 @@ def machine_orders(motion: MachineMotion) -> Any:
         ("bearing_force", "Bearing forces", motion.bearing_force[..., :3]),
         ("acceleration", "Housing", motion.acceleration),
     ]
-    rows = [(q, label, _total(motion, signal)) for q, label, signal in signals if signal.shape[1]]
+    rows = [
+        (q, label, _above_rounding(_total(motion, signal), signal))
+        for q, label, signal in signals
+        if signal.shape[1]
+    ]
     panels = [
         Panel(
             axis_label(quantity, label), _lines(motion, quantity, values), {"rangemode": "tozero"}
@@ -103,4 +107,11 @@ def machine_orders(motion: MachineMotion) -> Any:
         f"{label}: the largest line, {rounded(quantity, float(values[top]))}, is {cause} at "
         f"{rounded('frequency', order * motion.frequency)}"
     )
+    if not values[top]:
+        title = f"{label}: no line at a mesh harmonic"
     return stack(title, axis_label("frequency"), panels, {"hovermode": "closest"})
+
+
+def _above_rounding(amplitudes: Array, signal: Array) -> Array:
+    """Amplitudes of a signal without those that are rounding of its size."""
+    return np.where(amplitudes > ROUNDING * np.abs(signal).max(), amplitudes, 0.0)

@@ -12,7 +12,7 @@ from tribodyn.drawing import drawing
 from tribodyn.gear import gear_outline
 from tribodyn.plot.machine.orders import COLORS
 from tribodyn.plot.theme.labels import axis_label, display_unit, displayed, rounded
-from tribodyn.plot.theme.panels import Panel, Row, stack, stack_rows
+from tribodyn.plot.theme.panels import ROUNDING, Panel, Row, stack, stack_rows
 from tribodyn.plot.theme.style import MUTED, PAIR_COLORS, PINION, WHEEL, Trace, figure, line
 from tribodyn.types import Array, ComplexArray
 
@@ -133,7 +133,7 @@ def planetary_stage(result: PlanetaryResult | PlanetaryCase) -> Any:
     "planetary_forces",
     heading="Mesh forces of all planets",
     caption="Force of each sun mesh and of each ring mesh along its line of action over a mesh "
-    "cycle, and the radial motion of the sun.",
+    "cycle, and the motion of the sun about its mean place, which the axis names.",
     of=("PlanetaryMotion", "PlanetaryResult.motion"),
     made_by="Run a case with planets: tribodyn.run.",
 )
@@ -154,27 +154,29 @@ def planetary_forces(motion: PlanetaryMotion) -> Any:
         ]
         panels.append(Panel(axis_label("mesh_force", f"{mesh} force"), traces))
     sun = motion.displacement[:, motion.member.index("sun"), :2]
-    moved = sun - motion.mean(sun)
-    panels.append(
-        Panel(
-            axis_label("deflection", "Sun, about its mean"),
-            [
-                line(
-                    motion.phase,
-                    displayed("deflection", moved[:, k]),
-                    "xy"[k],
-                    COLORS[k],
-                    unit=display_unit("deflection"),
-                )
-                for k in range(2)
-            ],
+    at = motion.mean(sun)
+    size = float(np.abs(motion.displacement).max())
+    mean = " and ".join(rounded("deflection", float(each)) for each in at)
+    label = axis_label("deflection", f"Sun, about x and y<br>of {mean}")
+    if np.abs(at).max() <= ROUNDING * size:
+        label = axis_label("deflection", "Sun, about the centre")
+    curves = [
+        line(
+            motion.phase,
+            displayed("deflection", sun[:, k] - at[k]),
+            "xy"[k],
+            COLORS[k],
+            unit=display_unit("deflection"),
         )
-    )
+        for k in range(2)
+    ]
+    panels.append(Panel(label, curves, size=float(displayed("deflection", size))))
     peak = float(motion.sun_mesh_force.max())
-    mean = float(motion.mean(motion.sun_mesh_force).mean())
+    load = float(motion.mean(motion.sun_mesh_force).mean())
+    still = np.ptp(sun, axis=0).max() <= ROUNDING * size
     title = (
-        f"Sun meshes carry {rounded('mesh_force', mean)} in the mean and "
-        f"{rounded('mesh_force', peak)} at most"
+        f"Sun meshes carry {rounded('mesh_force', load)} in the mean and "
+        f"{rounded('mesh_force', peak)} at most{'; the sun does not move' if still else ''}"
     )
     return stack(
         title, f"Phase of the mesh cycle, 1 = {1e3 / motion.mesh_frequency:.4g} ms", panels

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
@@ -88,9 +88,9 @@ def _gear_panels(result: Result, quantity: str) -> list[Panel]:
     ]
 
 
-def _strongest(panel: Panel) -> str:
-    """Name the mesh harmonic with the largest amplitude in the first curve of a panel."""
-    bars = panel.traces[0]
+def _strongest(panels: Iterable[Panel]) -> str:
+    """Name the mesh harmonic with the largest amplitude in the first curves of some panels."""
+    bars = max((panel.traces[0] for panel in panels), key=lambda curve: float(np.max(curve["y"])))
     top = int(np.argmax(bars["y"]))
     frequency = significant(float(bars["customdata"][top]))
     return f"{bars['x'][top]:g} ({frequency} {display_unit('frequency')})"
@@ -190,7 +190,7 @@ def spectrum(result: Result) -> Any:
         ),
         *_gear_panels(result, "acceleration"),
     ]
-    title = f"Mesh harmonic {_strongest(panels[0])} is the strongest in the transmission error"
+    title = f"Mesh harmonic {_strongest(panels[:1])} is the strongest in the transmission error"
     return _harmonic_figure(title, result, panels)
 
 
@@ -209,5 +209,5 @@ def _no_bearing_harmonics(result: Result) -> str:
 def bearing_spectrum(result: Result) -> Any:
     """Draw the mesh harmonics of the bearing forces."""
     panels = _gear_panels(result, "bearing_force")
-    title = f"Mesh harmonic {_strongest(panels[0])} is the strongest on the {GEARS[0][0]}'s bearing"
+    title = f"Mesh harmonic {_strongest(panels)} is the strongest on the {GEARS[0][0]}'s bearing"
     return _harmonic_figure(title, result, panels)

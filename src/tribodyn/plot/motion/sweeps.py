@@ -9,7 +9,7 @@ import numpy as np
 
 from tribodyn.drawing import drawing
 from tribodyn.plot.theme.labels import axis_label, displayed, engineering, readable, rounded
-from tribodyn.plot.theme.panels import Panel, stack
+from tribodyn.plot.theme.panels import ROUNDING, Panel, stack
 from tribodyn.plot.theme.style import MUTED, PAIR_COLORS, PINION, WHEEL, Trace, figure, line, marked
 from tribodyn.study.pipeline.summary_figures import figure_of
 from tribodyn.study.pipeline.summary_labels import in_a_sentence, in_words
@@ -175,6 +175,10 @@ def _case_title(study: Sweep, name: str, values: Any, unit: str) -> str:
     )
     lost = f"; {failed} of {values.size} failed" if failed else ""
     greatest = " ".join(engineering(float(np.nanmax(values)), unit, 4)).rstrip()
+    if values.size > 1 and np.nanmax(values) - np.nanmin(values) <= ROUNDING * np.nanmax(
+        abs(values)
+    ):
+        return f"The {in_a_sentence(name)} does not vary: {greatest}{lost}"
     return f"The {in_a_sentence(name)} is largest at {where}: {greatest}{lost}"
 
 

@@ -7,13 +7,21 @@ from dataclasses import dataclass, field
 from itertools import pairwise
 from typing import Any
 
+import numpy as np
+
 from tribodyn.drawing import Sketch
 from tribodyn.plot.theme.style import BOTTOM, MUTED, TOP, Trace, figure
+from tribodyn.types import Array
 
 #: Pixels of one panel, of the gap between panels, and of the gap with an axis and a title in it.
 _PANEL, _GAP, _WIDE_GAP = 230, 34, 84
 #: Width of a character relative to the axis on a narrow screen, and height of a level [px].
 _CHARACTER, _LEVEL = 0.015, 14
+#: Variation over the size of values that is rounding, half of the axis of such values over their
+#: size, and distance of two curves over the height of a panel that nobody sees.
+ROUNDING, _FLAT, _COVERED = 1e-9, 0.01, 2e-3
+#: Curves that a note about coincident ones names.
+_NOTED = 3
 
 
 @dataclass(frozen=True)
@@ -24,12 +32,63 @@ class Panel:
     traces: Sequence[Trace]  #: curves as :func:`line` returns them
     axis: dict[str, Any] = field(default_factory=dict)  #: further properties of the vertical axis
     height: float = 1.0  #: height relative to the other panels
+    size: float = 0.0  #: of the values that cancel in the curves, in their unit
 
     def with_axes(self, x: str, suffix: str) -> list[Trace]:
         """Assign the curves to their axes; a single curve has no legend entry."""
         place = {"xaxis": x, "yaxis": f"y{suffix}", "legend": f"legend{suffix}"}
         several = len(self.traces) > 1
         return [{"showlegend": several, **trace, **place} for trace in self.traces]
+
+    def coincident(self, top: float) -> list[dict[str, Any]]:
+        """Note of curves that nobody sees, because they lie on others."""
+        hidden = _covered(self.traces)
+        texts = [f"{name} lies on {first}" for name, first in list(hidden.items())[:_NOTED]]
+        texts += [f"{len(hidden) - _NOTED} more coincide"] * (len(hidden) > _NOTED)
+        if not texts:
+            return []
+        place = {"xref": "paper", "yref": "paper", "x": 1.0, "y": top}
+        ends = {"xanchor": "right", "yanchor": "top", "showarrow": False}
+        font = {"size": 12, "color": MUTED}
+        return [{**place, **ends, "text": "; ".join(texts), "font": font}]
+
+    @property
+    def vertical(self) -> dict[str, Any]:
+        """Properties of the vertical axis; rounding does not fill it."""
+        values = np.concatenate([np.ravel(y) for y in map(_heights, self.traces)] or [np.zeros(0)])
+        values = values[np.isfinite(values)]
+        if not values.size or {"range", "type"} & self.axis.keys():
+            return self.axis
+        low, high = float(values.min()), float(values.max())
+        size = max(abs(low), abs(high), self.size)
+        if high - low > ROUNDING * size or size == 0.0:
+            return self.axis
+        middle = 0.5 * (low + high)
+        return {**self.axis, "range": [middle - _FLAT * size, middle + _FLAT * size]}
+
+
+def _heights(trace: Trace) -> Array:
+    """Vertical values of a curve; none of other traces."""
+    if trace.get("type") != "scatter" or "lines" not in trace.get("mode", ""):
+        return np.zeros(0)
+    values = np.asarray(trace["y"])
+    return np.zeros(0) if values.dtype.kind in "US" else values.astype(float)
+
+
+def _covered(traces: Sequence[Trace]) -> dict[str, str]:
+    """Names of curves that lie on one before them, and the name of that."""
+    curves = [(np.asarray(t.get("x")), _heights(t), t.get("name")) for t in traces]
+    spans = [np.ptp(y[np.isfinite(y)]) for _, y, _ in curves if np.isfinite(y).any()]
+    near, covered = _COVERED * max(spans, default=0.0), dict[str, str]()
+    for number, (x, y, name) in enumerate(curves):
+        for x0, y0, first in curves[:number]:
+            same = y.size > 1 and y.shape == y0.shape and first not in covered
+            if same and name and first and name != first and np.array_equal(x, x0):
+                apart = np.abs(y - y0)
+                if np.isfinite(apart).any() and np.nanmax(apart) <= near:
+                    covered[name] = first
+                    break
+    return covered
 
 
 def from_zero(label: str, traces: Sequence[Trace], height: float = 1.0) -> Panel:
@@ -72,13 +131,15 @@ def stack(
     x_axis = {"title": {"text": x_label}, "anchor": f"y{_suffix(len(panels) - 1)}"}
     merged: dict[str, Any] = {"xaxis": {**x_axis, **more.pop("xaxis", {})}, "height": height}
     traces: list[Trace] = []
+    notes = list(more.pop("annotations", ()))
     for number, (panel, domain) in enumerate(zip(panels, domains, strict=True)):
         suffix = _suffix(number)
         y_axis = {"title": {"text": panel.label}, "domain": domain}
-        merged[f"yaxis{suffix}"] = {**y_axis, **panel.axis}
+        merged[f"yaxis{suffix}"] = {**y_axis, **panel.vertical}
         merged[f"legend{suffix}"] = {**_legend(domain[1]), "tracegroupgap": 2}
         traces += panel.with_axes("x", suffix)
-    return figure(title, traces, {**merged, **more})
+        notes += panel.coincident(domain[1])
+    return figure(title, traces, {**merged, **({"annotations": notes} if notes else {}), **more})
 
 
 def stack_rows(title: str, rows: Sequence[Row], layout: dict[str, Any] | None = None) -> Sketch:
@@ -93,9 +154,10 @@ def stack_rows(title: str, rows: Sequence[Row], layout: dict[str, Any] | None = 
         x_axis = {"title": {"text": row.label}, "anchor": f"y{suffix}"}
         y_axis = {"title": {"text": row.panel.label}, "domain": domain, "anchor": f"x{suffix}"}
         merged[f"xaxis{suffix}"] = {**x_axis, **row.axis}
-        merged[f"yaxis{suffix}"] = {**y_axis, **row.panel.axis}
+        merged[f"yaxis{suffix}"] = {**y_axis, **row.panel.vertical}
         merged[f"legend{suffix}"] = _legend(domain[1])
         traces += row.panel.with_axes(f"x{suffix}", suffix)
+        notes += row.panel.coincident(domain[1])
         marks = event_lines(row.marks)
         place = {"xref": f"x{suffix}", "yref": f"y{suffix} domain"}
         shapes += [{**shape, **place} for shape in marks["shapes"]]

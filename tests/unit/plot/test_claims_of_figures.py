@@ -1,0 +1,116 @@
+"""Titles of figures say what the curves that they draw say, computed anew from the curves."""
+
+from __future__ import annotations
+
+import re
+from types import SimpleNamespace
+from typing import Any
+
+import numpy as np
+import pytest
+
+from tribodyn import plot
+from tribodyn.plot.motion.spectra import _strongest
+from tribodyn.plot.theme.panels import Panel, stack
+from tribodyn.plot.theme.style import line
+from tribodyn.study.machine.motion import MachineMotion
+from tribodyn.study.planetary.motion import PlanetaryMotion
+
+CLOCK = np.linspace(0.0, 1.0, 301)
+WAVE = np.sin(2.0 * np.pi * 5.0 * CLOCK)
+
+
+def machine(swings: tuple[float, ...], means: tuple[float, ...]) -> MachineMotion:
+    """Motion of a machine whose mesh forces swing about their means."""
+    force = np.array(means) + WAVE[:, None] * 0.5 * np.array(swings)
+    count, nothing = len(means), np.zeros_like(force)
+    weight = np.full(CLOCK.size, 1.0 / (CLOCK.size - 1))
+    weight[[0, -1]] *= 0.5
+    return MachineMotion(
+        clock=CLOCK, weight=weight, mesh=("first", "second", "third")[:count], bearing=(), node=(),
+        mesh_force=force, compression=nothing, transmission_error=nothing, open=nothing,
+        bearing_force=np.zeros((CLOCK.size, 0, 6)), acceleration=np.zeros((CLOCK.size, 0, 3)),
+        cycles=np.array([5, 7, 11][:count]), frequency=10.0,
+    )  # fmt: skip
+
+
+def panels(figure: Any) -> dict[str, dict[str, Any]]:
+    """Curves of each vertical axis by name."""
+    axes: dict[str, dict[str, Any]] = {}
+    for trace in figure.data:
+        if "lines" in (trace.mode or "") and trace.name:
+            axes.setdefault(trace.yaxis or "y", {})[trace.name] = np.asarray(trace.y, dtype=float)
+    return axes
+
+
+@pytest.mark.parametrize(
+    ("swings", "means"),
+    [((90.0, 204.0), (900.0, 4000.0)), ((300.0, 204.0, 10.0), (9000.0, 100.0, -5.0))],
+)
+def test_mesh_that_varies_most_is_that_with_the_highest_curve(
+    swings: tuple[float, ...], means: tuple[float, ...]
+) -> None:
+    figure = plot.machine_forces(machine(swings, means))
+    curves = panels(figure)["y"]
+    most = max(curves, key=lambda name: float(np.ptp(curves[name])))
+    title = figure.layout.title.text
+    assert f"mesh {most} varies most" in title
+    value, mean = map(float, re.findall(r"(-?[\d.]+) N", title))
+    assert value == pytest.approx(np.ptp(curves[most]), rel=5e-3)
+    assert mean == pytest.approx(np.mean(curves[most][:-1]), rel=5e-3)
+
+
+def test_forces_that_only_round_do_not_vary() -> None:
+    figure = plot.machine_forces(machine((3e-10, 1e-10), (900.0, 4000.0)))
+    assert figure.layout.title.text == "No mesh force varies"
+    flat = plot.machine_forces(machine((1e-10,), (900.0,))).layout.yaxis.range
+    assert flat[1] - flat[0] > 1.0  # N: rounding is a straight line
+    lines = plot.machine_orders(machine((1e-10,), (900.0,)))
+    assert lines.layout.title.text == "Mesh forces: no line at a mesh harmonic"
+    assert (
+        "harmonic 1 of mesh first" in plot.machine_orders(machine((9.0,), (9.0,))).layout.title.text
+    )
+
+
+def stage(shift: float, orbit: float) -> PlanetaryMotion:
+    """Motion of a stage whose sun stands aside by a shift and goes round an orbit."""
+    base = machine((100.0, 80.0, 60.0), (500.0, 500.0, 500.0))
+    moved = np.zeros((CLOCK.size, 3, 3))
+    moved[:, :, 2] = 1e-5
+    moved[:, 2, 0] = shift + orbit * WAVE
+    return PlanetaryMotion(
+        phase=base.clock, weight=base.weight, planet=np.arange(1.0, 4.0),
+        member=("carrier", "ring", "sun"), axis=("x", "y", "u"),
+        sun_mesh_force=base.mesh_force, ring_mesh_force=base.mesh_force,
+        pin_force=np.zeros((CLOCK.size, 3, 2)), displacement=moved, mesh_frequency=10.0,
+    )  # fmt: skip
+
+
+def test_sun_has_its_displacement_and_no_orbit_of_rounding() -> None:
+    figure = plot.planetary_forces(stage(3e-6, 1e-6))
+    assert "3.00 µm" in figure.layout.yaxis3.title.text
+    assert np.ptp(panels(figure)["y3"]["x"]) == pytest.approx(2.0, rel=1e-3)
+    assert "at most" in figure.layout.title.text
+    still = plot.planetary_forces(stage(0.0, 1e-20))
+    assert "the sun does not move" in still.layout.title.text
+    low, high = still.layout.yaxis3.range
+    assert high - low > 0.01  # um
+
+
+def test_curves_that_coincide_say_so() -> None:
+    curves = [
+        line(CLOCK, WAVE, "planet 1", "red", unit="N"),
+        line(CLOCK, WAVE + 1e-4, "planet 2", "blue", unit="N"),
+        line(CLOCK, 0.5 * WAVE, "planet 3", "green", unit="N"),
+    ]
+    (note,) = stack("title", "x", [Panel("y", curves)]).layout["annotations"]
+    assert note["text"] == "planet 2 lies on planet 1"
+    assert "annotations" not in stack("title", "x", [Panel("y", curves[::2])]).layout
+
+
+def test_strongest_harmonic_is_that_of_all_directions() -> None:
+    bars = [
+        SimpleNamespace(traces=[{"x": [1.0, 2.0], "y": y, "customdata": [10.0, 20.0]}])
+        for y in ([3.0, 1.0], [0.0, 7.0])
+    ]
+    assert _strongest(bars).startswith("2 (20")  # type: ignore[arg-type]
