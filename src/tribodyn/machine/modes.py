@@ -6,6 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from tribodyn.arrays.eigenvectors import leading
 from tribodyn.dynamics.equations.system import Contact, System
 from tribodyn.dynamics.linear.natural_modes import frequencies_at, linear_system, natural_modes
 from tribodyn.machine.assembly import mesh_contacts, system
@@ -115,12 +116,11 @@ def machine_modes(machine: Machine | MachineStructure, speed: float | None = Non
     modes = natural_modes(linear, elements=structure.elements)
     elastic = _reliable(structure, modes.frequency)
     shape = modes.shape[elastic].astype(complex)
-    top = np.take_along_axis(shape, np.abs(shape).argmax(axis=1)[:, None], axis=1)
     return MachineModes(
         speed=speed,
         names=structure.names,
         frequency=modes.frequency[elastic],
-        shape=shape / top,
+        shape=shape / leading(shape),
         damping_ratio=modes.damping_ratio[elastic],
         parts=(*structure.elements, *(f"meshes.{name}" for name in names)),
         strain_share=modes.strain_share[elastic],

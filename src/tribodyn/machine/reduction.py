@@ -6,6 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from tribodyn.arrays.eigenvectors import groups_of_equal, standard_rotation
 from tribodyn.errors import InputError, require_between, require_positive
 from tribodyn.machine.machine import Machine
 from tribodyn.machine.static.balance import static_balance
@@ -18,6 +19,8 @@ _SHARES = (1.0, 0.5, 0.1, 0.01, 1e-3, 0.0)
 _ALL_BELOW = 1.5
 #: Squared frequencies below this share of the greatest are rounding.
 _RIGID = 1e-12
+#: Columns whose omission changes the frequencies equally, to this part, are left out together.
+_ALIKE = 1e-6
 #: Rounding of a frequency that is zero, over the greatest rate of a coordinate.
 _ROUNDING = 3e-8
 #: Range of the limit of a reduction by default [Hz], and mesh harmonics within half of it.
@@ -188,8 +191,11 @@ def _fixed_modes(structure: MachineStructure, interface: Mask) -> tuple[Index, A
     for label in range(count):
         part = np.flatnonzero(labels == label)
         at = np.ix_(part, part)
-        squares[part], shapes[at] = eigh(stiffness[at], mass[at])
-    order = np.argsort(squares)
+        squares[part], vectors = eigh(stiffness[at], mass[at])
+        shapes[at] = vectors @ standard_rotation(squares[part], vectors.T).T
+    order = np.argsort(squares, kind="stable")
+    for group in groups_of_equal(squares[order]):
+        order[group] = np.sort(order[group])
     return inner, squares[order], shapes[:, order]
 
 
@@ -206,9 +212,11 @@ def _omission(amplitudes: Array, squares: Array, frequency: Array) -> Array:
 
 def _columns(omission: Array, tolerance: float) -> Index:
     """Columns of the basis that the tolerance needs."""
-    order = np.argsort(omission.max(axis=1, initial=0.0))
+    size = omission.max(axis=1, initial=0.0)
+    order = np.argsort(size)
     total = np.cumsum(omission[order], axis=0).max(axis=1, initial=0.0)
-    return np.sort(order[total > tolerance])
+    least = size[order[total > tolerance]].min(initial=np.inf)
+    return np.flatnonzero(size >= (1.0 - _ALIKE) * least)  # all of equal size, or none
 
 
 def _modes(structure: MachineStructure, limit: float) -> tuple[Array, Array]:
@@ -221,6 +229,7 @@ def _modes(structure: MachineStructure, limit: float) -> tuple[Array, Array]:
         stiffness += structure.mesh_stiffness(name) * np.outer(direction, direction)
     subset = None if np.isinf(limit) else (-np.inf, (2.0 * np.pi * limit) ** 2)
     squares, shapes = eigh(stiffness, structure.mass, subset_by_value=subset)
+    shapes = shapes @ standard_rotation(squares, shapes.T).T
     return np.sqrt(np.maximum(squares, 0.0)) / (2.0 * np.pi), shapes
 
 

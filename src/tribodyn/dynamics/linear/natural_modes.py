@@ -9,6 +9,7 @@ from typing import Literal
 import numpy as np
 from numpy.typing import ArrayLike
 
+from tribodyn.arrays.eigenvectors import groups_of_equal, leading, standard_rotation
 from tribodyn.dynamics.equations.grid import system_events, unrepeated
 from tribodyn.dynamics.equations.nodes import (
     Nodes,
@@ -369,10 +370,9 @@ def undamped_modes(mass: Array, stiffness: Array) -> tuple[Array, Array]:
         why = "A motion moves away from the static equilibrium without oscillating"
         remedy = "Check the signs in the stiffness matrix and of the contact stiffnesses"
         raise InputError(what, "System.stiffness", why, remedy)
-    frequency = np.sqrt(np.where(rigid, 0.0, squares)) / (2.0 * np.pi)
-    shape = (inverse.T @ columns).T
-    largest = np.take_along_axis(shape, np.abs(shape).argmax(axis=1)[:, None], axis=1)
-    return frequency, shape * np.sign(largest)
+    squares = np.where(rigid, 0.0, squares)
+    shape = columns.T @ inverse
+    return np.sqrt(squares) / (2.0 * np.pi), standard_rotation(squares, shape) @ shape
 
 
 def _whirling(gyroscopic: Array, frequency: Array, shape: Array) -> tuple[Array, ComplexArray]:
@@ -388,15 +388,15 @@ def _whirling(gyroscopic: Array, frequency: Array, shape: Array) -> tuple[Array,
     state[size - rigid :, size - rigid :] = 0.5 * (modal.T - modal)
     values, vectors = np.linalg.eigh(-1j * state)
     whirls = values > np.sqrt(_RIGID) * np.abs(values).max(initial=0.0)
-    motion = vectors[size - rigid :, whirls].T
+    motion, values = vectors[size - rigid :, whirls].T, values[whirls]
+    motion = standard_rotation(values, motion @ shape) @ motion
     motion /= np.linalg.norm(motion, axis=1, keepdims=True)
     still = np.linalg.svd(modal[:, :rigid])[2][rigid - (size - len(motion)) :]
     shapes = np.vstack((still @ shape[:rigid], motion @ shape))
-    top = np.take_along_axis(shapes, np.abs(shapes).argmax(axis=1)[:, None], axis=1)
-    return (
-        np.concatenate((np.zeros(len(still)), values[whirls] / (2.0 * np.pi))),
-        np.asarray(shapes * np.conj(top) / np.abs(top), dtype=complex),
-    )
+    frequency = np.concatenate((np.zeros(len(still)), values / (2.0 * np.pi)))
+    at_rest = slice(len(still))
+    shapes[at_rest] = standard_rotation(frequency[at_rest], shapes[at_rest]) @ shapes[at_rest]
+    return frequency, np.asarray(shapes, dtype=complex)
 
 
 def _damping_ratio(linear: LinearSystem, frequency: Array, shape: Array | ComplexArray) -> Array:
@@ -443,9 +443,11 @@ def _damped(
     moved: ComplexArray = np.vstack(
         (shape[:rigid].astype(complex), vectors[swinging:].T @ shape)
     ).astype(complex)
-    order = np.lexsort((values.imag, np.abs(values).round(6)))
+    order = np.argsort(np.abs(values), kind="stable")
+    for group in groups_of_equal(np.abs(values[order])):
+        order[group] = order[group][np.argsort(values[order[group]].imag, kind="stable")]
     moved = moved[order]
-    top = np.take_along_axis(moved, np.abs(moved).argmax(axis=1)[:, None], axis=1)
+    top = leading(moved)
     shapes = np.asarray(moved / np.where(top == 0.0, 1.0, top), dtype=complex)
     return np.asarray(values[order], dtype=complex), shapes
 

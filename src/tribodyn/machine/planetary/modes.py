@@ -6,6 +6,7 @@ from typing import Literal
 
 import numpy as np
 
+from tribodyn.arrays.eigenvectors import standard_rotation
 from tribodyn.dynamics.equations.system import System
 from tribodyn.dynamics.linear.natural_modes import natural_modes
 from tribodyn.errors import Argument, InputError
@@ -144,11 +145,12 @@ def _separated(frequency: Array, shape: Shape, weight: Array) -> Shape:
     shape = shape.copy()
     first = np.flatnonzero(np.diff(frequency, prepend=-1.0) > _EQUAL * frequency)
     for rows in np.split(np.arange(frequency.size), first[1:]):
-        still = rows
+        still, groups = rows, []
         for part in (1, 0):  # those that translate first, then those that turn
             left, size, _ = np.linalg.svd(_central(shape[still], weight)[part])
             shape[still] = left.conj().T @ shape[still]
-            still = still[np.count_nonzero(size > _AT_REST) :]
-            if still.size < 2:
-                break
+            moving, still = np.split(still, [np.count_nonzero(size > _AT_REST)])
+            groups.append(moving)
+        for group in (*groups, still):
+            shape[group] = standard_rotation(np.zeros(group.size), shape[group]) @ shape[group]
     return shape
