@@ -423,3 +423,13 @@ def test_unrestrained_coordinates_are_named():
         static_balance(machine, loads={"z9": np.zeros(6)})
     with pytest.raises(InputError, match=r"shape \(5,\)"):
         static_balance(machine, loads={"z1": np.zeros(5)})
+
+
+@pytest.mark.parametrize("clearance", [0.0, 20e-6])
+@pytest.mark.parametrize("torque", [0.0, 1e-9])
+def test_forces_of_rounding_are_no_findings(torque, clearance):
+    """Without a load all forces are rounding, of either sign."""
+    machine = rolling_stage(radial_clearance=clearance) if clearance else rolling_stage()
+    for idle in (machine, spur_stage(stiffness=4e8), helical_stage()):
+        balance = static_balance(replace(idle, operation=replace(idle.operation, torque=torque)))
+        assert all(abs(mesh.force) < 1e-6 for mesh in balance.meshes.values())

@@ -33,6 +33,8 @@ from tribodyn.types import Array
 
 #: Most Newton steps, greatest displacement in one of them [m], greatest residual over the loads.
 _STEPS, _STRIDE, _TOLERANCE = 200, 2e-4, 1e-12
+#: Share of the greatest load, and force [N], below which a force is rounding.
+_ROUNDING = 1e-9
 #: Points at which the deflection of a shaft is sampled, besides its nodes.
 _POINTS = 41
 
@@ -294,6 +296,12 @@ class _Forces:
                 self.total += load @ kind[name]
                 self.tangent += kind[name].T @ stiffness @ kind[name]
 
+    def rounding(self, external: Array) -> float:
+        """Force below which a force is rounding of the loads [N]."""
+        loads = [*self.meshes.values(), *self.bearings.values()]
+        greatest = max(np.abs(external).max(), *(np.abs(load[:3]).max() for load, _ in loads))
+        return _ROUNDING * max(float(greatest), 1.0)
+
 
 def _solve(model: StaticModel, external: Array, output_row: Array) -> tuple[Array, float, int]:
     """Displacement of all coordinates, torque that holds the output, number of steps."""
@@ -371,10 +379,13 @@ def _unbalanced(model: StaticModel, residual: Array, displacement: Array) -> Com
     )
 
 
-def _check_direction(name: str, bearing: RollingElementBearing, load: Array) -> None:
+def _check_direction(
+    name: str, bearing: RollingElementBearing, load: Array, rounding: float
+) -> None:
     """Refuse an axial load that an angular contact bearing does not carry."""
     angle = getattr(bearing, "contact_angle", 0.0)
-    if angle and bearing.direction * load[0] < -1e-6 * np.abs(load[:3]).max():
+    least = max(1e-6 * np.abs(load[:3]).max(), rounding)
+    if angle and bearing.direction * load[0] < -least:
         ways = "+x" if load[0] > 0.0 else "-x", "+x" if bearing.direction > 0 else "-x"
         raise ComputationError(
             f"the shaft presses the bearing along {ways[0]} by {abs(load[0]):.4g} N",
@@ -391,7 +402,7 @@ def _balance(
     """Collect the results by part."""
     laws = {name: model.law(name) for name in model.meshes}
     forces = _Forces(model, laws, displacement)
-    meshes = {}
+    meshes, rounding = {}, forces.rounding(external)
     for name, (load, stiffness) in forces.meshes.items():
         compression, slope = (model.meshes[name] @ displacement).tolist()
         misalignment = slope * model.face_width(name)
@@ -401,10 +412,10 @@ def _balance(
         mounting = model.mounting(name, displacement)
         values = force, moment, compression, misalignment, stiffness, factor, mounting
         meshes[name] = MeshBalance(*values)
-        if load[0] < -1e-9 * np.abs(external).max():
+        if force < -rounding:
             warn(
                 "mesh-tension",
-                f'mesh "{name}" carries {load[0]:.4g} N: in its loop the other flank would carry '
+                f'mesh "{name}" carries {force:.4g} N: in its loop the other flank would carry '
                 "after the backlash; correct stiffness or errors of the loop",
             )
     bearings = {}
@@ -412,7 +423,7 @@ def _balance(
         moved = model.bearings[name] @ displacement
         rolling = model.machine.bearings[name].rolling
         if rolling is not None:
-            _check_direction(name, rolling, load)
+            _check_direction(name, rolling, load, rounding)
         with collected() as warnings:
             seat = np.asarray(model.machine.bearings[name].offset)
             state = rolling.state((moved - seat)[list(HELD)]) if rolling else None

@@ -209,8 +209,9 @@ def _lost(orbit: Response) -> Problem:
 
 def _warn_of_tension(case: Case, response: Response) -> None:
     """Warn of tension in a mesh without backlash, where real flanks would separate."""
-    least = float(response.contact_force.sum(axis=1).min())
-    if case.backlash == 0.0 and least < 0.0:
+    force = response.contact_force.sum(axis=1)
+    least = float(force.min())
+    if case.backlash == 0.0 and least < -1e-9 * float(force.max()):
         linear = mesh_law_of(case) != "force-law"
         consequence = "makes the mesh linear" if linear else "lets the back flanks push at once"
         warn(
