@@ -62,6 +62,14 @@ def test_receptances_are_those_of_the_matrices(direct, monkeypatch):
     assert matrices == pytest.approx(np.array(exact), rel=1e-4, abs=1e-8)
 
 
+def random_response(residual, generator, mean, spread):
+    """Response to random contact forces, whatever basis the equations have."""
+    shape = residual.contacts.steps, len(residual.structure.push)
+    return residual.response(
+        (mean + spread * generator.normal(size=shape)) @ residual.structure.push
+    )
+
+
 @pytest.mark.parametrize("gap", [None, 0.2])
 def test_derivative_of_the_residual_is_that_by_differences(gap):
     parts = dict.fromkeys(("friction", "turning", "load_friction", "gyroscopic"), True)
@@ -69,11 +77,10 @@ def test_derivative_of_the_residual_is_that_by_differences(gap):
     frequency = 0.4 / machine.cycles
     residual = prepare(machine, frequency).residual(64 * machine.cycles, frequency)
     generator = np.random.default_rng(0)
-    shape = residual.contacts.steps, residual.structure.push.shape[1]
-    point = 0.5 * residual.response(0.5 + 0.2 * generator.normal(size=shape))
+    point = 0.5 * random_response(residual, generator, 0.5, 0.2)
     state = residual.at(point)
     assert bool(state.breaks.step.size) == (gap is not None)
-    move = residual.response(generator.normal(size=shape))
+    move = random_response(residual, generator, 0.0, 1.0)
     step = 1e-7 / np.abs(move).max()
     ahead, behind = residual.at(point + step * move), residual.at(point - step * move)
     slope = (ahead.residual - behind.residual) / (2.0 * step)
@@ -88,9 +95,7 @@ def test_few_products_solve_the_linear_equations_of_a_long_period(gap):
     machine = random_machine(18, gap=gap, depth=0.3, **parts)
     frequency = 0.1 / machine.cycles
     residual = prepare(machine, frequency).residual(128 * machine.cycles, frequency)
-    generator = np.random.default_rng(0)
-    shape = residual.contacts.steps, residual.structure.push.shape[1]
-    state = residual.at(0.5 * residual.response(0.5 + 0.2 * generator.normal(size=shape)))
+    state = residual.at(0.5 * random_response(residual, np.random.default_rng(0), 0.5, 0.2))
     step, count = residual.correction(state, 1e-9)
     size = np.abs(state.residual).max()
     assert residual.derivative(state)(step) == pytest.approx(-state.residual, abs=1e-7 * size)
