@@ -1,4 +1,4 @@
-"""Products of a small matrix and many vectors, in a memory layout for later vector operations."""
+"""Products of a small matrix and many vectors."""
 
 from __future__ import annotations
 
@@ -22,3 +22,18 @@ def times(vectors: Array, matrix: Array, lead: int = 0, allocate: Allocator = np
     memory = allocate((*flat.shape[:-2], len(matrix), flat.shape[-2]))
     product = np.swapaxes(np.matmul(matrix, np.swapaxes(flat, -1, -2), out=memory), -1, -2)
     return np.asarray(product.reshape(*vectors.shape[:-1], len(matrix)))
+
+
+def each_times(vectors: Array, matrix: Array) -> Array:
+    """Vectors (..., n) times a matrix (n, m), each rounded alike whatever their number."""
+    # BLAS chooses its kernels by the number of vectors, and these round differently.
+    product = vectors[..., :1] * matrix[0]
+    for i in np.flatnonzero(matrix[1:].any(axis=1)) + 1:
+        product += vectors[..., i : i + 1] * matrix[i]
+    return np.asarray(product)
+
+
+def lengths(vectors: Array) -> Array:
+    """Euclidean lengths of vectors (..., n), however large."""
+    largest = np.abs(vectors).max(axis=-1, initial=1e-300)
+    return np.asarray(largest * np.linalg.norm(vectors / largest[..., None], axis=-1))

@@ -15,6 +15,7 @@ from typing import Any
 
 import numpy as np
 
+from tribodyn.arrays.products import each_times, lengths
 from tribodyn.checkpoints import Checkpoints
 from tribodyn.dynamics._engine.blocks import march, marching_on, on_gpu
 from tribodyn.dynamics.equations.compiled import Compiled
@@ -63,9 +64,9 @@ class Motions:
         self.compiled, self.frequency, self.parameters = compiled, frequency, parameters or {}
         self.start = np.array(start, dtype=float)
         self.force = np.zeros((count, size)) if force is None else np.array(force, dtype=float)
-        self.coordinates = orbit_coordinates(compiled, float(frequency.min()))
+        self.coordinates = orbit_coordinates(compiled, 1.0 / (2.0 * np.pi))
         self.balance = Balance.of(compiled.system, self.coordinates)
-        width = self.coordinates.elastic.shape[1] + self.coordinates.moving.shape[1]
+        width = self.coordinates.reducing.shape[1]
         self.state = np.full((count, 2 * size), np.nan)
         self.period = np.zeros(count, dtype=np.int64)
         self.change, self.rate = np.full(count, np.inf), np.ones(count)
@@ -131,6 +132,18 @@ class Motions:
             self.progress.advance()
         return -1
 
+    def reduce(self, states: Array, index: Index) -> Array:
+        """Reduced states (..., lanes, e + v) of some motions, each at its mesh frequency."""
+        reduced = each_times(states, self.coordinates.reducing)
+        positions = self.coordinates.elastic.shape[1]
+        reduced[..., :positions] *= 2.0 * np.pi * self.frequency[index, None]
+        return reduced
+
+    def at_rest(self, states: Array) -> Array:
+        """States (..., 2 n) with the free motions at rest."""
+        resting = self.coordinates.resting
+        return states if resting is None else each_times(states, resting)
+
     def march(self, index: Index, state: Array, cycles: int, force: Array, **options: Any) -> Array:
         """March lanes by whole mesh cycles."""
         if self.parameters:
@@ -155,8 +168,7 @@ class _Block:
         self.part = np.zeros(width, dtype=np.int64)
         self.least = np.full(width, 1e-300)
         self.before = np.full((LONGEST_PERIOD, width), np.inf)
-        coordinates = motions.coordinates
-        reduced = coordinates.elastic.shape[1] + coordinates.moving.shape[1]
+        reduced = motions.coordinates.reducing.shape[1]
         self.earlier = np.full((LONGEST_PERIOD + 1, width, reduced), np.nan)
         points = LONGEST_PERIOD * self.steps + 1
         self.record = None
@@ -193,36 +205,41 @@ class _Block:
             self.job[lane], self.part[lane], self.before[:, lane] = job, 0, np.inf
             self.earlier[:, lane] = np.nan
             self.state[lane], self.force[lane] = m.start[job], m.force[job]
-            begin = np.abs(m.coordinates.reduce(m.start[job])).max(initial=0.0)
-            self.least[lane] = max(_REST * begin, 1e-300)
+            begin = m.reduce(m.start[[job]], np.array([job]))
+            self.least[lane] = max(_REST * float(lengths(begin)[0]), 1e-300)
             if self.parts:
                 return
-            recent = np.repeat(m.coordinates.reduce(m.start[job])[None], LONGEST_PERIOD, axis=0)
+            recent = np.repeat(begin, LONGEST_PERIOD, axis=0)
             job = m.store(job, m.start[job], (0, np.inf, m.force[job], recent))
         self.job[lane] = -1
 
     def _advance(self) -> None:
         """March one part, look at every lane, and put others in place of those that are done."""
-        m, c = self.motions, self.motions.coordinates
+        m = self.motions
         index = np.where(self.job >= 0, self.job, self.job.max())
         try:
-            middle = m.march(
-                index, self.state, _PART - LONGEST_PERIOD, self.force, width=self.lanes, threads=1
-            )
-            gained = c.free_velocity(middle)
-            last, states = self._last_cycles(index, c.expand(c.reduce(middle)))
+            middle = self._first_cycles(index, slice(None))
+            last, states = self._last_cycles(index, m.at_rest(middle))
         except ComputationError:
             self._drop_lost(index)
             return
-        gained = gained + c.free_velocity(last)
-        self.state = c.expand(c.reduce(last))
+        self.state = m.at_rest(last)
         shift = np.zeros(self.width)
         if m.balance is not None:
-            more = m.balance.torque(gained @ m.balance.direction, _PART / m.frequency[index])
+            gained = m.balance.gain(middle) + m.balance.gain(last)
+            more = m.balance.torque(gained, _PART / m.frequency[index])
             self.force -= more
             shift = np.abs(more).max(axis=1)
         self.part += 1
-        self._find_periods(c.reduce(states), shift <= self.tolerance * self.scale)
+        reduced = m.reduce(states, index)
+        self._find_periods(reduced, shift <= self.tolerance * self.scale)
+
+    def _first_cycles(self, index: Index, lanes: slice, width: int | None = None) -> Array:
+        """March some lanes over the mesh cycles of a part before its last 8."""
+        cycles, options = _PART - LONGEST_PERIOD, {"width": width or self.lanes, "threads": 1}
+        return self.motions.march(
+            index[lanes], self.state[lanes], cycles, self.force[lanes], **options
+        )
 
     def _last_cycles(self, index: Index, state: Array) -> tuple[Array, Array]:
         """March the last 8 mesh cycles of a part; also returns all states, (9, lanes, 2 n)."""
@@ -243,8 +260,8 @@ class _Block:
 
     def _find_periods(self, states: Array, balanced: Mask) -> None:
         """Find the lanes that repeat; ``states`` are (9, lanes, k), the last is the current one."""
-        size = np.maximum(np.abs(states[-1]).max(axis=1, initial=0.0), self.least)
-        change = np.abs(states[-1] - states[-2::-1]).max(axis=2, initial=0.0) / size
+        size = np.maximum(lengths(states[-1]), self.least)
+        change = lengths(states[-1] - states[-2::-1]) / size
         with np.errstate(invalid="ignore", divide="ignore", over="ignore"):
             rate = np.where(change < self.before, change / self.before, 1.0)
             rate **= np.arange(1, LONGEST_PERIOD + 1)[:, None] / _PART
@@ -280,10 +297,11 @@ class _Block:
         for lane in np.flatnonzero(self.job >= 0):
             single = slice(lane, lane + 1)
             with suppress(ComputationError), marching_on("cpu"):
-                m.march(index[single], self.state[single], _PART, self.force[single], threads=1)
+                middle = m.at_rest(self._first_cycles(index, single, 1))
+                m.march(index[single], middle, LONGEST_PERIOD, self.force[single], threads=1)
                 continue
             lost.append(int(lane))
-        # A lane on the edge may pass alone: then the farthest one goes.
+        # What diverged on a graphics processor may pass here: then the farthest one goes.
         size = np.where(self.job >= 0, np.abs(self.state).max(axis=1), -1.0)
         for number in lost or [int(size.argmax())]:
             nan = np.full(self.state.shape[1], np.nan)

@@ -6,6 +6,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
+from tribodyn.arrays.products import lengths
 from tribodyn.dynamics.equations.compiled import Compiled
 from tribodyn.dynamics.orbits.steady_state import steady_state
 from tribodyn.errors import ComputationError, InputError, quiet
@@ -100,9 +101,11 @@ class Catalogue:
         alive = motions.finished & np.all(np.isfinite(motions.state), axis=1)
         if not alive.any():
             return label
-        reduced = motions.coordinates.reduce(np.where(alive[:, None], motions.state, 0.0))
-        begin = motions.coordinates.reduce(motions.start[alive])
-        size = max(float(np.abs(reduced[alive]).max()), _REST * float(np.abs(begin).max())) or 1.0
+        every = np.arange(alive.size)
+        reduced = motions.reduce(np.where(alive[:, None], motions.state, 0.0), every)
+        begin = motions.reduce(motions.start[alive], every[alive])
+        longest = [float(lengths(each).max()) for each in (reduced, begin)]
+        size = max(longest[0], _REST * longest[1]) or 1.0
         for number, attractor in enumerate(self.known):
             self._claim(label, number, attractor, motions, reduced, size)
         while True:
@@ -119,7 +122,7 @@ class Catalogue:
         """Number of an attractor; that of an existing one if both have the same states."""
         for number, attractor in enumerate(self.known):
             if attractor.period == new.period:
-                distance = np.abs(attractor.states - new.states[0]).max(axis=1)
+                distance = lengths(attractor.states - new.states[0])
                 if distance.min() <= _SAME * size:
                     return number
         self.known.append(new)
@@ -138,7 +141,7 @@ class Catalogue:
         if not attractor.period:
             return
         for state in attractor.states:
-            close = np.abs(reduced - state).max(axis=1) <= _SAME * size
+            close = lengths(reduced - state) <= _SAME * size
             settled = (motions.period > 0) | (motions.change <= _WILD)
             label[close & settled & (label < 0) & motions.finished] = number
 
@@ -162,7 +165,7 @@ class Catalogue:
         full = path.states[: max(period, 1), 0]
         rms = float(path.rms[0])
         return MarchedAttractor(
-            motions.coordinates.reduce(full),
+            motions.reduce(full[:, None], index)[:, 0],
             full[0],
             motions.force[index[0]].copy(),
             period,

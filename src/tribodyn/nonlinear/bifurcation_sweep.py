@@ -9,10 +9,9 @@ stretch is entered again.
 
 from __future__ import annotations
 
-from typing import Any
-
 import numpy as np
 
+from tribodyn.arrays.products import lengths
 from tribodyn.dynamics.equations.compiled import Compiled
 from tribodyn.dynamics.orbits.coordinates import static_start
 from tribodyn.nonlinear.attractors import Motions, settle
@@ -20,7 +19,7 @@ from tribodyn.nonlinear.survey import Outcomes, Points, Survey, each_in_threads,
 from tribodyn.progress import SILENT, Progress
 from tribodyn.types import Array
 
-#: Stretches of all branches together, and values of the shortest.
+#: Most stretches of a branch, and values of the shortest.
 _STRETCHES, _SHORTEST = 32, 4
 #: Motions that are marched one lane at a time: a block would be mostly idle.
 _FEW = 2
@@ -44,7 +43,7 @@ class Stretches(Motions):
         start = np.tile(rest_state, (all_of_them.size, 1))
         super().__init__(compiled, all_of_them, start, keep_states=True)
         self.rest_state = rest_state
-        pieces = min(_STRETCHES // len(branches), max(1, count // _SHORTEST))
+        pieces = min(_STRETCHES, max(1, count // _SHORTEST))
         self.stretches: list[list[list[int]]] = []
         self.follower = np.full(all_of_them.size, -1)
         for number, branch in enumerate(branches):
@@ -54,37 +53,18 @@ class Stretches(Motions):
             self.stretches.append(
                 [[int(i) for i in part] for part in np.array_split(order, pieces)]
             )
-        self.begun = np.zeros(all_of_them.size, dtype=bool)
-        self.halved = self.begun.copy()  #: motions that began the second half of a stretch
         self.met = np.zeros(all_of_them.size, dtype=bool)
         self.joining = False
-
-    def _stored(self, index: int) -> list[Any]:
-        return [*super()._stored(index), bool(self.halved[index])]
-
-    def _restore(self, index: int, stored: Any) -> None:
-        super()._restore(index, stored)
-        self.halved[index] = stored[7]
 
     def places(self) -> list[int]:
         """First value of every stretch, or the first after the motions finished before."""
         starts = []
-        for number, cut in enumerate(self.stretches):
-            parts: list[list[int]] = []
-            for part in cut:
-                for place, index in enumerate(part):
-                    if place and not self.halved[index]:
-                        parts[-1].append(index)
-                    else:
-                        parts.append([index])
-            self.stretches[number] = parts
-            for part in parts:
-                self.follower[part[:-1]] = part[1:]
-                done = next((k for k, i in enumerate(part) if not self.finished[i]), len(part))
-                self.begun[part[: done + 1]] = True
-                if 0 < done < len(part):
-                    self.enter(part[done], part[done - 1])
-                starts += part[done : done + 1]
+        for part in (part for cut in self.stretches for part in cut):
+            self.follower[part[:-1]] = part[1:]
+            done = next((k for k, i in enumerate(part) if not self.finished[i]), len(part))
+            if 0 < done < len(part):
+                self.enter(part[done], part[done - 1])
+            starts += part[done : done + 1]
         return starts
 
     def store(self, index: int, state: Array, facts: tuple[int, float, Array, Array]) -> int:
@@ -95,40 +75,10 @@ class Stretches(Motions):
         super().store(index, state, facts)
         if self.met[index]:
             return -1
-        with self._lock:
-            after = int(self.follower[index])
-            self.begun[after] |= after >= 0
+        after = int(self.follower[index])
         if after >= 0:
             self.enter(after, index)
         return after
-
-    def take(self, count: int) -> list[int]:
-        """Take motions out of the queue, then halves of what is left of the longest stretches."""
-        jobs = super().take(count)
-        with self._lock:
-            while len(jobs) < count and not self.joining:
-                item = self._halve_longest()
-                if item < 0:
-                    break
-                jobs.append(item)
-        return jobs
-
-    def _halve_longest(self) -> int:
-        """Cut the stretch with most values ahead in two; its new first value, or -1."""
-        ahead = [
-            (int(np.count_nonzero(~self.begun[part])), b, s)
-            for b, cut in enumerate(self.stretches)
-            for s, part in enumerate(cut)
-        ]
-        most, b, s = max(ahead)
-        if most < 2:
-            return -1
-        part = self.stretches[b][s]
-        at = len(part) - most // 2
-        self.follower[part[at - 1]] = -1
-        self.stretches[b][s : s + 1] = [part[:at], part[at:]]
-        self.begun[part[at]] = self.halved[part[at]] = True
-        return part[at]
 
     def enter(self, index: int, before: int) -> None:
         """Start a motion at the end of another, or at rest if that one diverged."""
@@ -146,10 +96,10 @@ class Stretches(Motions):
             return False
         if not period and min(change, self.change[index]) > _NEARLY:
             return True  # Neither repeats: the states say nothing.
-        distance = np.abs(old - recent[-1]).max(axis=1)[-max(period, 1) :]
+        distance = lengths(old - recent[-1])[-max(period, 1) :]
         if not period:
-            distance = np.abs(old - recent[-1]).max(axis=1)
-        limit = (_SAME if period else _NEARLY) * np.abs(recent).max()
+            distance = lengths(old - recent[-1])
+        limit = (_SAME if period else _NEARLY) * lengths(recent).max()
         return bool(distance.min() <= limit)
 
 
@@ -161,7 +111,6 @@ def march_stretches(sweeps: Stretches, transient: int, progress: Progress) -> No
     try:
         settle(sweeps, places, transient, progress=progress)
         sweeps.joining = True
-        joints = [(b, s) for b, cut in enumerate(sweeps.stretches) for s in range(1, len(cut))]
         while joints:
             for branch, s in joints:
                 cut = sweeps.stretches[branch]

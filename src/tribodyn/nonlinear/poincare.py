@@ -177,7 +177,7 @@ def _march(
     signal = 0 if compiled.system.contacts else compiled.system.names[0]
     for cycle in range(transient):
         state = motions.march(lane, state, 1, force, elapsed=cycle)
-        state = motions.coordinates.expand(motions.coordinates.reduce(state))
+        state = motions.at_rest(state)
     return follow(motions, lane, state, cycles, signal, transient)
 
 

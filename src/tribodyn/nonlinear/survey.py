@@ -15,6 +15,7 @@ from typing import Any, Literal, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from tribodyn.arrays.products import each_times, lengths
 from tribodyn.checkpoints import Checkpoints
 from tribodyn.dynamics._engine.statistics import Statistics
 from tribodyn.dynamics.equations.compiled import Compiled, compile_lanes
@@ -35,8 +36,6 @@ Verdict = Literal["physical", "step-limited", "undecided"]
 _PERIODIC, _IRREGULAR = 0.01, 0.1
 #: Distance of the motion of half the step at which both are the same, relative to the state.
 _AGREES = 5e-3
-#: Fewer lanes than these are marched one by one.
-_FEW = 4
 
 
 def step_verdict(
@@ -279,7 +278,6 @@ def comes_back(points: Points, outcomes: Outcomes) -> Mask:
     for group in points.groups:
         compiled = points.compiled(group)
         motions = points.motions(compiled, group, outcomes)
-        reduce = motions.coordinates.reduce
         repeats, rate = outcomes.repeats[group], outcomes.rate[group]
         for period in np.unique(repeats[repeats > 0]):
             index = np.flatnonzero((repeats == period) & (rate < 1.0))
@@ -290,8 +288,9 @@ def comes_back(points: Points, outcomes: Outcomes) -> Mask:
                 new = motions.march(index, state, int(period), force)
             except ComputationError:
                 continue
-            distance = np.abs(reduce(new) - reduce(state)).max(axis=1) / (1.0 - rate[index])
-            same[group[index]] = distance <= _AGREES * np.abs(reduce(state)).max(axis=1)
+            begin, end = (motions.reduce(each, index) for each in (state, new))
+            distance = lengths(end - begin) / (1.0 - rate[index])
+            same[group[index]] = distance <= _AGREES * lengths(begin)
     return same
 
 
@@ -347,7 +346,7 @@ def _measure_rows(
                 _measure_rows(motions, indices, np.array([row]), period, survey, figures)
         return
     keep = survey.keep
-    history = motions.coordinates.reduce(path.states[-keep:])
+    history = motions.reduce(path.states[-keep:], index)
     figures.points[rows] = np.resize(path.points[-keep:], (keep, rows.size)).T
     figures.period[rows] = period or [open_period(history[:, n]) for n in range(rows.size)]
     figures.rms[rows], figures.last[rows] = path.rms, path.last
@@ -376,11 +375,10 @@ def follow(
             1,
             motions.force[index],
             statistics=statistics,
-            width=1 if lanes < _FEW else 16,
             threads=os.cpu_count() or 1,
             elapsed=elapsed + cycle,
         )
-        state = motions.coordinates.expand(motions.coordinates.reduce(state))
+        state = motions.at_rest(state)
         moments = statistics.figures
         total[:2] += moments[row, :2] / cycles
         largest = np.maximum(largest, np.abs(moments[row, 2:4]).max(axis=0))
@@ -396,7 +394,8 @@ def follow(
 def _signal(motions: Motions, state: Array, signal: int | str, output: Array) -> Array:
     """Compression of the contact, or the coordinate, at the mesh phase 0."""
     if isinstance(signal, str):
-        return np.asarray(state @ output)
+        return each_times(state, output[:, None])[..., 0]
     nodes = motions.compiled.nodes
     place = state[..., : state.shape[-1] // 2]
-    return np.asarray(place @ nodes.direction[0, 0, signal] - nodes.error[0, 0, signal])
+    along = each_times(place, nodes.direction[0, 0, signal, :, None])[..., 0]
+    return np.asarray(along - nodes.error[0, 0, signal])

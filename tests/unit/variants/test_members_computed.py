@@ -44,14 +44,17 @@ friction.law = ["none", "xu-2007"]
     with quiet():
         wanted = computed(study.case.replace(changes)).summary()
     for name, value in wanted.items():
-        assert float(data[name].isel(member)) == pytest.approx(value, rel=1e-9), name
+        # Errors that were estimated are known to the rounding of what they are errors of.
+        least = 1e-11 if name.endswith("_error") else 1e-12
+        stored = float(data[name].isel(member))
+        assert stored == pytest.approx(value, rel=1e-9, abs=least), name
 
 
 def test_motions_are_those_of_a_map_and_of_one_thread(tmp_path: Path) -> None:
     text = f"""
 case = "fzg-roughness"
 compute = "motions"
-chunk = 7
+chunk = CHUNK
 {QUICK}
 dynamics.mesh_damping_ratio = 0.02
 dynamics.backlash = "60 um"
@@ -59,17 +62,16 @@ dynamics.backlash = "60 um"
 operation.speed = "3000..9000 rpm:4"
 force_scale = "0.1,0.3,1"
 """
-    # At a scale of 0.05 two motions coexist at the highest speed, and rounding chooses.
-    study = read_study(text)
+    study = read_study(text.replace("CHUNK", "7"))
     run_study(study, tmp_path / "s")
     data = open_study(tmp_path / "s").load()
     member = built(study.case)
-    frequency = study.case.gears.pinion.teeth * data["operation.speed"].values / (2.0 * np.pi)
+    speed = data["operation.speed"].values / study.case.operation.speed
+    frequency = speed * member.mesh.mesh_frequency
     over = (("mesh_frequency", frequency), ("force_scale", data["force_scale"].values))
     map_result = parameter_map(member.system, over=over)
-    np.testing.assert_array_equal(data["period"], map_result.period)
-    np.testing.assert_allclose(data["rms"], map_result.rms, rtol=2e-4)
-    np.testing.assert_allclose(data["contact_loss_share"], map_result.contact_loss_share, atol=1e-5)
+    for name in ("period", "rms", "contact_loss_share"):
+        np.testing.assert_array_equal(data[name], getattr(map_result, name))
     verdicts = np.array(VERDICTS)[data["verdict"].values.astype(int)]
     np.testing.assert_array_equal(verdicts, map_result.verdict)
     assert float(data["contact_loss_share"].max()) > 0.0
@@ -78,6 +80,8 @@ force_scale = "0.1,0.3,1"
     for path in (tmp_path / "s").rglob("*.nc"):
         other = tmp_path / "alone" / path.relative_to(tmp_path / "s")
         assert path.read_bytes() == other.read_bytes()
+    run_study(read_study(text.replace("CHUNK", "2")), tmp_path / "small")
+    xarray.testing.assert_equal(data, open_study(tmp_path / "small").load())
 
 
 def test_a_chunk_does_not_depend_on_who_looks_at_its_making() -> None:

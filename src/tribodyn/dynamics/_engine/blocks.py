@@ -15,8 +15,8 @@ from tribodyn.dynamics._engine.method import Newmark, RungeKutta4
 from tribodyn.dynamics._engine.statistics import Statistics
 from tribodyn.dynamics.equations.compiled import Compiled
 from tribodyn.dynamics.equations.divergence import Failed, chattering_step, newmark_failure, runaway
-from tribodyn.dynamics.equations.lane_parameters import LaneParameters
-from tribodyn.dynamics.equations.program import LaneRows, lane_load
+from tribodyn.dynamics.equations.lane_parameters import LaneParameters, kinds_of
+from tribodyn.dynamics.equations.program import LaneRows, Program, lane_load
 from tribodyn.errors import Argument, InputError
 from tribodyn.interrupt import in_threads, refuse_stopped, stop_flag
 from tribodyn.types import Array, Index
@@ -76,13 +76,21 @@ class LaneBlock:
         return self.index[: self.count]
 
 
-def lane_blocks(lanes: int, width: int | None = None, *, own_rows: bool = False) -> list[LaneBlock]:
-    """Divide lanes into blocks."""
+def lane_blocks(
+    lanes: int, width: int | None = None, *, own_rows: bool = False, kind: Index | None = None
+) -> list[LaneBlock]:
+    """Divide lanes into blocks, each of lanes of one ``kind`` (lanes,)."""
     if width is None:
         width = 1 if lanes < OWN_ROWS else OWN_ROWS if own_rows else WIDTH
+    every = np.arange(lanes)
+    groups = [every] if kind is None else [every[kind == each] for each in np.unique(kind)]
     return [
-        LaneBlock(np.minimum(np.arange(first, first + width), lanes - 1), min(width, lanes - first))
-        for first in range(0, lanes, width)
+        LaneBlock(
+            group[np.minimum(np.arange(first, first + width), group.size - 1)],
+            min(width, group.size - first),
+        )
+        for group in groups
+        for first in range(0, group.size, width)
     ]
 
 
@@ -175,13 +183,22 @@ def march(
         from tribodyn.dynamics._engine.generated.cuda import march_on_gpu
 
         new, ended = march_on_gpu(
-            run.programs, run.member, period, run.load, state, cycles, record, statistics
+            run.programs(np.arange(lanes)),
+            run.member,
+            period,
+            run.load,
+            state,
+            cycles,
+            record,
+            statistics,
         )
         if ended.max() >= 0:
             lane = int(np.argmax(ended))
             run.report(LaneBlock(np.array([lane]), 1), int(ended[lane]), elapsed)
         return new
-    blocks = lane_blocks(lanes, width, own_rows=bool(compiled.members))
+    if isinstance(method, Newmark):
+        width = 1  # a block iterates until the forces of all its lanes converge
+    blocks = lane_blocks(lanes, width, own_rows=bool(compiled.members), kind=run.kind)
     brief = is_brief(compiled, lanes, cycles)
 
     def march_lanes(block: LaneBlock, part: Array, block_record: Array | None) -> int:
@@ -208,7 +225,9 @@ class Run:
         lanes, double = state.shape
         self.compiled, self.method, self.period, self.state = compiled, method, period, state
         extra = np.zeros((lanes, double // 2)) if extra_force is None else extra_force
-        self.programs = compiled.programs(parameters)
+        # A lane has the terms of what it scales itself, whatever the others do.
+        self.kind = np.zeros(lanes, np.int64) if parameters is None else kinds_of(parameters, lanes)
+        programs = next(map(compiled.programs, np.unique(self.kind).tolist()))
         self.member = np.zeros(lanes, dtype=np.int64)
         self.scales = np.ones((lanes, 6)) if parameters is None else parameters.table(lanes)
         self.load = np.empty((lanes, double // 2))
@@ -217,13 +236,17 @@ class Run:
             lane_numbers = member.lanes
             self.member[lane_numbers] = number
             self.load[lane_numbers] = lane_load(
-                self.programs[number],
+                programs[number],
                 member.system,
                 extra[lane_numbers],
                 self.scales[lane_numbers, 5],
             )
         if parameters is not None:
             self.load = np.hstack((self.load, self.scales))
+
+    def programs(self, index: Index) -> tuple[Program, ...]:
+        """Programs of all members for lanes that are integrated together."""
+        return self.compiled.programs(int(np.bitwise_or.reduce(self.kind[index])))
 
     def march(
         self,
@@ -237,11 +260,12 @@ class Run:
         from tribodyn.dynamics._engine.marching import march_block
 
         index = block.index
-        program = self.programs[self.member[index[0]]]
+        programs = self.programs(index)
+        program = programs[self.member[index[0]]]
         rows: Array | LaneRows = program.rows
         width, double = state.shape
         if self.compiled.members and width > 1:
-            tables = [self.programs[number].rows for number in self.member[index]]
+            tables = [programs[number].rows for number in self.member[index]]
             rows = LaneRows.of(tables, int(program.code[2]))
         states = np.zeros((0, double, width)) if record is None else record
         sums = BlockMoments(statistics, block)
@@ -255,7 +279,7 @@ class Run:
         from tribodyn.dynamics._engine.marching import gather_record
 
         sums, index = BlockMoments(statistics, block), block.index
-        program = self.programs[self.member[index[0]]]
+        program = self.programs(index)[self.member[index[0]]]
         lanes = (0.0,) * index.size, program, self.period[index], self.load[index]
         gather_record(*lanes, record, cycles, sums.gathered)
         sums.put()

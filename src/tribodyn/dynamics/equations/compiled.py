@@ -48,18 +48,16 @@ class Compiled:
     step_number: float  #: ``omega_max * dt`` of the slowest mesh frequency [-]
     members: tuple[Member, ...] = ()  #: systems of the lanes where these differ
     parameters: LaneParameters | None = None  #: factors of the lanes for which the step was checked
-    _programs: dict[tuple[bool, bool], tuple[Program, ...]] = field(
+    _programs: dict[int, tuple[Program, ...]] = field(
         default_factory=dict, init=False, repr=False, compare=False
     )
 
-    def programs(self, parameters: LaneParameters | None = None) -> tuple[Program, ...]:
-        """Programs of all members, or of the one system, all with the same terms."""
-        scaled = parameters is not None and parameters.scales_contacts
-        split = parameters is not None and parameters.scales_friction
-        if not (scaled or split or self.members):
+    def programs(self, kind: int = 0) -> tuple[Program, ...]:
+        """Programs of all members, or of the one system, for lanes of a kind (``kinds_of``)."""
+        if not (kind or self.members):
             return (self.program,)
-        if (scaled, split) not in self._programs:
-            options: dict[str, Any] = {"scaled": scaled, "split": split}
+        if kind not in self._programs:
+            options: dict[str, Any] = {"scaled": bool(kind & 1), "split": bool(kind & 2)}
             pairs = [(member.system, member.nodes) for member in self.each(1)]
 
             def build(pattern: Mask | None) -> tuple[Program, ...]:
@@ -71,8 +69,8 @@ class Compiled:
             programs = build(None)
             if len(programs) > 1:
                 programs = build(np.any([program.pattern for program in programs], axis=0))
-            self._programs[scaled, split] = programs
-        return self._programs[scaled, split]
+            self._programs[kind] = programs
+        return self._programs[kind]
 
     def each(self, lanes: int) -> tuple[Member, ...]:
         """Members, or the one system as that of all lanes."""

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from tribodyn.errors import InputError, real_numbers
-from tribodyn.types import Array
+from tribodyn.types import Array, Index
 
 
 @dataclass(frozen=True)
@@ -94,12 +94,12 @@ class LaneParameters:
     @property
     def scales_contacts(self) -> bool:
         """Whether stiffness, damping or dead zone differ from those of the system."""
-        return any(np.any(np.asarray(getattr(self, name)) != 1.0) for name in _OF_CONTACTS)
+        return bool(np.any(kinds_of(self, self.count) & 1))
 
     @property
     def scales_friction(self) -> bool:
         """Whether friction differs from that of the system."""
-        return bool(np.any(np.asarray(self.friction_scale) != 1.0))
+        return bool(np.any(kinds_of(self, self.count) & 2))
 
     @property
     def count(self) -> int:
@@ -139,3 +139,10 @@ class LaneParameters:
 _NAMES = tuple(item.name for item in fields(LaneParameters))
 _NOT_NEGATIVE = ("stiffness_scale", "gap_scale")
 _OF_CONTACTS = ("stiffness_scale", "damping_scale", "gap_scale")
+
+
+def kinds_of(parameters: LaneParameters, lanes: int) -> Index:
+    """What each lane scales: 1 contacts (stiffness, damping, dead zone), 2 friction, 3 both."""
+    scaled = parameters.table(lanes) != 1.0
+    contacts = scaled[:, [_NAMES.index(name) for name in _OF_CONTACTS]].any(axis=1)
+    return np.asarray(contacts + 2 * scaled[:, _NAMES.index("friction_scale")])

@@ -14,7 +14,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from tribodyn.arrays.products import Allocator, times
+from tribodyn.arrays.products import Allocator, each_times, times
 from tribodyn.arrays.workspace import Memory, new_memory
 from tribodyn.dynamics.equations.entry import varies as depends_on_phase
 from tribodyn.dynamics.equations.grid import Grid, build_grid, system_events, unrepeated
@@ -349,4 +349,4 @@ def _flattened(
 def lane_load(program: Program, system: System, extra: Any, factor: Any = 1.0) -> Array:
     """Constant acceleration of each lane: the constant part of the load plus an extra force."""
     load = np.multiply.outer(np.asarray(factor, dtype=float), program.constant_load)
-    return np.asarray(load + np.asarray(extra, dtype=float) @ system.inverse_mass.T)
+    return np.asarray(load + each_times(np.asarray(extra, dtype=float), system.inverse_mass.T))

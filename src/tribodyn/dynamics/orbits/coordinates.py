@@ -63,7 +63,7 @@ class OrbitCoordinates:
         return _complement(self.moving.T @ self.elastic)
 
     @cached_property
-    def _reducing(self) -> Array:
+    def reducing(self) -> Array:
         """Matrix (2 n, e + v) that reduces a state; one per rate for several rates (..., 1, 1)."""
         (size, count), rate = self.elastic.shape, np.asarray(self.rate)
         matrix = np.zeros((*rate.shape[:-2], 2 * size, count + self.moving.shape[1]))
@@ -73,7 +73,7 @@ class OrbitCoordinates:
 
     def reduce(self, state: Array) -> Array:
         """State (..., 2 n) to reduced vector (..., e + v)."""
-        return np.asarray(state @ self._reducing)
+        return np.asarray(state @ self.reducing)
 
     def expand(self, reduced: Array) -> Array:
         """Reduced vector (..., e + v) to state (..., 2 n), with the free motions at rest."""
@@ -82,10 +82,16 @@ class OrbitCoordinates:
         v = reduced[..., count:] @ self.moving.T
         return np.concatenate((q @ self.inverse, v @ self.inverse), axis=-1)
 
-    def free_velocity(self, state: Array) -> Array:
-        """Velocity of the free motions, (..., r), in the mass metric."""
+    @cached_property
+    def resting(self) -> Array | None:
+        """Matrix (2 n, 2 n) that stops the free motions in a state; None where there are none."""
         size = self.lower.shape[0]
-        return np.asarray(state[..., size:] @ self.lower @ self.free)
+        if self.elastic.shape[1] == self.moving.shape[1] == size:
+            return None
+        matrix = np.zeros((2 * size, 2 * size))
+        for part, basis in ((slice(size), self.elastic), (slice(size, None), self.moving)):
+            matrix[part, part] = self.lower @ basis @ basis.T @ self.inverse
+        return matrix
 
 
 def orbit_coordinates(compiled: Compiled, mesh_frequency: float) -> OrbitCoordinates:

@@ -12,6 +12,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from tribodyn.arrays.products import each_times
 from tribodyn.dynamics._engine.blocks import WIDTH, march
 from tribodyn.dynamics.equations.compiled import Compiled
 from tribodyn.dynamics.equations.system import System
@@ -40,6 +41,7 @@ class Balance(NamedTuple):
     direction: Array  #: the free motion that it drives
     force: Array  #: force for a gain of 1 m/s in 1 s [N or N*m]
     strength: float
+    momentum: Array  #: mass times the free motion (n, 1)
 
     @classmethod
     def of(cls, system: System, coordinates: OrbitCoordinates) -> Balance | None:
@@ -53,7 +55,13 @@ class Balance(NamedTuple):
             what = "balance does not drive any free motion"
             why = "The structure supports the drive, so no torque needs balancing"
             raise InputError(what, "System.balance", why, "Leave balance out")
-        return cls(push / strength, force / strength, strength)
+        direction = push / strength
+        momentum = coordinates.lower @ coordinates.free @ direction[:, None]
+        return cls(direction, force / strength, strength, momentum)
+
+    def gain(self, states: Array) -> Array:
+        """Velocity of the free motion in states (..., 2 n), in the mass metric."""
+        return each_times(states[..., len(self.momentum) :], self.momentum)[..., 0]
 
     def torque(self, gain: Array, span: Array) -> Array:
         """Force (lanes, n) that makes a gain (lanes,) [m/s] in a time (lanes,) [s]."""
@@ -68,7 +76,7 @@ def image_of(
     if balance is None:
         return reduced
     # The torque has to compensate what the free motion gained over the period.
-    gained = coordinates.free_velocity(state) @ balance.direction
+    gained = balance.gain(state)
     return np.concatenate((reduced, points[..., -1:] - gained[..., None]), axis=-1)
 
 

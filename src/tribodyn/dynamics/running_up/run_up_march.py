@@ -136,7 +136,7 @@ class CycleMarcher:
         load = self.inertia * change
         extra = self.torque + load
         if self.balance is not None:
-            direction, force, _ = self.balance
+            direction, force, *_ = self.balance
             extra = extra - (self.up @ load) @ direction * force
         moments, lane = self._fresh.copy(), state[None, :].copy()
         load = (program.constant_load + extra @ self.inverse.T)[None, :]
@@ -165,7 +165,7 @@ class CycleMarcher:
             )
         new = lane[0]
         if self.balance is not None:
-            direction, force, _ = self.balance
+            direction, force, *_ = self.balance
             gained = float(((new - state)[self.size :] @ self.down) @ direction)
             self.count += 1
             part = max(_SERVO, 1.0 / self.count)
