@@ -9,7 +9,7 @@ from os import PathLike
 
 from tribodyn.errors import InputError
 from tribodyn.exchange.flank_forms import forms_of
-from tribodyn.exchange.rexs_file import Component, RexsFile, kinds, read_file
+from tribodyn.exchange.rexs_file import Component, RexsFile, kinds, read_file, version_remark
 from tribodyn.gear.curves import involute
 from tribodyn.record import html_table
 
@@ -173,7 +173,7 @@ class GearboxModel:
         self.file, self.path = file, path
         self.version, self.application = file.version, file.application
         self.components = kinds(file.components.values())
-        self.remarks: list[str] = []
+        self.remarks = [remark] if (remark := version_remark(file)) else []
         self.stages = [self._stage(component) for component in file.of_kind("cylindrical_stage")]
         self.loads = [self._load(number) for number in sorted(file.load_cases)] or [self._load(0)]
         self._remark_on_rest()
@@ -483,6 +483,7 @@ def read_rexs(path: str | PathLike[str]) -> GearboxModel:
     InputError
         If the file is not a REXS model, is damaged, or a stage lacks data of its gears.
 
-    Supports REXS 1.0 to 1.6. Source: rexs.info, model of REXS 1.4.
+    Supports REXS 1.0 to 1.6. Of another version a remark says that, and lists the attributes of
+    gears, tools, shafts and bearings that are not read. Source: rexs.info, model of REXS 1.4.
     """
     return GearboxModel(read_file(path), str(path))

@@ -179,7 +179,7 @@ def bearing_tables(
             add_remark(model, f"{bearing} is left out: the file has no position of it")
             continue
         table: dict[str, Any] = {"shaft": axis.name, "position": axis.position(coordinate)}
-        rolling, reason = _rolling(bearing, axis), ""
+        rolling, reason = _rolling(bearing, axis)
         if not rolling:
             rolling, reason = _support(bearing)
         if len(sides) > 1:
@@ -203,15 +203,16 @@ def _sides(model: GearboxModel, bearing: Component, axes: dict[int, Axis]) -> di
     return {"inner": shaft} if shaft in axes else {}
 
 
-def _rolling(bearing: Component, axis: Axis) -> dict[str, Any]:
-    """Type and dimensions of a rolling bearing; empty where the file has none of them."""
+def _rolling(bearing: Component, axis: Axis) -> tuple[dict[str, Any], str]:
+    """Type and dimensions of a rolling bearing, and a note; empty where the file has none."""
     kind = bearing.text("bearing_type")
     matches = [t for word, t in _TYPES.items() if word in kind and not kind.startswith("axial")]
     bore, outer = (bearing.number(f"{side}_diameter", "m") for side in ("inner", "outer"))
     rows = bearing.number("number_of_bearing_rows", "") or 1.0
     if not matches or not bore or not outer or rows > 1.0:
-        return {}
+        return {}, ""
     name, element = matches[0]
+    absorption, note = bearing.text("axial_force_absorption"), ""
     table: dict[str, Any] = {"type": name, "bore_diameter": bore, "outer_diameter": outer}
     values = {
         "width": bearing.number("width", "m"),
@@ -220,7 +221,7 @@ def _rolling(bearing: Component, axis: Axis) -> dict[str, Any]:
     if element == "roller":
         values["roller_length"] = bearing.number("length_of_rolling_element", "m")
         if not values["width"] and not values["roller_length"]:
-            return {}
+            return {}, ""
     if count := bearing.number("number_of_rolling_elements", ""):
         values[f"{element}s"] = int(count)
     if name in ("angular-contact", "tapered-roller"):
@@ -229,11 +230,14 @@ def _rolling(bearing: Component, axis: Axis) -> dict[str, Any]:
         values["contact_angle"] = bearing.number("contact_angle", "rad") or (
             angle if name == "tapered-roller" else None
         )
-        if not values["contact_angle"]:
-            return {}
-        negative = bearing.text("axial_force_absorption") == "negative"
-        table["direction"] = -axis.sense if negative else axis.sense
-    return table | {key: value for key, value in values.items() if value}
+        if not values["contact_angle"] or absorption == "no_direction":
+            return {}, ""  # without axial force it carries no radial one
+        table["direction"] = -axis.sense if absorption == "negative" else axis.sense
+    elif absorption == "no_direction" and element == "ball":
+        table["floating"] = True
+    elif absorption in ("positive", "negative") and element == "ball":
+        note = f"it takes axial forces of both directions, in the file of the {absorption} one"
+    return table | {key: value for key, value in values.items() if value}, note
 
 
 def _support(bearing: Component) -> tuple[dict[str, Any], str]:

@@ -34,6 +34,29 @@ _UNITS = {
     "N/(mmmum)": "N/mm/um",
     "kgm^2": "kg*m^2",
 }
+#: Names of attributes in REXS 2.0.0 that had another one before.
+_RENAMED = {
+    "arithmetic_mean_roughness_flank_iso_4287_1997": "arithmetic_average_roughness_flank",
+    "tip_corner_radius_factor_reference_profile": "tip_radius_factor",
+}
+#: Versions whose attributes are known; the first ones have other spellings, too.
+VERSIONS = ("1.0", "1.1", "1.2", "1.3", "1.4", "1.5", "1.6", "0.10", "0.90", "1.00", "1.10")
+#: Attributes of gears, tools, shafts and bearings that are read or say nothing of their shape.
+_NAMES = """
+    addendum_coefficient_reference_profile addendum_modification_coefficient
+    arithmetic_average_roughness_flank axial_force_absorption axial_stiffness bearing_type
+    bending_stiffness catalogue_designation catalogue_value_e center_distance contact_angle
+    diameter_of_rolling_element display_color face_width helix_angle_reference_diameter
+    inner_diameter inner_diameter_begin inner_diameter_end length length_of_rolling_element name
+    normal_module normal_pressure_angle number_of_bearing_rows number_of_rolling_elements
+    number_of_teeth outer_diameter outer_diameter_begin outer_diameter_end radial_force_absorption
+    radial_stiffness rotational_speed support_vector tip_diameter tip_radius_factor
+    u_axis_vector u_coordinate_on_shaft u_coordinate_on_shaft_inner_side
+    u_coordinate_on_shaft_outer_side w_axis_vector width
+    """
+_READ = frozenset(_NAMES.split())
+#: Words in the kinds of these components, and most names of one kind in a remark.
+_PARTS, _MOST_NAMES = ("gear", "flank", "tool", "shaft", "bearing", "cylindrical_stage"), 20
 _REMEDY = "Export it again from the program that wrote it"
 #: Largest number of components of one model: real gearboxes have some hundred.
 _MOST = 100_000
@@ -122,6 +145,16 @@ class RexsFile:
         for relation in self.relations:
             if relation.kind == kind and all(relation.of(r) == n for r, n in roles.items()):
                 yield relation
+
+    def unread(self) -> dict[str, list[str]]:
+        """Names of attributes with a value that are not read, by kind of gear, shaft or bearing."""
+        names: dict[str, dict[str, None]] = {}
+        for part in self.components.values():
+            if any(word in part.kind for word in _PARTS):
+                own = (name for name, value in part.values.items() if value.content is not None)
+                listed = [n for n in own if n not in _READ and not n.startswith("custom_")]
+                names.setdefault(part.kind, {}).update(dict.fromkeys(listed))
+        return {kind: list(each) for kind, each in sorted(names.items()) if each}
 
     def of_kind(self, *kinds: str) -> list[Component]:
         """Components of some kinds, in the order of their numbers."""
@@ -288,7 +321,9 @@ def _components(items: Any, place: str) -> dict[int, Component]:
         if number in components:
             raise InputError(f"two components have the number {number}", place, "", _REMEDY)
         values = {
-            str(a.get("id", "")): Value(_content(a), str(a.get("unit", "")))
+            _RENAMED.get(str(a.get("id")), str(a.get("id", ""))): Value(
+                _content(a), str(a.get("unit", ""))
+            )
             for a in _dicts(item, "attributes", place)
         }
         components[number] = Component(
@@ -334,6 +369,22 @@ def _content(attribute: dict[str, Any]) -> float | bool | str | tuple[float, ...
         return float(content)
     except (ValueError, OverflowError):
         return str(content)
+
+
+def version_remark(file: RexsFile) -> str:
+    """Remark on a version that is not known, with what is not read of it; empty if it is known."""
+    if file.version in VERSIONS:
+        return ""
+    lost = [
+        f"{kind}: {', '.join(names[:_MOST_NAMES])}"
+        + (f" and {len(names) - _MOST_NAMES} more" if len(names) > _MOST_NAMES else "")
+        for kind, names in file.unread().items()
+    ]
+    name = f"version {file.version}" if file.version else "a version that the file does not name"
+    return (
+        f"REXS {name} is read by the names of attributes in versions 1.0 to 1.6 and those that "
+        f"2.0.0 renamed; not read are, of {'; of '.join(lost) or 'gears, shafts, bearings: none'}"
+    )
 
 
 def kinds(components: Iterable[Component]) -> dict[str, int]:

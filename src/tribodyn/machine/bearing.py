@@ -73,6 +73,9 @@ class Bearing:
     clearance : float
         Radial distance that the shaft can move from the middle before a linear bearing with equal
         stiffnesses along y and z holds it, half of the diametral clearance [m].
+    floating : bool
+        Whether its ring slides along its seat, so that it takes no axial force, as the floating
+        (non-locating) bearing of a shaft.
     unloaded : Bearing, optional
         Bearing with clearance whose stiffness at its working load this one has.
 
@@ -111,6 +114,7 @@ class Bearing:
     offset: ArrayLike = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
     clearance: float = 0.0
     unloaded: Bearing | None = None
+    floating: bool = False
 
     def __post_init__(self) -> None:
         check_name(self, "shaft")
@@ -143,6 +147,8 @@ class Bearing:
         check_number(self, "clearance", "m", 0.0, 0.01)
         if self.clearance:
             _check_clearance(self)
+        if self.floating:
+            _check_floating(self)
         shift = real_numbers(Argument("Bearing.offset"), self.offset)
         if shift.shape != (6,) or not np.all(np.abs(shift) < 0.1):
             what, why = f"offset = {shift.tolist()}", "Wanted: six numbers in m and rad below 0.1"
@@ -174,6 +180,11 @@ class Bearing:
         return np.ndim(self.radial_stiffness or 0.0) == 0 and self.radial_stiffness == 0.0
 
     @property
+    def takes_axial_force(self) -> bool:
+        """Whether a rolling bearing holds the shaft along its axis, in one direction at least."""
+        return self.rolling is not None and self.rolling.takes_axial_force and not self.floating
+
+    @property
     def rest_load(self) -> Array:
         """Force and moment of the shaft on a linear bearing without a displacement (6,)."""
         return np.asarray(np.asarray(self.force) - self.stiffness_matrix @ np.asarray(self.offset))
@@ -182,14 +193,14 @@ class Bearing:
     def stiffness_matrix(self) -> Array:
         """Stiffness of a linear bearing (6, 6); zero for a rolling bearing, which needs a load."""
         if self.is_default:
-            return np.diag([STIFF, STIFF, STIFF, 0.0, 0.0, 0.0])
+            return np.diag([0.0 if self.floating else STIFF, STIFF, STIFF, 0.0, 0.0, 0.0])
         return _assembled(self, "stiffness")
 
     @property
     def held(self) -> Array:
         """Projection (6, 6) on the displacements that it resists, however stiff it is."""
         if self.rolling is not None:
-            return np.diag([float(self.rolling.takes_axial_force), 1.0, 1.0, 0.0, 0.0, 0.0])
+            return np.diag([float(self.takes_axial_force), 1.0, 1.0, 0.0, 0.0, 0.0])
         values, vectors = np.linalg.eigh(self.stiffness_matrix)
         stiff = vectors[:, values > _FREE * values.max(initial=0.0)]
         return np.asarray(stiff @ stiff.T)
@@ -227,6 +238,18 @@ def _check_clearance(bearing: Bearing) -> None:
     if not radial[0] == radial[1] > 0.0:
         why = f"Beyond it the radial stiffness is {radial[0]:.4g} and {radial[1]:.4g} N/m"
         raise InputError(what, where, why, "Give one radial_stiffness above 0")
+
+
+def _check_floating(bearing: Bearing) -> None:
+    """Refuse a floating bearing that is stiff along the shaft, or only carries with axial force."""
+    where, what = Argument("Bearing.floating"), "floating = true"
+    if getattr(bearing.rolling, "contact_angle", 0.0):
+        why = "A bearing with a contact angle carries radial forces only with an axial one"
+        remedy = "Give another type, or a pair that is preloaded"
+        raise InputError(what, where, why, remedy)
+    if bearing.rolling is None and bearing.stiffness_matrix[0].any():
+        why = "It takes no axial force, and its stiffness along the shaft is not zero"
+        raise InputError(what, where, why, "Leave out axial_stiffness, or floating")
 
 
 def _matrix(name: str, value: ArrayLike) -> Array:

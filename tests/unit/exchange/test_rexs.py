@@ -14,6 +14,7 @@ import pytest
 import tribodyn as td
 from tribodyn.errors import InputError
 from tribodyn.exchange import case_from_rexs, read_rexs, write_rexs
+from tribodyn.exchange.write import WHOLE_CASE
 from tribodyn.gear import zero_backlash_center_distance
 from tribodyn.lubricant import Lubricant
 
@@ -416,3 +417,43 @@ def test_units_are_those_that_the_file_names(tree, tmp_path) -> None:
     entry["unit"] = "N m"
     with pytest.raises(InputError, match=r'cylindrical_stage 19 .*"N m"'):
         read_rexs(stored(tree, tmp_path))
+
+
+def test_names_and_units_of_later_versions_give_the_same_case(tmp_path: Path) -> None:
+    """REXS 2.0.0 renames the roughness and the tool's tip radius, and has the modulus in MPa."""
+    case = td.load_case("fzg-film").replace({"gears.rack_tip_radius_coefficient": 0.3})
+    for gear in ("pinion", "wheel"):
+        keys = {f"gears.{gear}.roughness_rms": None, f"gears.{gear}.roughness_ra": 0.7e-6}
+        case = case.replace(keys)
+    path = tmp_path / "first.rexsj"
+    write_rexs(case, path)
+    tree = json.loads(path.read_text(encoding="utf-8"))
+    for component in tree["model"]["components"]:
+        attributes = component["attributes"]
+        component["attributes"] = [a for a in attributes if a["id"] != WHOLE_CASE]
+    before = case_from_rexs(read_rexs(stored(tree, tmp_path)))
+    assert not [r for r in read_rexs(tmp_path / "model.rexsj").remarks if "version" in r]
+    new_names = {
+        "arithmetic_average_roughness_flank": "arithmetic_mean_roughness_flank_iso_4287_1997",
+        "tip_radius_factor": "tip_corner_radius_factor_reference_profile",
+    }
+    for component in tree["model"]["components"]:
+        for attribute in component["attributes"]:
+            attribute["id"] = new_names.get(attribute["id"], attribute["id"])
+            if attribute["id"] == "elastic_modulus":
+                attribute["unit"] = "MPa"
+        if component["type"] == "rack_shaped_tool":
+            new = {"id": "protuberance_amount", "unit": "mm", "floating_point": 0.1}
+            component["attributes"].append(new)
+    for version in ("2.0.0", "1.7", "3.1"):
+        tree["model"]["version"] = version
+        model = read_rexs(stored(tree, tmp_path))
+        after = case_from_rexs(model)
+        same = dict(before.values()) | {"origin": after.origin}
+        assert dict(after.values()) == same
+        assert after.gears.rack_tip_radius_coefficient == pytest.approx(0.3)
+        assert after.gears.pinion.roughness_ra == pytest.approx(0.7e-6)
+        remark = model.remarks[0]
+        assert remark.startswith(f"REXS version {version} is read by the names of attributes in")
+        assert "of rack_shaped_tool: " in remark
+        assert "protuberance_amount" in remark

@@ -14,7 +14,7 @@ import tribodyn as td
 from tribodyn.errors import InputError
 from tribodyn.exchange import machine_from_rexs, read_rexs, write_rexs
 from tribodyn.gear import zero_backlash_center_distance
-from tribodyn.machine import DeepGrooveBallBearing, TaperedRollerBearing
+from tribodyn.machine import DeepGrooveBallBearing, TaperedRollerBearing, static_balance
 from tribodyn.study import MachineCase
 from tribodyn.study.machine.read import read_any_case
 
@@ -250,6 +250,29 @@ def test_bearings_with_dimensions_are_rolling_bearings(tree, tmp_path) -> None:
                "bearings.bearing_38.width": 0.026}  # fmt: skip
     bearing = helical(**changes).bearings["bearing_38"]
     assert bearing.rolling.bore_diameter == 0.08
+
+
+def test_a_floating_bearing_of_the_file_takes_no_axial_force(tree, tmp_path) -> None:
+    for number in (33, 36):
+        add(tree, number, inner_diameter=50.0, outer_diameter=90.0, width=20.0)
+        add(tree, number, "", bearing_type="radial_grooved_ball_bearing")
+    loads = {}
+    for floating in ("both_directions", "no_direction"):
+        add(tree, 36, "", axial_force_absorption=floating)
+        case = machine_from_rexs(read_rexs(stored(tree, tmp_path)), changes=STIFF)
+        balance = static_balance(case.machine())
+        loads[floating] = [balance.bearings[f"bearing_{n}"].load[0] for n in (33, 36)]
+    assert case.bearings["bearing_36"].floating
+    assert not case.bearings["bearing_33"].floating
+    total = sum(loads["both_directions"])
+    assert min(map(abs, loads["both_directions"])) > 0.01 * abs(total)
+    assert loads["no_direction"] == pytest.approx([total, 0.0], abs=1e-6 * abs(total))
+    add(tree, 36, "", axial_force_absorption="positive")
+    case = machine_from_rexs(read_rexs(stored(tree, tmp_path)), changes=STIFF)
+    reason = next(a.reason for a in case.assumptions if a.key == "bearings.bearing_36")
+    assert reason.endswith(
+        "it takes axial forces of both directions, in the file of the positive one"
+    )
 
 
 def test_tables_in_python_hold_lists_of_numbers_and_of_names() -> None:

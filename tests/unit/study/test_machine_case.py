@@ -5,6 +5,7 @@ import pytest
 
 from tribodyn import load_case
 from tribodyn.errors import InputError
+from tribodyn.machine import Bearing
 from tribodyn.study.machine.case import MachineCase
 from tribodyn.study.machine.read import read_any_case
 
@@ -154,3 +155,29 @@ def test_a_case_from_python_takes_numbers_in_si():
     again = read_any_case(case.to_toml(), "again.toml")
     assert again.to_toml() == case.to_toml()
     assert again.load_cases[0].torque == 25.0
+
+
+def test_floating_bearings_of_a_case_file(reducer):
+    def message(**values):
+        with pytest.raises(InputError) as error:
+            reducer.replace({f"bearings.A.{name}": value for name, value in values.items()})
+        return str(error.value)
+
+    spring = {"type": None, "bore_diameter": None, "outer_diameter": None, "width": None}
+    refused = message(**spring, balls=None, floating=True, axial_stiffness="1e8 N/m")
+    assert "bearings.A.floating: floating = true. It takes no axial force" in refused
+    angular = {"type": "angular-contact", "bore_diameter": "40 mm", "outer_diameter": "80 mm"}
+    angular |= dict.fromkeys(("radial_stiffness", "axial_stiffness", "radial_damping"))
+    geometry = {**angular, "width": "18 mm", "contact_angle": "25 deg"}
+    assert "bearings.A.floating: floating = true. A bearing with a contact" in message(
+        **geometry, floating=True
+    )
+    geometry |= {"type": "deep-groove", "contact_angle": None}
+    floating = reducer.replace(
+        {f"bearings.A.{k}": v for k, v in {**geometry, "floating": True}.items()}
+    )
+    assert floating.bearings["A"].floating
+    assert not floating.bearings["A"].takes_axial_force
+    assert read_any_case(floating.to_toml(), "again.toml").bearings["A"].floating
+    stiff = Bearing("in", 0.0, floating=True)
+    assert stiff.stiffness_matrix.diagonal().tolist() == [0.0, 1e9, 1e9, 0.0, 0.0, 0.0]

@@ -421,12 +421,15 @@ def _balance(
     bearings = {}
     for name, (load, stiffness) in forces.bearings.items():
         moved = model.bearings[name] @ displacement
-        rolling = model.machine.bearings[name].rolling
+        part = model.machine.bearings[name]
+        rolling = part.rolling
         if rolling is not None:
             _check_direction(name, rolling, load, rounding)
         with collected() as warnings:
-            seat = np.asarray(model.machine.bearings[name].offset)
-            state = rolling.state((moved - seat)[list(HELD)]) if rolling else None
+            state = None
+            if rolling is not None:
+                position = (moved - np.asarray(part.offset))[list(HELD)]
+                state = rolling.state(rolling.seated(position) if part.floating else position)
         for warning in warnings:
             warn(warning.code, f'bearing "{name}": {warning.message}')
         bearings[name] = BearingBalance(moved, load, stiffness, state)

@@ -112,9 +112,8 @@ class StaticModel:
             matrix = part.stiffness_matrix
             return matrix @ displacement, matrix
         load, matrix = np.zeros(6), np.zeros((6, 6))
-        _, load[list(HELD)], matrix[np.ix_(HELD, HELD)] = part.rolling.response(
-            displacement[list(HELD)]
-        )
+        response = part.rolling.floating_response if part.floating else part.rolling.response
+        _, load[list(HELD)], matrix[np.ix_(HELD, HELD)] = response(displacement[list(HELD)])
         return load, matrix
 
 
@@ -122,5 +121,5 @@ def _as_spring(bearing: Bearing) -> Bearing:
     """Stand-in for a rolling bearing that holds what it can hold under some load."""
     if bearing.rolling is None:
         return replace(bearing, clearance=0.0)
-    holds = np.diag([float(bearing.rolling.takes_axial_force), 1.0, 1.0, 1.0, 1.0])
+    holds = np.diag([float(bearing.takes_axial_force), 1.0, 1.0, 1.0, 1.0])
     return replace(bearing, rolling=None, stiffness=holds)

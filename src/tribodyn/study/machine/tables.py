@@ -7,7 +7,7 @@ from collections.abc import Mapping
 from typing import Any
 
 from tribodyn.machine import STEEL
-from tribodyn.model import REQUIRED, choice, file_path, integer, number, numbers, text
+from tribodyn.model import REQUIRED, choice, file_path, flag, integer, number, numbers, text
 from tribodyn.study.case import gears
 from tribodyn.study.case.section import Section
 from tribodyn.study.case.sections import Dynamics, MaterialData
@@ -82,6 +82,11 @@ class BearingTable(Section):
     )
     clearance: float = _clearance(
         "radial distance that the shaft can move before it is held; half of the diametral clearance"
+    )
+    floating: bool = flag(
+        False,
+        meaning="whether its ring slides along its seat and takes no axial force; of a rolling "
+        "bearing without contact angle, the other one of the shaft locates it",
     )
     node: str | None = text(None, meaning="node of the housing that carries it", example='"seat A"')
 
