@@ -73,11 +73,11 @@ class Bearing:
     clearance : float
         Radial distance that the shaft can move from the middle before a linear bearing with equal
         stiffnesses along y and z holds it, half of the diametral clearance [m].
+    unloaded : Bearing, optional
+        Bearing with clearance whose stiffness at its working load this one has.
     floating : bool
         Whether its ring slides along its seat, so that it takes no axial force, as the floating
         (non-locating) bearing of a shaft.
-    unloaded : Bearing, optional
-        Bearing with clearance whose stiffness at its working load this one has.
 
     Raises
     ------
@@ -180,11 +180,6 @@ class Bearing:
         return np.ndim(self.radial_stiffness or 0.0) == 0 and self.radial_stiffness == 0.0
 
     @property
-    def takes_axial_force(self) -> bool:
-        """Whether a rolling bearing holds the shaft along its axis, in one direction at least."""
-        return self.rolling is not None and self.rolling.takes_axial_force and not self.floating
-
-    @property
     def rest_load(self) -> Array:
         """Force and moment of the shaft on a linear bearing without a displacement (6,)."""
         return np.asarray(np.asarray(self.force) - self.stiffness_matrix @ np.asarray(self.offset))
@@ -197,18 +192,24 @@ class Bearing:
         return _assembled(self, "stiffness")
 
     @property
-    def held(self) -> Array:
-        """Projection (6, 6) on the displacements that it resists, however stiff it is."""
-        if self.rolling is not None:
-            return np.diag([float(self.takes_axial_force), 1.0, 1.0, 0.0, 0.0, 0.0])
-        values, vectors = np.linalg.eigh(self.stiffness_matrix)
-        stiff = vectors[:, values > _FREE * values.max(initial=0.0)]
-        return np.asarray(stiff @ stiff.T)
-
-    @property
     def damping_matrix(self) -> Array:
         """Damping (6, 6)."""
         return _assembled(self, "damping")
+
+
+def takes_axial_force(bearing: Bearing) -> bool:
+    """Whether a rolling bearing holds the shaft along its axis, in one direction at least."""
+    rolling = bearing.rolling
+    return rolling is not None and rolling.takes_axial_force and not bearing.floating
+
+
+def held_by(bearing: Bearing) -> Array:
+    """Projection (6, 6) on the displacements that a bearing resists, however stiff it is."""
+    if bearing.rolling is not None:
+        return np.diag([float(takes_axial_force(bearing)), 1.0, 1.0, 0.0, 0.0, 0.0])
+    values, vectors = np.linalg.eigh(bearing.stiffness_matrix)
+    stiff = vectors[:, values > _FREE * values.max(initial=0.0)]
+    return np.asarray(stiff @ stiff.T)
 
 
 def _check_pair(bearing: Bearing, name: str, unit: str, size: int) -> None:

@@ -12,6 +12,7 @@ from numpy.typing import ArrayLike
 
 from tribodyn.errors import InputError
 from tribodyn.machine.beam import carried_along
+from tribodyn.machine.bearing import held_by
 from tribodyn.machine.fields import check_number
 from tribodyn.machine.graph.bodies import GearBody
 from tribodyn.machine.graph.placement import pin_lever
@@ -452,9 +453,8 @@ class MachineStructure:
     def _all_names(self) -> list[str]:
         names = []
         for shaft, matrices in self.shafts.items():
-            rigid = not matrices.shaft.sections
             for node in matrices.nodes:
-                place = shaft if rigid else f"{shaft}@{1e3 * node:.6g}mm"
+                place = f"{shaft}@{1e3 * node:.6g}mm" if matrices.shaft.sections else shaft
                 names += [f"{place}_{axis}" for axis in AXES]
         housing = self.machine.housing
         return names if housing is None else [*names, *housing.names]
@@ -481,7 +481,7 @@ class MachineStructure:
             elif bearing.shaft != shaft:
                 continue
             floats |= bearing.floats
-            total += arm.T @ bearing.held @ arm
+            total += arm.T @ held_by(bearing) @ arm
         size = np.sqrt(np.diag(total))
         moving = size > 1e-9 * size.max(initial=0.0)
         tilt = [i for i in (1, 2, 4, 5) if moving[i]]

@@ -26,6 +26,7 @@ from tribodyn.machine import (
     machine_structure,
     static_balance,
 )
+from tribodyn.machine.bearing import held_by
 
 Parts = dict[str, Any]
 
@@ -223,7 +224,7 @@ def test_a_rolling_bearing_and_a_spring_hold_a_shaft(stiffness: float) -> None:
     Machine(**parts)
     parts["bearings"].pop("input middle")
     machine = Machine(**parts)
-    held = [bearing.held for bearing in machine.bearings.values() if bearing.shaft == "input"]
+    held = [held_by(bearing) for bearing in machine.bearings.values() if bearing.shaft == "input"]
     np.testing.assert_allclose(held, [np.diag([1, 1, 1, 0, 0, 0]), np.diag([0, 1, 1, 0, 0, 0])])
     put("bearings", "input right", radial_stiffness=(0.0, stiffness))(parts)
     with pytest.raises(InputError, match="at 20 mm, 280 mm, do not hold the shaft"):

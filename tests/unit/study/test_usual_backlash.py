@@ -8,6 +8,7 @@ from tribodyn.errors import ComputationError, InputError
 from tribodyn.gear import FlankModification, cylindrical_pair
 from tribodyn.gear.flank_gap import least_gap
 from tribodyn.study.case.provenance import assumptions
+from tribodyn.study.case.to_models import has_usual_backlash
 from tribodyn.study.machine.read import read_any_case
 from tribodyn.study.machine.run import balanced_machine, rehearse_machine, run_machine
 from tribodyn.study.pipeline.run import prepare_run, rehearse
@@ -78,7 +79,7 @@ def test_least_gap_of_shapes_is_that_of_closed_forms():
 def test_a_pair_that_touches_early_has_a_usual_backlash(key):
     case = td.load_case("helical-pair").replace({"stiffness.model": "fe2d"})
     assert case.backlash < 1e-6
-    assert not case.has_usual_backlash
+    assert not has_usual_backlash(case)
     early = case.replace({key: 20e-6})
     assert early.backlash == pytest.approx(0.1e-3)
     row = next(each for each in assumptions(early) if each.key == "dynamics.backlash")

@@ -9,7 +9,7 @@ import numpy as np
 
 from tribodyn.errors import Problem
 from tribodyn.machine.beam import carried_along
-from tribodyn.machine.bearing import Bearing
+from tribodyn.machine.bearing import Bearing, held_by
 from tribodyn.machine.fields import display
 from tribodyn.machine.gear import Gear
 from tribodyn.machine.graph.shaft_graph import ShaftGraph
@@ -90,7 +90,7 @@ def support_problems(
             yield Problem("the shaft has no bearing", where, why, remedy)
             continue
         arms = [(bearing, carried_along(bearing.position)) for bearing in supports]
-        held = sum((arm.T @ bearing.held @ arm for bearing, arm in arms), np.zeros((6, 6)))
+        held = sum((arm.T @ held_by(bearing) @ arm for bearing, arm in arms), np.zeros((6, 6)))
         lateral = held[np.ix_([1, 2, 4, 5], [1, 2, 4, 5])]
         length = np.array([1.0, 1.0, shaft.length, shaft.length])
         scaled = lateral / np.outer(length, length)

@@ -290,32 +290,6 @@ class RollingElementBearing(ABC):
         stiffness = np.einsum("eij,eik,ekl->jl", rows, law.stiffness, rows)
         return float(law.energy.sum()), load, 0.5 * (stiffness + stiffness.T)
 
-    def seated(self, displacement: Array) -> Array:
-        """Displacement (5,) of the ring of a floating bearing, which slides to no axial force."""
-        from scipy.optimize import brentq
-
-        position = displacement.copy()
-
-        def force(axial: float) -> float:
-            position[0] = axial
-            return float(self.response(position)[1][0])
-
-        first, reach = force(0.0), 1e-4 * self.element_diameter
-        # Contacts only press: the axial force rises with the axial displacement.
-        while first * force(-np.copysign(reach, first)) > 0.0 and reach < self.element_diameter:
-            reach *= 2.0
-        end = -np.copysign(reach, first)
-        position[0] = brentq(force, 0.0, end, xtol=1e-18, rtol=1e-14) if first else 0.0
-        return position
-
-    def floating_response(self, displacement: Array) -> tuple[float, Array, Array]:
-        """Return the response of a floating bearing, which has no axial force and stiffness."""
-        energy, load, stiffness = self.response(self.seated(displacement))
-        if (axial := stiffness[0, 0]) > 0.0:
-            stiffness = stiffness - np.outer(stiffness[0], stiffness[0]) / axial
-        load[0], stiffness[0], stiffness[:, 0] = 0.0, 0.0, 0.0
-        return energy, load, stiffness
-
     def load(self, displacement: ArrayLike) -> Array:
         """Force and moment that hold the inner ring at a displacement.
 

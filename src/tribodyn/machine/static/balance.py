@@ -421,15 +421,11 @@ def _balance(
     bearings = {}
     for name, (load, stiffness) in forces.bearings.items():
         moved = model.bearings[name] @ displacement
-        part = model.machine.bearings[name]
-        rolling = part.rolling
+        rolling = model.machine.bearings[name].rolling
         if rolling is not None:
             _check_direction(name, rolling, load, rounding)
         with collected() as warnings:
-            state = None
-            if rolling is not None:
-                position = (moved - np.asarray(part.offset))[list(HELD)]
-                state = rolling.state(rolling.seated(position) if part.floating else position)
+            state = model.ring_state(name, moved)
         for warning in warnings:
             warn(warning.code, f'bearing "{name}": {warning.message}')
         bearings[name] = BearingBalance(moved, load, stiffness, state)

@@ -11,12 +11,14 @@ from numpy.typing import ArrayLike
 
 from tribodyn.errors import ComputationError, InputError
 from tribodyn.gear import Misalignment
-from tribodyn.machine.bearing import HELD, Bearing
+from tribodyn.machine.bearing import HELD, Bearing, takes_axial_force
 from tribodyn.machine.graph.kinematics import mean_stiffness
 from tribodyn.machine.machine import Machine
 from tribodyn.machine.mesh import mean_over_phase
 from tribodyn.machine.plane_law import mean_in_space
+from tribodyn.machine.rolling.element_ring import BearingState
 from tribodyn.machine.static.clearance import clearance_load
+from tribodyn.machine.static.floating import floating_response, seated
 from tribodyn.machine.structure import MachineStructure
 from tribodyn.types import Array
 
@@ -112,14 +114,23 @@ class StaticModel:
             matrix = part.stiffness_matrix
             return matrix @ displacement, matrix
         load, matrix = np.zeros(6), np.zeros((6, 6))
-        response = part.rolling.floating_response if part.floating else part.rolling.response
-        _, load[list(HELD)], matrix[np.ix_(HELD, HELD)] = response(displacement[list(HELD)])
+        ring, moved = part.rolling, displacement[list(HELD)]
+        response = floating_response(ring, moved) if part.floating else ring.response(moved)
+        _, load[list(HELD)], matrix[np.ix_(HELD, HELD)] = response
         return load, matrix
+
+    def ring_state(self, name: str, displacement: Array) -> BearingState | None:
+        """Loads and pressures of the rolling elements of a bearing; None of a linear one."""
+        part = self.machine.bearings[name]
+        if part.rolling is None:
+            return None
+        moved = (displacement - np.asarray(part.offset))[list(HELD)]
+        return part.rolling.state(seated(part.rolling, moved) if part.floating else moved)
 
 
 def _as_spring(bearing: Bearing) -> Bearing:
     """Stand-in for a rolling bearing that holds what it can hold under some load."""
     if bearing.rolling is None:
         return replace(bearing, clearance=0.0)
-    holds = np.diag([float(bearing.takes_axial_force), 1.0, 1.0, 1.0, 1.0])
+    holds = np.diag([float(takes_axial_force(bearing)), 1.0, 1.0, 1.0, 1.0])
     return replace(bearing, rolling=None, stiffness=holds)

@@ -168,13 +168,6 @@ class CaseData(CaseTables):
         return value
 
     @property
-    def has_usual_backlash(self) -> bool:
-        """Whether the teeth are thinned for a usual backlash that the case does not give."""
-        if self.dynamics.backlash is not None or self.gears.kind != "spur":
-            return False
-        return self.gear_pair.pinion.tooth_thinning > 0.0
-
-    @property
     def composite_roughness(self) -> float | None:
         """Root of the sum of squares of both roughnesses [m]; None if none is given."""
         pinion, wheel = self.gears.pinion.rms, self.gears.wheel.rms

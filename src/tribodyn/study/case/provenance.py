@@ -18,7 +18,7 @@ from tribodyn.study.case.gears import HELICAL_STIFFNESS, RQ_OVER_RA, is_idle
 from tribodyn.study.case.hypoid import bodies
 from tribodyn.study.case.section import Section, in_force, section_at
 from tribodyn.study.case.sections import PROPERTIES, SHEET
-from tribodyn.study.case.to_models import USUAL_GEARS, mesh_law_of
+from tribodyn.study.case.to_models import USUAL_GEARS, has_usual_backlash, mesh_law_of
 from tribodyn.study.case.user_input import Stated, UserInput
 from tribodyn.study.case.values import FaultError, Plain, read_value, written
 
@@ -403,7 +403,7 @@ def _marked(case: CaseData, key: str, value: Any, changed: tuple[str, ...]) -> s
 
 def _derived_from(case: CaseData, key: str) -> str:
     spec = spec_of(case, key)
-    is_usual = key == "dynamics.backlash" and case.has_usual_backlash
+    is_usual = key == "dynamics.backlash" and has_usual_backlash(case)
     return USUAL_GEARS if is_usual else spec.basis if spec else ""
 
 

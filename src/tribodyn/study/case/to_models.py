@@ -83,6 +83,12 @@ def usual_backlash(gears: Gears, dynamics: Dynamics, pair: SpurPair) -> float | 
     return None if is_linear or dynamics.backlash is not None or pair.backlash >= play else play
 
 
+def has_usual_backlash(case: CaseData) -> bool:
+    """Return whether the teeth are thinned for a usual backlash that the case does not give."""
+    has_play = case.dynamics.backlash is not None or case.gears.kind != "spur"
+    return not has_play and case.gear_pair.pinion.tooth_thinning > 0.0
+
+
 def gear_warnings(gears: Gears, backlash: float | None = None) -> tuple[ModelWarning, ...]:
     """Return warnings about the geometry of the pair."""
     return _built(gears, backlash or None, _modifications(gears))[1]

@@ -178,7 +178,7 @@ class MachineCase(PartsCase):
             for name in self.meshes_with_teeth:
                 self.pair(name, self.operating_point)
         except InputError as error:
-            raise InputError(self.placed(error)) from None
+            raise InputError(self._placed(error)) from None
         if problems := impossible_faults(self):
             raise InputError(origin.place(problems))
         self._check_spreads(origin)
@@ -266,7 +266,7 @@ class MachineCase(PartsCase):
         if problems:
             raise InputError((self.source or Source()).place(problems))
 
-    def placed(self, error: TribodynError) -> list[Problem]:
+    def _placed(self, error: TribodynError) -> list[Problem]:
         """Problems of a machine with the lines of its parts."""
         source = self.source or Source()
         return [

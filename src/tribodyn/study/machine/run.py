@@ -223,7 +223,7 @@ def _static(
     try:
         return static_balance(machine, laws=face_laws(machine, slopes))
     except (InputError, ComputationError) as error:
-        raise type(error)(case.placed(error)) from None
+        raise type(error)(case._placed(error)) from None
 
 
 def structure_of(case: MachineCase, machine: Machine) -> MachineStructure:
