@@ -22,7 +22,6 @@ from tribodyn.errors import (
     warn,
 )
 from tribodyn.gear import Misalignment
-from tribodyn.machine.bearing import HELD
 from tribodyn.machine.machine import Machine
 from tribodyn.machine.planetary.centrifugal import centrifugal_force
 from tribodyn.machine.rolling.element_ring import BearingState, RollingElementBearing
