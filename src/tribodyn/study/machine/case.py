@@ -63,22 +63,13 @@ from tribodyn.study.machine.tables import (
     ShaftTable,
     mesh_table_kind,
 )
+from tribodyn.study.machine.unused_keys import unused_keys
 from tribodyn.study.machine.user_tables import PartsCase, default_assumptions, stated_assumptions
 from tribodyn.study.planetary.machine_stages import MEMBERS, CaseStage, read_stages, stage_mesh
 
 _TOP = (
-    *(
-        "title",
-        "origin",
-        *GROUPS,
-        "planets",
-        "housing",
-        "operation",
-        "load_cases",
-        "dynamics",
-        *SHARED,
-    ),
-    "assumed",
+    *("title", "origin", *GROUPS, "planets", "housing", "operation", "load_cases", "dynamics"),
+    *(*SHARED, "assumed"),
 )
 #: Keys of a mesh that its object takes as they are.
 _OF_MESH = (
@@ -135,6 +126,7 @@ class MachineCase(PartsCase):
         tables = deepcopy(data) if source is not None else in_si(data)
         self.data, self.uncertain, problems = without_spread(tables)
         unknown_keys("", data, _TOP, problems)
+        problems += unused_keys(self.data)
         self.title: str = str(data.get("title", "Machine"))
         self.origin: str | None = data.get("origin")
         problems += reason_faults(data.get("assumed", {}))

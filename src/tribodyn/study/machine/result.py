@@ -333,7 +333,7 @@ class MachineResult(PartsResult):
             If there is no such mesh.
         """
         name = self.motion.mesh[0] if mesh is None else mesh
-        spectra = self.motion.mesh_spectra(name)
+        spectra = self.motion.mesh_spectra(name, self.case.motion.harmonics)
         gears = [self.machine.gears[gear] for gear in self.machine.meshes[name].gears]
         return spectra.assign_attrs(teeth=[abs(gear.teeth) for gear in gears])
 

@@ -301,7 +301,7 @@ class MotionTable(Section):
         meaning="damping of each mode of shafts, bearings and housing over its critical value",
     )
     harmonics: int = integer(
-        8, 1, 64, "more only cost time", meaning="harmonics of each mesh in tables", example="8"
+        20, 1, 64, "more only cost time", meaning="harmonics of a mesh in its spectra", example="20"
     )
     frequency_limit: float | None = number(
         None,

@@ -22,6 +22,7 @@ from tribodyn.study.case.write import written_number
 from tribodyn.study.machine.pair_cases import option_at
 from tribodyn.study.machine.read_parts import LENGTH, in_si
 from tribodyn.study.machine.tables import LoadCaseTable
+from tribodyn.study.machine.unused_keys import unused_keys
 
 if TYPE_CHECKING:
     from tribodyn.machine import Gear
@@ -159,7 +160,7 @@ class PartsCase(ABC):
 def changed_tables(
     tables: Mapping[str, Any], changes: Mapping[str, Any], *, by: str = ""
 ) -> dict[str, Any]:
-    """Tables with values changed by dotted key, and without reasons for the former values."""
+    """Tables with values changed by dotted key, without what the changes leave without effect."""
     data = deepcopy(dict(tables))
     for key, value in changes.items():
         *names, name = key.split(".")
@@ -177,9 +178,25 @@ def changed_tables(
                 table.pop(name, None)
             else:
                 table[name] = value if by else in_si(value)
+    dropped = _drop_unused(data, changes, {key for key, _ in unused_keys(tables)})
     if isinstance(reasons := data.get("assumed"), Mapping):
-        data["assumed"] = {k: why for k, why in reasons.items() if k not in changes}
+        stale = (*changes, *dropped)
+        data["assumed"] = {k: why for k, why in reasons.items() if k not in stale}
     return data
+
+
+def _drop_unused(data: dict[str, Any], changes: Mapping[str, Any], before: set[str]) -> list[str]:
+    """Remove values that had an effect before the changes and are not among them."""
+    parts = [key.split(".") for key in changes]
+    changed = {".".join(each[:depth]) for each in parts for depth in range(1, len(each) + 1)}
+    dropped = [key for key, _ in unused_keys(data) if key not in before and key not in changed]
+    for key in dropped:
+        *names, name = key.split(".")
+        table = data
+        for each in names:
+            table = table[each]
+        del table[name]
+    return dropped
 
 
 def _set_element(table: dict[str, Any], name: str, number: int, value: Any, key: str) -> None:

@@ -37,6 +37,7 @@ from tribodyn.study.machine.read_parts import (
     unknown_keys,
 )
 from tribodyn.study.machine.tables import STIFF, MotionTable, PlanetsTable
+from tribodyn.study.machine.unused_keys import unused_keys, unused_keys_of_stage
 from tribodyn.study.machine.user_tables import (
     PartsCase,
     backlash_assumptions,
@@ -105,6 +106,7 @@ class PlanetaryCase(PartsCase):
         tables = deepcopy(data) if source is not None else in_si(data)
         self.data, self.uncertain, problems = without_spread(_for_each_planet(tables), lists=True)
         unknown_keys("", data, (*_TOP, *SHARED, "assumed"), problems)
+        problems += [*unused_keys(self.data), *unused_keys_of_stage(self.data)]
         self.title: str = str(data.get("title", "Planetary stage"))
         self.origin: str | None = data.get("origin")
         problems += reason_faults(data.get("assumed", {}))

@@ -1,0 +1,148 @@
+"""Keys of a machine or a stage that have no effect there: they are refused, never ignored."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Mapping
+from typing import Any
+
+from tribodyn.errors import Problem
+from tribodyn.study.case.values import written
+from tribodyn.study.machine.pair_cases import MESH_KEYS, SHARED
+from tribodyn.study.machine.tables import HypoidMeshTable, MeshDynamics, mesh_table_kind
+
+KeyedProblems = Iterator[tuple[str, Problem]]
+
+_HEAT = ("heat_transfer", "gear_heat_transfer", "ambient_temperature")
+#: Keys of a mesh, and of a gear, that only computed teeth have.
+_OF_TEETH = (
+    "composite_roughness",
+    "addendum_coefficient",
+    "dedendum_coefficient",
+    "rack_tip_radius_coefficient",
+    "ease_off",
+    "mounting",
+    "line_stiffness",
+    "stiffness_model",
+    "entrainment",
+    *(name for name in MESH_KEYS if name not in MeshDynamics.fields),
+    *(name for name in SHARED if name != "stiffness"),
+)
+_OF_FLANKS = (
+    "hand",
+    "profile_shift_coefficient",
+    "tip_diameter",
+    "roughness_rms",
+    "roughness_ra",
+    "thermal_conductivity",
+    "specific_heat",
+    "modification",
+)
+#: Modifications by which the teeth of a gear differ.
+_DIFFERENT_TEETH = ("single_pitch_deviation", "cumulative_pitch_deviation", "run_out")
+
+
+def _is_set(table: Any, name: str) -> bool:
+    return isinstance(table, Mapping) and table.get(name) is not None
+
+
+def _refused(key: str, table: Any, names: Iterable[str], why: str, remedy: str) -> KeyedProblems:
+    """Problems of the keys of a table that have no effect."""
+    for name in names:
+        if _is_set(table, name):
+            is_table = isinstance(table[name], Mapping)
+            what = name if is_table else f"{name} = {written(table[name])}"
+            place = f"{key}.{name}" if key else name
+            yield place, Problem(f"{what} has no effect here", "", why, remedy)
+
+
+def _tables(data: Mapping[str, Any], group: str) -> dict[str, Mapping[str, Any]]:
+    tables = data.get(group, {})
+    named = tables.items() if isinstance(tables, Mapping) else ()
+    return {name: body for name, body in named if isinstance(body, Mapping)}
+
+
+def unused_keys(data: Mapping[str, Any]) -> KeyedProblems:
+    """Keys of a machine or of a stage by itself that have no effect."""
+    yield from _heat(data)
+    yield from _planets(data)
+    yield from _constant_meshes(data)
+
+
+def unused_keys_of_stage(data: Mapping[str, Any]) -> KeyedProblems:
+    """Keys of a planetary stage by itself that have no effect, besides those of a machine."""
+    why = "The motion of a stage by itself is in its plane"
+    remedy = "Remove it, or give the stage shafts and bearings, which make it a machine"
+    for name, body in _tables(data, "gears").items():
+        keys = ("shaft", "position", "transverse_moment_of_inertia")
+        yield from _refused(f"gears.{name}", body, keys, why, remedy)
+        of_flanks = body.get("modification")
+        place, alike = f"gears.{name}.modification", "All planets have equal teeth here"
+        yield from _refused(place, of_flanks, _DIFFERENT_TEETH, alike, remedy)
+    for name, body in _tables(data, "planets").items():
+        yield from _refused(f"planets.{name}", body, ("carrier_position",), why, remedy)
+    of_spectra = ("frequency_limit", "harmonics")
+    yield from _refused("dynamics", data.get("dynamics"), of_spectra, why, remedy)
+
+
+def _heat(data: Mapping[str, Any]) -> KeyedProblems:
+    """Keys of a heat balance, which machines do not have."""
+    places = {"lubricant": data.get("lubricant")}
+    for group in ("meshes", "planets"):
+        for name, body in _tables(data, group).items():
+            places[f"{group}.{name}.lubricant"] = body.get("lubricant")
+    why = "Machines and stages have no heat balance: the temperatures of oil and gears are given"
+    for key, table in places.items():
+        remedy = "Remove it, and give temperature, and gear_temperature where the gears are warmer"
+        yield from _refused(key, table, _HEAT, why, remedy)
+
+
+def _planets(data: Mapping[str, Any]) -> KeyedProblems:
+    """Keys of other kinds of planets, and places of planets that their stage gives."""
+    for name, body in _tables(data, "planets").items():
+        kind, key = body.get("planet_type", "single"), f"planets.{name}"
+        if kind != "meshed":
+            why = 'Only planets in pairs, planet_type = "meshed", have it'
+            distances = ("ring_center_distance", "pair_center_distance")
+            yield from _refused(key, body, distances, why, "Remove it")
+        if kind == "single":
+            why = "Planets with one gear have the module of the sun"
+            yield from _refused(key, body, ("ring_normal_module",), why, "Remove it")
+        for role in ("planet", "ring_planet"):
+            gear, stepped = body.get(role), role == "ring_planet" and kind == "stepped"
+            places = ("shaft",) if stepped else ("shaft", "position")
+            why = "The stage gives planets their shafts and their places on the pins"
+            table = _tables(data, "gears").get(str(gear))
+            yield from _refused(f"gears.{gear}", table, places, why, "Remove it")
+
+
+def _constant_meshes(data: Mapping[str, Any]) -> KeyedProblems:
+    """Keys of teeth and films of meshes with a constant stiffness."""
+    meshes, gears = _tables(data, "meshes"), _tables(data, "gears")
+    computed: set[str] = set()
+    named: set[str] = set()
+    crossed, plane = False, "planets" in data
+    why = "A mesh with a constant stiffness has no computed teeth"
+    remedy = "Remove it, or remove the stiffness of the mesh"
+    for stage in _tables(data, "planets").values():
+        computed |= {str(stage.get(role)) for role in ("sun", "planet", "ring_planet", "ring")}
+    for name, body in meshes.items():
+        names = body.get("gears")
+        named |= {str(gear) for gear in (names if isinstance(names, list | tuple) else ())}
+        if _is_set(body, "stiffness") and not isinstance(body["stiffness"], Mapping):
+            yield from _refused(f"meshes.{name}", body, _OF_TEETH, why, remedy)
+            continue
+        is_crossed = mesh_table_kind(body) is HypoidMeshTable
+        crossed, plane = crossed or is_crossed, plane or not is_crossed
+        computed |= {str(gear) for gear in (names if isinstance(names, list | tuple) else ())}
+    known = named <= {*gears}  # other meshes are reported where they are read
+    for name, body in gears.items():
+        if known and name not in computed:
+            yield from _refused(f"gears.{name}", body, _OF_FLANKS, why, remedy)
+    if crossed and not plane:
+        why = "The stiffness of hypoid teeth is line_stiffness or stiffness_model of their mesh"
+        yield from _refused("", data, ("stiffness",), why, "Remove [stiffness]")
+    elif meshes and not (crossed or plane):
+        shared = ("lubricant", "film", "stiffness", "friction")
+        yield from _refused("", data, shared, why, remedy)
+        keys = [name for name in _OF_TEETH if name in MESH_KEYS]
+        yield from _refused("dynamics", data.get("dynamics"), keys, why, remedy)

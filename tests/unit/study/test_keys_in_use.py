@@ -1,0 +1,240 @@
+"""Every key that a machine or a stage accepts changes a figure, or is refused by its name."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from contextlib import suppress
+from copy import deepcopy
+from typing import Any
+
+import numpy as np
+import pytest
+
+import tribodyn as td
+from tribodyn.errors import InputError
+from tribodyn.model import Option
+from tribodyn.study import MachineCase, PlanetaryCase
+from tribodyn.study.case.gears import Modification
+from tribodyn.study.case.section import Section
+from tribodyn.study.machine.pair_cases import MESH_KEYS
+from tribodyn.study.machine.tables import (
+    BearingTable,
+    CouplingTable,
+    GearTable,
+    MeshTable,
+    MotionTable,
+    OperationTable,
+    PlanetsTable,
+    ShaftTable,
+)
+
+pytestmark = pytest.mark.filterwarnings("ignore::tribodyn.errors.ModelWarning")
+
+GEAR = {"face_width": "30 mm", "roughness_ra": "0.3 um"}
+RELIEF = {"tip_relief": "15 um", "root_relief": "15 um", "end_relief": "15 um"}
+MODELS = {
+    "lubricant": {"name": "ISO VG 220", "temperature": "70 degC"},
+    "film": {"model": "moes"},
+    "friction": {"law": "mixed-ehl"},
+}
+
+
+def spur(**mesh: Any) -> dict[str, Any]:
+    stiff = {"radial_stiffness": "4e8 N/m", "axial_stiffness": "1e8 N/m"}
+    first = {"gears": ["z1", "z2"], "normal_module": "3 mm", "backlash": "0.1 mm"}
+    return {
+        "shafts": {
+            "engine": {"moment_of_inertia": "0.1 kg*m^2"},
+            "in": {"sections": [["100 mm", "30 mm"]]},
+            "out": {"moment_of_inertia": "0.05 kg*m^2"},
+        },
+        "couplings": {"k": {"shafts": ["engine", "in"], "torsional_stiffness": "1e5 N*m/rad"}},
+        "bearings": {
+            "A": {"shaft": "in", "position": "10 mm", **stiff},
+            "B": {"shaft": "in", "position": "90 mm", **stiff},
+            "C": {"shaft": "out", "position": "0 mm", **stiff, "tilting_stiffness": "1e5 N*m/rad"},
+        },
+        "gears": {
+            "z1": {"shaft": "in", "position": "40 mm", "teeth": 21, **GEAR},
+            "z2": {"shaft": "out", "teeth": 42, **GEAR},
+        },
+        "meshes": {"first": {**first, "transmission_error_amplitude": "1 um", **mesh}},
+        "operation": {"input": "engine", "output": "out", "speed": "1500 rpm", "torque": "90 N*m"},
+    }
+
+
+def computed_teeth() -> dict[str, Any]:
+    data = spur(helix_angle="10 deg", hand="right")
+    data["gears"]["z1"] |= {"hand": "right", "modification": RELIEF}
+    return {**data, **deepcopy(MODELS), "stiffness": {"model": "fe2d"}}
+
+
+def constant_stiffness() -> dict[str, Any]:
+    data = spur(stiffness="4e8 N/m")
+    for gear in data["gears"].values():
+        del gear["roughness_ra"]
+    return data
+
+
+def stage() -> dict[str, Any]:
+    names = "gears", "planets", "operation", "dynamics"
+    data = {k: deepcopy(v) for k, v in td.load_case("planetary-stage").data.items() if k in names}
+    data["planets"]["low"]["transmission_error_amplitude"] = "1 um"
+    return {**data, **deepcopy(MODELS), "stiffness": {"model": "fe2d"}}
+
+
+#: Keys that no summary needs, and where they are used.
+ELSEWHERE = {
+    "seat_mass": "acceleration in a recording",
+    "seat_frequency": "acceleration in a recording",
+    "seat_damping_ratio": "acceleration in a recording",
+    "harmonics": "spectra of a mesh",
+}
+
+
+def keys_of(data: dict[str, Any]) -> Iterator[tuple[str, str, Option]]:
+    """Table, name and option of every key of a machine or a stage; of a part the first of each."""
+    outer = Section.case_class.fields
+    of_pair = {name: outer[name].kind for name in ("lubricant", "dynamics")}  # type: ignore[union-attr]
+    groups = {
+        "shafts": ShaftTable, "bearings": BearingTable, "couplings": CouplingTable,
+        "gears": GearTable, "meshes": MeshTable, "planets": PlanetsTable,
+    }  # fmt: skip
+    for group, kind in groups.items():
+        for part in list(data.get(group, {}))[-1:]:
+            yield from ((f"{group}.{part}", key, option) for key, option in kind.specs())
+            if group in ("meshes", "planets"):
+                for key in MESH_KEYS:
+                    yield f"{group}.{part}", key, of_pair["dynamics"].spec(key)
+            if group == "gears":
+                for key, option in Modification.specs():
+                    yield f"gears.{part}.modification", key, option
+    tables = {"dynamics": MotionTable, "operation": OperationTable, **of_pair}
+    for table in ("dynamics", "operation", "lubricant"):
+        yield from ((table, key, option) for key, option in tables[table].specs())
+    yield from (("dynamics", key, of_pair["dynamics"].spec(key)) for key in MESH_KEYS)
+
+
+def keys_read(kind: Any, data: dict[str, Any], monkeypatch: pytest.MonkeyPatch) -> set[str]:
+    """Names of the keys that the computation of a case reads from its tables."""
+    names: set[str] = set()
+    plain = object.__getattribute__
+
+    def reading(table: Any, name: str) -> Any:
+        value = plain(table, name)
+        if not name.startswith("_") and name in plain(table, "__dict__"):
+            names.add(name)
+        return value
+
+    with monkeypatch.context() as patch:
+        patch.setattr(Section, "__getattribute__", reading, raising=False)
+        td.run(kind(**data)).summary()
+    return names
+
+
+def with_value(data: dict[str, Any], key: str, value: Any) -> dict[str, Any]:
+    changed, (*tables, name) = deepcopy(data), key.split(".")
+    table = changed
+    for each in tables:
+        table = table.setdefault(each, {})
+    table[name] = value
+    return changed
+
+
+def refusal(kind: Any, data: dict[str, Any], key: str, value: Any) -> str:
+    with pytest.raises(InputError) as caught:
+        kind(**with_value(data, key, value))
+    return str(caught.value)
+
+
+def other_value(option: Option) -> Any:
+    if option.names is not None:
+        return next(each for each in option.names() if each != option.default)
+    if option.kind == "flag":
+        return not option.default
+    return option.example.strip('"') if option.unit else 0.1
+
+
+@pytest.mark.parametrize(
+    ("kind", "make"),
+    [
+        (MachineCase, constant_stiffness),
+        (MachineCase, computed_teeth),
+        (MachineCase, stage),
+        (PlanetaryCase, stage),
+    ],
+)
+def test_every_key_is_used_or_refused(
+    kind: Any, make: Any, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    data, ignored = make(), []
+    names, figures = keys_read(kind, data, monkeypatch), td.run(kind(**data)).summary()
+    for table, key, option in keys_of(data):
+        if key in names or key in ELSEWHERE:
+            continue
+        with suppress(InputError):
+            case = kind(**with_value(data, f"{table}.{key}", other_value(option)))
+            if td.run(case).summary() == figures:
+                ignored.append(f"{table}.{key}")
+    assert ignored == []
+
+
+@pytest.mark.parametrize(
+    ("kind", "make", "key", "value"),
+    [
+        (MachineCase, computed_teeth, "lubricant.heat_transfer", "15 W/K"),
+        (MachineCase, computed_teeth, "meshes.first.lubricant.heat_transfer", "15 W/K"),
+        (MachineCase, stage, "planets.low.lubricant.heat_transfer", "15 W/K"),
+        (PlanetaryCase, stage, "lubricant.heat_transfer", "15 W/K"),
+        (PlanetaryCase, stage, "dynamics.frequency_limit", "9 kHz"),
+        (PlanetaryCase, stage, "gears.planet.position", "9 mm"),
+        (PlanetaryCase, stage, "gears.sun.modification.run_out", "9 um"),
+        (MachineCase, stage, "gears.planet.position", "9 mm"),
+        (MachineCase, stage, "planets.low.pair_center_distance", "90 mm"),
+        (MachineCase, stage, "planets.low.ring_normal_module", "3 mm"),
+        (MachineCase, constant_stiffness, "lubricant", MODELS["lubricant"]),
+        (MachineCase, constant_stiffness, "friction.law", "constant"),
+        (MachineCase, constant_stiffness, "meshes.first.film.model", "moes"),
+        (MachineCase, constant_stiffness, "meshes.first.mesh_law", "tangent"),
+        (MachineCase, constant_stiffness, "gears.z1.tip_diameter", "69 mm"),
+        (MachineCase, constant_stiffness, "gears.z2.modification.tip_relief", "9 um"),
+        (MachineCase, constant_stiffness, "dynamics.friction_load", "dynamic"),
+    ],
+)
+def test_keys_without_effect_are_refused_by_name(
+    kind: Any, make: Any, key: str, value: Any
+) -> None:
+    text = refusal(kind, make(), key, value)
+    place = key.removesuffix(".law").removesuffix(".model").removesuffix(".tip_relief")
+    assert f"{place}: " in text
+    assert "has no effect here" in text
+
+
+def test_a_hypoid_machine_refuses_keys_that_do_nothing() -> None:
+    case = td.load_case("hypoid-axle")
+    for key, value in (
+        ("lubricant.heat_transfer", "15 W/K"),
+        ("meshes.axle.lubricant.heat_transfer", "15 W/K"),
+        ("stiffness.model", "fe2d"),
+    ):
+        with pytest.raises(InputError, match="has no effect here"):
+            case.replace({key: value}, by="--set")
+
+
+def test_harmonics_are_those_of_the_spectra_of_a_mesh() -> None:
+    data = constant_stiffness()
+    few = td.run(MachineCase(**data, dynamics={"harmonics": 3})).mesh_spectra()
+    assert float(np.max(few["order"])) == pytest.approx(3.0)
+
+
+def test_a_change_drops_what_it_leaves_without_effect() -> None:
+    case = td.load_case("two-stage-spur")
+    stiff = {f"meshes.{name}.stiffness": 4e8 for name in case.meshes}
+    constant = case.replace(stiff)
+    assert "roughness_ra" not in constant.data["gears"]["z1"]
+    assert "film" not in constant.data
+    assert "bore_diameter" in constant.data["gears"]["z2"]
+    with pytest.raises(InputError, match=r"film: film has no effect here"):
+        case.replace({**stiff, "film.model": "moes"})
+    with pytest.raises(InputError, match=r"gears\.z1\.roughness_ra"):
+        constant.replace({"gears.z1.roughness_ra": 3e-7})
