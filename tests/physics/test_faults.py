@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import math
+import re
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 import pytest
 
-from references.cracked_tooth import CRACKS, RADII
+from references.cracked_tooth import CRACKS, RADII, SHALLOW, SHALLOW_GEAR
 from references.gear_compliance import MODULUS, POISSON, outline_of
 from tribodyn.errors import InputError
 from tribodyn.faults import (
@@ -30,6 +32,14 @@ from tribodyn.faults import (
     turning_mesh,
     turns_of,
 )
+from tribodyn.faults.cracked_tooth import (
+    GREATEST_TANGENT,
+    LEAST_TANGENT,
+    CrackLine,
+    _sound_ring,
+    crack_rows,
+    ring_displacement,
+)
 from tribodyn.gear import (
     FlankModification,
     Material,
@@ -40,6 +50,9 @@ from tribodyn.gear import (
     spur_pair,
 )
 from tribodyn.stiffness import loaded_contact
+from tribodyn.stiffness.fe2d.flank_load import flank_loads
+from tribodyn.stiffness.fe2d.tooth_mesh import MeshSize
+from tribodyn.study.faults.section import FaultTable
 
 TORQUE = 90.0
 
@@ -318,19 +331,80 @@ SLOW = [pytest.param(crack, marks=pytest.mark.slow) for crack in list(CRACKS)[2:
 def test_crack_compliance_against_triangles_of_the_whole_gear(
     crack: tuple[str, float, float, float],
 ) -> None:
-    name, depth, angle, tangent = crack
+    np.testing.assert_allclose(computed_cracks(*crack), CRACKS[crack], rtol=0.02)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("depth", list(SHALLOW))
+def test_shallow_cracks_are_as_exact_as_deep_ones(depth: float) -> None:
+    computed = computed_cracks(SHALLOW_GEAR, depth, 90.0, 30.0)
+    np.testing.assert_allclose(computed, SHALLOW[depth], rtol=0.015)
+
+
+@pytest.mark.slow
+def test_shallowest_cracks_have_the_stress_intensity_of_a_half_plane() -> None:
+    """Square to the surface: K = 1.1215 s sqrt(pi a), so that ds/dF is 1.1215^2 pi s^2 a^2/E."""
+    gear, tangent = gear_of(SHALLOW_GEAR), math.radians(30.0)
+    line = CrackLine(4e-5, math.radians(60.0), tangent)
+    mesh, others = _sound_ring(gear, 0.3, MeshSize().refined(1.0), (line.start(gear), 0.005))
+    radius = 1e-3 * np.array(RADII)
+    forces = flank_loads(gear, mesh, radius).forces
+    moved = ring_displacement(mesh, forces, 0.3, others)
+    ((row, _),) = crack_rows(gear, mesh, line)
+    flank = mesh.tooth[0, row - 2 : row + 3]
+    place = mesh.nodes[flank]
+    along = np.append(0.0, np.cumsum(np.hypot(*np.diff(place, axis=0).T)))
+    slope = np.array([np.polyfit(along - along[2], x, 3)[2] for x in place.T])
+    stretch = [
+        sum(slope[i] * np.polyfit(along - along[2], moved[2 * flank + i, k], 3)[2] for i in (0, 1))
+        for k in range(radius.size)
+    ]
+    stress = np.array(stretch) / (slope @ slope) / (1e3 * gear.normal_module)  # per N/mm, E of 1
+    ratio = []
+    for depth in (4e-5, 8e-5):
+        places, added = crack_compliance(
+            gear, Material(youngs_modulus=1.0, poissons_ratio=0.3), depth,
+            angle=math.radians(60.0), root_tangent=tangent, refined=1.0,
+        )  # fmt: skip
+        limit = 1.1215**2 * math.pi * stress**2 * (1e3 * depth) ** 2
+        ratio.append(np.interp(radius, places, added) / limit)
+    np.testing.assert_allclose(2.0 * ratio[0] - ratio[1], 1.0, atol=0.03)
+
+
+def test_limits_of_the_tangent_are_those_of_the_message_and_the_key() -> None:
+    option = FaultTable.fields["root_tangent"]
+    assert (option.low, option.high) == (LEAST_TANGENT, GREATEST_TANGENT)  # type: ignore[union-attr]
+    for name in ("type C pinion", "type A wheel", SHALLOW_GEAR):
+        gear = gear_of(name)
+        with pytest.raises(InputError) as fault:
+            CrackLine(1e-3, root_tangent=0.25 * math.pi).check(gear)
+        low, high = map(float, re.findall(r"of (-?[\d.]+) to ([\d.]+) deg", str(fault.value))[0])
+        assert math.degrees(LEAST_TANGENT) < low < high < math.degrees(GREATEST_TANGENT)
+        for tangent in (low, high):
+            CrackLine(1e-4, root_tangent=math.radians(tangent)).check(gear)
+        with pytest.raises(InputError, match="root_tangent"):
+            CrackLine(1e-4, root_tangent=math.radians(high + 0.1)).check(gear)
+
+
+def gear_of(name: str | tuple[int, float, float]) -> SpurGear:
+    """Gear of the reference."""
     outline = outline_of(name)
-    gear = SpurGear(
+    return SpurGear(
         teeth=outline.teeth, normal_module=1e-3 * outline.module, face_width=0.02,
         normal_pressure_angle=math.radians(20.0), profile_shift_coefficient=outline.shift,
         tip_diameter=2e-3 * outline.tip_radius, bore_diameter=2e-3 * outline.bore_radius,
     )  # fmt: skip
+
+
+def computed_cracks(
+    name: str | tuple[int, float, float], depth: float, angle: float, tangent: float
+) -> Any:
+    """Compliance of a crack at the loads of the reference [1e-6 mm^2/N]."""
     radius, added = crack_compliance(
-        gear, Material(youngs_modulus=1e6 * MODULUS, poissons_ratio=POISSON), 1e-3 * depth,
+        gear_of(name), Material(youngs_modulus=1e6 * MODULUS, poissons_ratio=POISSON), 1e-3 * depth,
         angle=math.radians(angle), root_tangent=math.radians(tangent),
     )  # fmt: skip
-    computed = 1e12 * np.interp(1e-3 * np.array(RADII), radius, added)
-    np.testing.assert_allclose(computed, CRACKS[crack], rtol=0.03)
+    return 1e12 * np.interp(1e-3 * np.array(RADII), radius, added)
 
 
 @pytest.mark.parametrize("place", ["outer", "inner", "element"])

@@ -29,6 +29,13 @@ CRACKS: dict[tuple[str, float, float, float], tuple[float, float, float]] = {
     ("type C pinion", 2.5, 45.0, 35.0): (7.8844, 8.6167, 11.6352),
     ("type A wheel", 2.0, 70.0, 35.0): (14.1016, 16.1745, 21.2078),
 }
+#: Shallow cracks square to a tooth of 4 mm module at the tangent of 30 deg, by depth [mm].
+SHALLOW_GEAR = (22, 0.4, 0.0)
+SHALLOW: dict[float, tuple[float, float, float]] = {
+    0.2: (0.1290, 0.1440, 0.2119),
+    0.5: (0.6005, 0.6973, 1.0627),
+    1.0: (1.6246, 2.0279, 3.2613),
+}
 
 
 @dataclass(frozen=True)
@@ -121,13 +128,21 @@ class CrackedGear(Gear):
 
 
 def compliances(
-    name: str, depth: float, angle: float, tangent: float, least: float = 0.003
+    name: str | tuple[int, float, float],
+    depth: float,
+    angle: float,
+    tangent: float,
+    least: float = 0.003,
 ) -> tuple[float, float, float]:
     """Compliances of a crack of the table."""
     outline = outline_of(name)
+    least = min(least, 0.08 * depth / outline.module)
     return CrackedGear(outline, Crack.at(outline, depth, angle, tangent), least).compliances()
 
 
 if __name__ == "__main__":
     for crack, expected in CRACKS.items():
         print(*crack, "stated", expected, " found", np.round(compliances(*crack), 4))
+    for depth, expected in SHALLOW.items():
+        computed = np.round(compliances(SHALLOW_GEAR, depth, 90.0, 30.0), 4)
+        print(SHALLOW_GEAR, depth, "stated", expected, " found", computed)

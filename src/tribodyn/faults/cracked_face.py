@@ -140,7 +140,7 @@ def _unit_influence(
         added = added + weight * tooth.part * model.added_compliance()
     radius = sector.curvature_radius(sector.flank_length) * module
     places, fine = section_compliance(gear, poissons_ratio, line)
-    coarse = section_compliance(gear, poissons_ratio, line, size.section, sharp=True)[1]
+    coarse = section_compliance(gear, poissons_ratio, line, size.section, graded=False)[1]
     factor = np.sqrt(np.interp(radius, places, fine / coarse))[:, None, None, None]
     added = added * factor * factor.transpose(1, 0, 2, 3)
     store_arrays(name, {"radius": radius, "knots": knots, "added": added}, "cracked")

@@ -27,8 +27,13 @@ _LOWEST = 0.5
 #: Refinement of the mesh of a whole gear: the tip of the crack needs small elements.
 _REFINED = 2.0
 _FINE = MeshSize().refined(_REFINED)
+#: Size of the elements at the surface, of which the depth of a shallow crack is this multiple.
+_OVER_CRACK = 4.0
 #: Angles of a crack to the centre line of its tooth: into the body, and square to the tooth.
 STEEPEST, SQUARE = math.radians(45.0), 0.5 * math.pi
+#: Limits of the tangent of any fillet to the centre line: before it is 45 deg steep over the circle
+#: the foot begins, and of undercut teeth it leans the other way at the involute.
+LEAST_TANGENT, GREATEST_TANGENT = math.radians(-45.0), math.radians(45.0)
 #: Points at which the tangent of the fillet is tabulated.
 _TANGENTS = 401
 #: Factorization of a symmetric positive matrix.
@@ -55,12 +60,14 @@ class CrackLine:
         step = np.diff(side.flank_points(length), axis=0)
         tangent = np.arctan2(step[:, 0], -step[:, 1])
         if not tangent[0] <= self.root_tangent <= tangent[-1]:
-            low, high = (math.degrees(tangent[end]) for end in (0, -1))
+            low = math.ceil(100.0 * math.degrees(tangent[0])) / 100.0
+            high = math.floor(100.0 * math.degrees(tangent[-1])) / 100.0
             raise InputError(
                 f"root_tangent = {math.degrees(self.root_tangent):.4g} deg",
                 Argument("root_tangent"),
-                f"The fillet of this tooth has tangents at {low:.3g} to {high:.3g} deg to the "
-                "centre line, and the crack begins on it",
+                f"The fillet of this tooth has tangents of {low:.2f} to {high:.2f} deg to the "
+                "centre line between the involute and the foot, where it is 45 deg steep over the "
+                "circle",
                 "Give an angle between them; the critical section of ISO 6336-3 has 30 deg",
             )
         return float(np.interp(self.root_tangent, tangent, 0.5 * (length[1:] + length[:-1])))
@@ -104,8 +111,9 @@ def crack_compliance(
         Angle of the crack to the centre line of the tooth [rad], from pi/4, into the body, to pi/2,
         square to the tooth.
     root_tangent : float, optional
-        Angle of the tangent of the fillet to the centre line where the crack begins [rad]; by
-        default it begins at the lower end of the fillet, where the body does.
+        Angle of the tangent of the fillet to the centre line where the crack begins [rad], within
+        that of the involute above and of the foot below. By default it begins at the foot, where
+        the fillet is 45 deg steep over the circle; its lower end is lower still.
     refined : float
         Size of the elements of whole gears over that of these [1].
 
@@ -126,8 +134,10 @@ def crack_compliance(
     -----
     Plane stress, quadratic quadrilaterals of the whole ring, held at the bore; the sound teeth are
     reduced without loss to the cuts of the cracked one. A row of element edges is moved onto the
-    crack with the mesh around it, and its nodes are doubled up to the tip. The crack is open, and
-    what it adds at the neighbours is left out.
+    crack with the mesh around it, and its nodes are doubled up to the tip, at which the middles of
+    the edges are at a quarter. Elements at the surface are a quarter of a shallow crack, so that
+    its compliance is within 1 % of fracture mechanics. The crack is open, and what it adds at the
+    neighbours is left out.
 
     Examples
     --------
@@ -150,10 +160,12 @@ def section_compliance(
     poissons_ratio: float,
     line: CrackLine,
     size: MeshSize = _FINE,
-    sharp: bool = False,
+    graded: bool = True,
 ) -> tuple[Array, Array]:
-    """Compliance of a crack for a Young's modulus of one, with quarter points if sharp."""
-    mesh, others = _sound_ring(gear, poissons_ratio, size)
+    """Compliance of a crack for a Young's modulus of one, on elements that are graded to it."""
+    depth = line.depth / gear.normal_module
+    near = (line.start(gear), min(size.flank, depth / _OVER_CRACK)) if graded else None
+    mesh, others = _sound_ring(gear, poissons_ratio, size, near)
     base = gear.base_radius
     low = gear.roll_angle(max(gear.form_radius, base)) * base
     radius = np.linspace(
@@ -162,7 +174,7 @@ def section_compliance(
     forces = flank_loads(gear, mesh, radius).forces
     added = np.zeros(radius.size)
     for row, weight in crack_rows(gear, mesh, line):
-        tooth = open_seam(mesh, row, line.depth / gear.normal_module, line.angle, sharp)
+        tooth = open_seam(mesh, row, depth, line.angle, sharp=True)
         sound, cracked = (
             _self_compliance(part, forces, poissons_ratio, others)
             for part in (tooth.sound, tooth.cracked)
@@ -267,6 +279,14 @@ def _self_compliance(
     mesh: SectorMesh, forces: Array, poissons_ratio: float, others: Array
 ) -> Array:
     """Work of each load on its own displacement in the ring, for a Young's modulus of one."""
+    displacement = ring_displacement(mesh, forces, poissons_ratio, others)
+    return np.asarray(np.einsum("ik,ik->k", forces, displacement[: forces.shape[0]]))
+
+
+def ring_displacement(
+    mesh: SectorMesh, forces: Array, poissons_ratio: float, others: Array
+) -> Array:
+    """Displacement of all nodes of a sector in the ring, for a Young's modulus of one."""
     from scipy.sparse import coo_array
     from scipy.sparse.linalg import splu
 
@@ -278,16 +298,19 @@ def _self_compliance(
     free = np.setdiff1d(np.arange(matrix.shape[0]), _freedoms(mesh.fixed))
     load = np.zeros((matrix.shape[0], forces.shape[1]))
     load[: forces.shape[0]] = forces
-    displacement = splu(matrix[free][:, free].tocsc(), **_SYMMETRIC).solve(load[free])
-    return np.asarray(np.einsum("ik,ik->k", load[free], displacement))
+    displacement = np.zeros_like(load)
+    displacement[free] = splu(matrix[free][:, free].tocsc(), **_SYMMETRIC).solve(load[free])
+    return displacement
 
 
 @lru_cache(maxsize=8)
-def _sound_ring(gear: SpurGear, poissons_ratio: float, size: MeshSize) -> tuple[SectorMesh, Array]:
+def _sound_ring(
+    gear: SpurGear, poissons_ratio: float, size: MeshSize, near: tuple[float, float] | None
+) -> tuple[SectorMesh, Array]:
     """Mesh of a sector, and the stiffness of all others between its right and its left cut."""
     from scipy.sparse.linalg import splu
 
-    mesh = tooth_mesh(gear, held_radius(gear), size)
+    mesh = tooth_mesh(gear, held_radius(gear), size, near)
     matrix = _stiffness(mesh, poissons_ratio)
     cuts, turn = _cut_freedoms(mesh)
     inner = np.setdiff1d(np.arange(matrix.shape[0]), np.append(cuts, _freedoms(mesh.fixed)))

@@ -124,7 +124,8 @@ class Crack(ToothFault):
         Angle of the crack to the centre line of the tooth [rad], from pi/4, into the body, to pi/2,
         square to the tooth.
     root_tangent : float, optional
-        Angle of the tangent of the fillet to the centre line where the crack begins [rad].
+        Angle of the tangent of the fillet to the centre line where the crack begins [rad], between
+        that of the involute and of the foot.
     face_share : float
         Part of the face width that is cracked, in its middle [1].
     face_length : float, optional
@@ -140,9 +141,10 @@ class Crack(ToothFault):
 
     Notes
     -----
-    By default the crack begins at the lower end of the root fillet. It is open under load. With
-    ``fe3d`` the compliance is that of solid finite elements over path and face, of spur and helical
-    teeth. Of plane models the cracked and the sound part of the face carry in parallel.
+    By default the crack begins at the foot of the tooth, where the root fillet is 45 deg steep over
+    the circle. It is open under load. With ``fe3d`` the compliance is that of solid finite elements
+    over path and face, of spur and helical teeth. Of plane models the cracked and the sound part of
+    the face carry in parallel.
 
     Examples
     --------

@@ -207,18 +207,25 @@ def _with_middles(edges: Array) -> Array:
     return full
 
 
-def tooth_mesh(form: ToothForm, bore_radius: float, size: MeshSize | None = None) -> SectorMesh:
-    """Mesh of the sector of one tooth."""
+def tooth_mesh(
+    form: ToothForm,
+    bore_radius: float,
+    size: MeshSize | None = None,
+    near: tuple[float, float] | None = None,
+) -> SectorMesh:
+    """Mesh of the sector of one tooth; graded to a place of the flank and a size there, if any."""
     size = size or MeshSize()
     side = ToothSide(form)
     bore = bore_radius / form.normal_module
     _check_rim(form, bore_radius)
-    across = _with_middles(_across(side, size))
-    lengths = _with_middles(_flank_edges(side, size))
+    first = near[1] if near else size.flank
+    across = _with_middles(_across(side, size, first))
+    edges = _graded_edges(side, size, *near) if near else _flank_edges(side, size)
+    lengths, lowest = _with_middles(edges), float(edges[-2] - edges[-1]) if near else math.inf
     tooth = _tooth_points(side, lengths, across)
-    root = side.root_points(_with_middles(_even(1.0, _root_share(side, size), size.root)))
+    root = side.root_points(_with_middles(_root_shares(side, size, lowest)))
     top = np.concatenate([root[:-1], tooth[:, -1], (root * [-1.0, 1.0])[-2::-1]])
-    body = _body_points(top, _with_middles(_body_levels(side, bore, size)), bore)
+    body = _body_points(top, _with_middles(_body_levels(side, bore, size, lowest)), bore)
     return numbered_sector(abs(form.teeth), form.sign, tooth, body, lengths)
 
 
@@ -235,11 +242,11 @@ def _check_rim(form: ToothForm, bore_radius: float) -> None:
         )
 
 
-def _across(side: ToothSide, size: MeshSize) -> Array:
+def _across(side: ToothSide, size: MeshSize, first: float) -> Array:
     """Shares of the thickness, from the loaded flank (0) to the other (1)."""
     middle = side.flank_points(np.array(0.5 * (side.tip_length + side.form_length)))
     thickness = 2.0 * float(middle[0])
-    return _graded(thickness, size.flank, size.largest, size.growth) / thickness
+    return _graded(thickness, first, size.largest, size.growth) / thickness
 
 
 def _flank_edges(side: ToothSide, size: MeshSize) -> Array:
@@ -249,9 +256,21 @@ def _flank_edges(side: ToothSide, size: MeshSize) -> Array:
     return np.concatenate([flank[:-1], side.form_length - fillet])
 
 
-def _root_share(side: ToothSide, size: MeshSize) -> float:
+def _graded_edges(side: ToothSide, size: MeshSize, place: float, first: float) -> Array:
+    """The same with elements that grow from a size at a place."""
+    foot = side.form_length - side.foot_length
+    above = _graded(side.tip_length - place, first, size.flank, size.growth)
+    below = _graded(place - foot, first, size.largest, size.growth) if place > foot else np.zeros(1)
+    return np.concatenate([place + above[:0:-1], place - below])
+
+
+def _root_shares(side: ToothSide, size: MeshSize, last: float) -> Array:
+    """Shares of the root from the cut (0) to the foot (1), where elements have a size at most."""
     points = side.root_points(np.linspace(0.0, 1.0, 65))
-    return size.largest / float(np.hypot(*np.diff(points, axis=0).T).sum())
+    length = float(np.hypot(*np.diff(points, axis=0).T).sum())
+    if last < size.largest:
+        return 1.0 - _graded(length, last, size.largest, size.growth)[::-1] / length
+    return _even(1.0, size.largest / length, size.root)
 
 
 def _tooth_points(side: ToothSide, lengths: Array, across: Array) -> Array:
@@ -272,12 +291,14 @@ def _arc(begin: Array, share: Array) -> Array:
     return np.asarray(np.hypot(*begin) * np.stack([np.sin(angle), np.cos(angle)], axis=-1))
 
 
-def _body_levels(side: ToothSide, bore: float, size: MeshSize) -> Array:
-    """Shares of the depth from the root (0) to the bore (1)."""
+def _body_levels(side: ToothSide, bore: float, size: MeshSize, first: float) -> Array:
+    """Shares of the depth from the root (0) to the bore (1), of elements that grow from a size."""
     depths, thickness = [0.0], side.sign * (side.root_radius - bore)
     while depths[-1] < thickness:
         radius = side.root_radius - side.sign * depths[-1]
         step = min(size.largest + size.body_growth * depths[-1], size.body_ratio * radius)
+        first *= size.growth
+        step = min(step, first)
         depths.append(depths[-1] + step)
     if len(depths) > 4 and depths[-1] - thickness > 0.5 * (depths[-1] - depths[-2]):
         depths.pop()

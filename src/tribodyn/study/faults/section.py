@@ -9,6 +9,7 @@ from dataclasses import replace
 from typing import TYPE_CHECKING, Any, ClassVar, TypeVar
 
 from tribodyn.errors import Argument, InputError, Problem
+from tribodyn.faults.cracked_tooth import GREATEST_TANGENT, LEAST_TANGENT
 from tribodyn.model import REQUIRED, choice, file_path, integer, number, numbers
 from tribodyn.study.case.section import NamedTables, Section, table
 
@@ -100,9 +101,11 @@ class FaultTable(Section):
         example='"70 deg"',
     )  # fmt: skip
     root_tangent: float | None = number(
-        None, 0.0, 1.2, "the fillet lies in it", unit="rad", display_unit="deg",
+        None, LEAST_TANGENT, GREATEST_TANGENT,
+        "any fillet lies in it, that of a tooth from its involute to its foot", unit="rad",
+        display_unit="deg",
         meaning="tangent of the fillet to the centre line where a crack begins; by default at "
-        "the lower end of the fillet",
+        "the foot, where the fillet is 45 deg steep over the circle",
         example='"30 deg"',
     )  # fmt: skip
     start: float | None = _share("lower end of a spall on the used flank, from its lowest point")
