@@ -10,7 +10,9 @@ import numpy as np
 import pytest
 
 from tribodyn import plot
+from tribodyn.plot.machine.levels import _title
 from tribodyn.plot.motion.spectra import _strongest
+from tribodyn.plot.motion.sweeps import _case_title
 from tribodyn.plot.theme.panels import Panel, stack
 from tribodyn.plot.theme.style import line
 from tribodyn.study.machine.motion import MachineMotion
@@ -114,3 +116,20 @@ def test_strongest_harmonic_is_that_of_all_directions() -> None:
         for y in ([3.0, 1.0], [0.0, 7.0])
     ]
     assert _strongest(bars).startswith("2 (20")  # type: ignore[arg-type]
+
+
+def test_largest_value_of_a_sweep_is_where_the_title_says() -> None:
+    axis = SimpleNamespace(values=[1.0, 2.0, 3.0], show="{:g} N*m".format, numeric=True)
+    points = [SimpleNamespace(failed="") for _ in range(3)]
+    study: Any = SimpleNamespace(points=points, axes=[axis])
+    title = _case_title(study, "peak_mesh_force", np.array([5.0, 9.0, 7.0]), "N")
+    assert "is largest at 2" in title
+    assert title.endswith(": 9 N")
+    flat = _case_title(study, "peak_mesh_force", np.full(3, 9.0), "N")
+    assert flat == "The peak mesh force does not vary: 9 N"
+
+
+def test_largest_level_of_the_parts_is_where_the_title_says() -> None:
+    values = np.array([[1.0, 4.0], [np.nan, 2.0], [7.0, 3.0]])
+    title = _title([(("first", "second"), values)], ["10 rpm", "20 rpm", "30 rpm"])
+    assert title == "Mesh first has the largest level at 30 rpm: 7.00 N"
