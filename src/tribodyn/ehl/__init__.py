@@ -36,6 +36,7 @@ from tribodyn.ehl.flow_factors import (
 from tribodyn.ehl.formulas.dimensionless_groups import Groups, line_contact_groups
 from tribodyn.ehl.formulas.elliptic import (
     hamrock_dowson_central,
+    hamrock_dowson_minimum,
     nijenbanning_central,
     nijenbanning_dimensionless_central,
 )
@@ -43,7 +44,6 @@ from tribodyn.ehl.formulas.moes import moes_central, moes_dimensionless_central
 from tribodyn.ehl.formulas.power_laws import (
     dowson_1968_minimum,
     dowson_toyoda_central,
-    hamrock_dowson_minimum,
     pan_hamrock_central,
     pan_hamrock_minimum,
 )

@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 
 from tribodyn.contact.hertz import HertzEllipse, hertz_ellipse
-from tribodyn.ehl.formulas.elliptic import nijenbanning_dimensionless_central
+from tribodyn.ehl.formulas.elliptic import nijenbanning_film
 from tribodyn.ehl.steady.contact_case import (
     _HIGHEST_PRESSURE,
     LAWS,
@@ -100,9 +100,8 @@ class PointCase:
     @property
     def film_estimate(self) -> float:
         """Central film of the regression, in the film unit."""
-        moes = nijenbanning_dimensionless_central(
-            self.moes_load, self.moes_viscosity, self.radius_ratio
-        )
+        numbers = self.moes_load, self.moes_viscosity, self.radius_ratio
+        moes = nijenbanning_film(*(np.asarray(each, dtype=float) for each in numbers))
         viscous = 2.0 * self.lubricant.dynamic_viscosity * self.entrainment_speed
         radius = entrained_radius(self.radius_x, self.radius_y, self.entrainment_angle)
         film = float(moes) * radius * math.sqrt(viscous / (self.effective_modulus * radius))

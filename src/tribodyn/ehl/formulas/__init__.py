@@ -3,7 +3,7 @@
 | module | what it answers |
 |---|---|
 | ``dimensionless_groups`` | which numbers describe a contact, and its regime after Moes |
-| ``power_laws`` | Dowson, Dowson-Toyoda, Pan-Hamrock; Hamrock-Dowson for ellipses |
-| ``elliptic`` | central film of points and ellipses in all regimes |
+| ``power_laws`` | Dowson, Dowson-Toyoda, Pan-Hamrock |
+| ``elliptic`` | films of points and ellipses: Nijenbanning in all regimes, Hamrock-Dowson |
 | ``moes`` | central film in all regimes, and how it follows the load |
 """

@@ -221,13 +221,17 @@ def survey_film(load: Array, material: Array) -> Array:
     return np.asarray(np.maximum(isoviscous, thick))
 
 
+def elsewhere(isoviscous: Array, rigid: Array, elastic: Array, most: Array) -> Mask:
+    """Whether contacts with these films of the asymptotes may be clearly in another regime."""
+    # The elastic film has two values where the numbers are bounds of several contacts.
+    return np.asarray((isoviscous > np.minimum(elastic, rigid)) | (rigid < _RIGID_SHARE * most))
+
+
 def _outside(load: tuple[Any, Any], material: tuple[Any, Any]) -> Mask:
-    """Whether contacts with numbers from the first to the second may be clearly elsewhere."""
-    rigid, elastic = rigid_piezoviscous(material[0]), elastic_piezoviscous(load[1], material[0])
+    """The same of line contacts with numbers from the first to the second."""
     isoviscous = np.maximum(rigid_isoviscous(load[0]), elastic_isoviscous(load[0]))
-    most = elastic_piezoviscous(load[0], material[1])
-    outside = (isoviscous > np.minimum(elastic, rigid)) | (rigid < _RIGID_SHARE * most)
-    return np.asarray(outside)
+    rigid, elastic = rigid_piezoviscous(material[0]), elastic_piezoviscous(load[1], material[0])
+    return elsewhere(isoviscous, rigid, elastic, elastic_piezoviscous(load[0], material[1]))
 
 
 def warn_outside_elastic_piezoviscous(groups: Groups, formula: str) -> None:
@@ -240,7 +244,15 @@ def warn_outside_elastic_piezoviscous(groups: Groups, formula: str) -> None:
     if not _outside((np.min(load), np.max(load)), (first, last)):
         return  # none of them, as the worst of both would not be
     load, material = np.broadcast_arrays(load, groups.moes_material)
+    remedy = 'Use the film model "moes", which covers all regimes.'
     outside = _outside((load, load), (material, material))
+    warn_of_regime(formula, outside, load, material, remedy, stacklevel=7)
+
+
+def warn_of_regime(
+    formula: str, outside: Mask, load: Array, material: Array, remedy: str, *, stacklevel: int
+) -> None:
+    """Warn once (``film-range``) of the contacts outside of the elastic-piezoviscous regime."""
     if not np.any(outside):
         return
     low, high = np.min(load[outside]), np.max(load[outside])
@@ -250,6 +262,6 @@ def warn_outside_elastic_piezoviscous(groups: Groups, formula: str) -> None:
         f"{outside.size} contacts with a Moes load number M from {low:.3g} to {high:.3g} and a "
         f"material number L down to {np.min(material[outside]):.3g} lie outside, where the "
         "survey diagram of Moes puts another asymptote, and the film can be wrong by more than "
-        '20 %. Use the film model "moes", which covers all regimes.',
-        stacklevel=6,
+        f"20 %. {remedy}",
+        stacklevel=stacklevel,
     )

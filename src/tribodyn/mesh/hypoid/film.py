@@ -20,6 +20,7 @@ from tribodyn.errors import ComputationError, InputError
 from tribodyn.friction import LAWS, FrictionParts, TribologicalContact
 from tribodyn.gear.hypoid.kinematics import CellMotion
 from tribodyn.mesh.cycle import PairsInContact
+from tribodyn.mesh.film.film_columns import judged, warn_of_loaded
 from tribodyn.mesh.film.film_lookup import (
     FilmLookup,
     OutsideTableError,
@@ -64,19 +65,26 @@ class _EllipseFilm(FormulaFilm):
     side_radius: Array  #: radius of the gap along the line [m]
 
     def __call__(self, load_per_width: Array) -> Films:
-        """Minimum films of all cells."""
-        pairs, oil = self.pairs, self.pairs.lubricant
-        force = np.bincount(self.line, load_per_width * pairs.length)[self.line]
-        film = hamrock_dowson_minimum(
-            force,
-            pairs.equivalent_radius,
-            self.side_radius,
-            pairs.entrainment_speed,
-            oil.dynamic_viscosity,
-            oil.pressure_viscosity_coefficient,
-            pairs.effective_modulus,
-        )
-        return Films(None, film, None, None)
+        """Minimum films of all cells; warn of the lines that carry load alone."""
+        oil = self.pairs.lubricant
+        weights = load_per_width * self.pairs.length
+        force: Array = np.bincount(self.line, weights)[self.line].astype(np.float64)
+
+        def film(cells: Index) -> Array:
+            pairs = self.pairs.some(cells)
+            return hamrock_dowson_minimum(
+                force[cells],
+                pairs.equivalent_radius,
+                self.side_radius[cells],
+                pairs.entrainment_speed,
+                oil.dynamic_viscosity,
+                oil.pressure_viscosity_coefficient,
+                pairs.effective_modulus,
+            )
+
+        loaded = np.flatnonzero(judged(force))
+        films = warn_of_loaded(lambda: film(np.arange(force.size)), lambda: film(loaded))
+        return Films(None, films, None, None)
 
 
 class _CellTeeth:
