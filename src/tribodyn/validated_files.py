@@ -34,6 +34,7 @@ LARGEST = {
     "profile map": 4 * 10**6,
     "table": 10**7,
     "rexs": 5 * 10**7,
+    "housing": 2**30,
     "netcdf": 2**30,
     "recording": 2**31,
 }

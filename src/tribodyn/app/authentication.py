@@ -51,7 +51,7 @@ class Authenticator:
 
     def check(self, request: Any) -> None:
         """Refuse requests of other sites, under foreign host names, or too large ones."""
-        name = (urlsplit(f"//{request.headers.get('Host', '')}").hostname or "").lower()
+        name = _host_name(request.headers.get("Host", ""))
         if name not in self._hosts and not (self._any and _is_address(name)):
             raise RefusalError(421, "This page is not served under that name.")
         # Browsers mark requests that come from another site.
@@ -113,6 +113,14 @@ class Authenticator:
                 session.desks.move_to_end(name)
                 return session.desks[name]
         raise RefusalError(404, "This tab is no longer open. Reload the page at its first address.")
+
+
+def _host_name(header: str) -> str:
+    """Name of a host without its port; empty where the header is none."""
+    try:
+        return (urlsplit(f"//{header}").hostname or "").lower()
+    except ValueError:  # a bracket that is not closed, or no address within
+        return ""
 
 
 def _is_address(name: str) -> bool:

@@ -115,7 +115,7 @@ class Coupling:
     torsional_damping: float = 0.0
 
     def __post_init__(self) -> None:
-        names = () if isinstance(self.shafts, str) else tuple(self.shafts)
+        names = tuple(self.shafts) if isinstance(self.shafts, list | tuple) else ()
         if len(names) != 2 or names[0] == names[1] or not all(isinstance(n, str) for n in names):
             what, where = f"shafts = {quoted(self.shafts)}", Argument("Coupling.shafts")
             raise InputError(what, where, "A coupling joins two shafts", "Give their two names")

@@ -282,7 +282,8 @@ def _chosen_by(changes: Mapping[str, Any]) -> dict[str, str]:
         if key not in changes:
             continue
         section, _, name = key.partition(".")
-        spec, value = kinds[section].fields[name], changes[key]
+        spec: Any = kinds[section].fields[name]
+        value = changes[key]
         value = value.value if isinstance(value, Plain) else value
         value = spec.default if value is None else value
         if value in spec.names():

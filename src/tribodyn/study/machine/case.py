@@ -47,6 +47,7 @@ from tribodyn.study.machine.pair_cases import (
     with_forms,
 )
 from tribodyn.study.machine.read_parts import (
+    check_tables,
     in_si,
     read_bearing,
     read_coupling,
@@ -54,7 +55,6 @@ from tribodyn.study.machine.read_parts import (
     read_shaft,
     table_of,
     tables_of,
-    unknown_keys,
 )
 from tribodyn.study.machine.tables import (
     HousingTable,
@@ -125,11 +125,11 @@ class MachineCase(PartsCase):
         self.source = source
         tables = deepcopy(data) if source is not None else in_si(data)
         self.data, self.uncertain, problems = without_spread(tables)
-        unknown_keys("", data, _TOP, problems)
+        check_tables(self.data, _TOP, problems)
         problems += unused_keys(self.data)
-        self.title: str = str(data.get("title", "Machine"))
-        self.origin: str | None = data.get("origin")
-        problems += reason_faults(data.get("assumed", {}))
+        self.title: str = self.data.get("title", "Machine")
+        self.origin: str | None = self.data.get("origin")
+        problems += reason_faults(self.data.get("assumed", {}))
         groups = {group: tables_of(self.data, group, problems) for group in GROUPS}
         self._blanks = read_blanks(groups, problems)
         self._add_material(groups)

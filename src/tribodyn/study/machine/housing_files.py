@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+import io
 import shutil
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -15,11 +16,14 @@ from tribodyn.study.case.values import KeyedProblems, Plain
 from tribodyn.study.machine.read_parts import built, table_of
 from tribodyn.study.machine.tables import HousingTable
 from tribodyn.types import Array
+from tribodyn.validated_files import read_bytes
 
 if TYPE_CHECKING:
     from tribodyn.study.machine.case import MachineCase
 
 _MATRICES = {"stiffness": "K", "mass": "M", "damping": "C"}
+#: Rows of a matrix in a file, at most.
+_MOST = 10_000
 _NODES = "Write [housing.nodes] with six coordinate numbers a node, counted from 0, -1 at rest"
 
 
@@ -28,7 +32,11 @@ def read_housing(body: Any, problems: KeyedProblems) -> Housing | None:
     if body is None:
         return None
     count = len(problems)
-    nodes = dict(body.get("nodes", {})) if isinstance(body, Mapping) else {}
+    nodes = body.get("nodes", {}) if isinstance(body, Mapping) else {}
+    if not isinstance(nodes, Mapping):
+        problem = Problem("housing.nodes is not a table", "", "", _NODES)
+        problems.append(("housing.nodes", problem))
+        return None
     inner = {k: v for k, v in body.items() if k != "nodes"} if isinstance(body, Mapping) else body
     table = table_of(HousingTable, inner, "housing", problems)
     if len(problems) > count:
@@ -49,13 +57,13 @@ def read_housing(body: Any, problems: KeyedProblems) -> Housing | None:
 def _read_files(table: Any) -> tuple[dict[str, Array], dict[str, list[int]]]:
     """Matrices by name, and the nodes of a NumPy archive."""
     if table.matrices is not None:
-        with _opened("matrices", table.matrices) as archive:
-            missing = [name for name in ("K", "M") if name not in archive]
-            if missing:
-                why, remedy = f"It has: {', '.join(archive)}", "Save it by numpy.savez(K=.., M=..)"
-                raise InputError(f"the file has no {missing[0]}", "matrices", why, remedy)
-            matrices = {k: np.asarray(archive[n]) for k, n in _MATRICES.items() if n in archive}
-            names = [str(name) for name in archive["nodes"]] if "nodes" in archive else []
+        archive = _read("matrices", table.matrices, "a NumPy archive with K and M", _archive)
+        missing = [name for name in ("K", "M") if name not in archive]
+        if missing:
+            why, remedy = f"It has: {', '.join(archive)}", "Save it by numpy.savez(K=.., M=..)"
+            raise InputError(f"the file has no {missing[0]}", "matrices", why, remedy)
+        matrices = {k: archive[n] for k, n in _MATRICES.items() if n in archive}
+        names = [str(name) for name in archive.get("nodes", ())]
         return matrices, {name: list(range(6 * i, 6 * i + 6)) for i, name in enumerate(names)}
     files = {name: getattr(table, f"{name}_file") for name in _MATRICES}
     paths = {name: path for name, path in files.items() if path is not None}
@@ -64,27 +72,47 @@ def _read_files(table: Any) -> tuple[dict[str, Array], dict[str, list[int]]]:
         why = "A housing has a stiffness and a mass matrix"
         remedy = 'Give matrices = "housing.npz", or stiffness_file and mass_file'
         raise InputError(f"{absent[0]}_file is missing", f"{absent[0]}_file", why, remedy)
-    return {name: _market(f"{name}_file", path) for name, path in paths.items()}, {}
+    return {
+        name: _read(f"{name}_file", path, "a Matrix Market file", _market)
+        for name, path in paths.items()
+    }, {}
 
 
-def _opened(key: str, path: str) -> Any:
+def _read(key: str, path: str, kind: str, load: Callable[[io.BytesIO], Any]) -> Any:
+    """Content of a regular file of limited size."""
     try:
-        return np.load(path, allow_pickle=False)
-    except (OSError, ValueError) as error:
+        return load(io.BytesIO(read_bytes(path, "housing")))
+    except Exception as error:  # readers of damaged files raise errors of many types
         what = f"{Path(path).name} cannot be read: {error}"
-        remedy = "Give a file written by numpy.savez"
-        raise InputError(what, key, "It is a NumPy archive with K and M", remedy) from None
+        raise InputError(what, key, f"It is {kind}", "Write the file again") from None
 
 
-def _market(key: str, path: str) -> Array:
-    from scipy.io import mmread
+def _archive(file: io.BytesIO) -> dict[str, Array]:
+    with np.load(file, allow_pickle=False) as archive:
+        return {name: np.asarray(archive[name]) for name in archive.files}
 
-    try:
-        matrix = mmread(path)
-    except (OSError, ValueError) as error:
-        what = f"{Path(path).name} cannot be read: {error}"
-        raise InputError(what, key, "It is a Matrix Market file", "Check the file") from None
-    return np.asarray(matrix.toarray() if hasattr(matrix, "toarray") else matrix, dtype=float)
+
+def _market(file: io.BytesIO) -> Array:
+    """Real matrix of a Matrix Market file; the reader of SciPy crashes on damaged ones."""
+    head, *lines = file.read().decode("ascii").splitlines()
+    _, _, layout, field, symmetry = head.lower().split()
+    if field not in ("real", "integer") or symmetry not in ("general", "symmetric"):
+        raise ValueError(f"it is {field} and {symmetry}, not real and general or symmetric")
+    sizes, *rows = (line for line in lines if line.strip() and not line.startswith("%"))
+    height, width, *count = map(int, sizes.split())
+    if not 0 < max(height, width) < _MOST:
+        raise ValueError(f"it has {height} x {width} entries")
+    matrix, entries = np.zeros((height, width)), np.loadtxt(rows, ndmin=2)
+    if layout == "coordinate":
+        at = entries[:, :2].astype(int) - 1
+        if entries.shape != (count[0], 3) or at.min() < 0:
+            raise ValueError(f"it has {len(entries)} entries, not the {count[0]} of its head")
+        np.add.at(matrix, tuple(at.T), entries[:, 2])
+    elif symmetry == "symmetric":
+        matrix[np.triu_indices(height)[::-1]] = entries[:, 0]
+    else:
+        matrix = entries.reshape(width, height).T
+    return matrix + np.tril(matrix, -1).T if symmetry == "symmetric" else matrix
 
 
 def copy_housing(case: MachineCase, folder: Path, prefix: str) -> MachineCase:

@@ -52,6 +52,10 @@ def read_loads(data: Mapping[str, Any], problems: KeyedProblems) -> Loads | None
     run = table_of(OperationTable, data["operation"], "operation", problems)
     if run is None:
         return None
+    for end in ("input", "output"):
+        if not getattr(run, end):
+            problem = Problem(f'{end} = ""', "", "It names a shaft or a member", "Give its name")
+            problems.append((f"operation.{end}", problem))
     point = LoadCase("operation", run.speed, run.torque, 1.0)
     rows = data.get("load_cases", [])
     if not isinstance(rows, list | tuple) or not all(isinstance(r, Mapping) for r in rows):

@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import replace
 from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from tribodyn.errors import InputError
 from tribodyn.model import NO_OPTIONS
 from tribodyn.study.case.read import changed_file, key_lines, parse_toml
 from tribodyn.study.case.section import file_keys
@@ -43,7 +45,28 @@ def read_any_case(
     by: str = "",
 ) -> Case | MachineCase | PlanetaryCase:
     """Check the text of a case file of any kind, with values replaced by dotted key."""
-    data = parse_toml(text, name)
+    try:
+        return _read(parse_toml(text, name), text, name, folder, changes, by)
+    except InputError as error:
+        # Some checks of parts know neither the file nor its lines.
+        raise InputError(
+            [
+                problem
+                if str(problem.where).startswith((name, by or name, "--"))
+                else replace(problem, where=f"{name}: {problem.where}".removesuffix(": "))
+                for problem in error.problems
+            ]
+        ) from error
+
+
+def _read(
+    data: dict[str, Any],
+    text: str,
+    name: str,
+    folder: Path | None,
+    changes: Mapping[str, Any],
+    by: str,
+) -> Case | MachineCase | PlanetaryCase:
     source = Source(name or "case", partial(key_lines, text)).with_replaced(changes, by)
     stages = data.get("planets")
     bodies = [*stages.values()] if isinstance(stages, Mapping) else []

@@ -13,7 +13,14 @@ from tribodyn.gear import Material
 from tribodyn.machine import ROLLING_BEARINGS, Bearing, Coupling, Gear, Section, Shaft
 from tribodyn.model import REQUIRED, Option, flag, integer, number, text
 from tribodyn.study.case.section import Section as Table
-from tribodyn.study.case.values import FaultError, KeyedProblems, Plain, read_table, read_value
+from tribodyn.study.case.values import (
+    FaultError,
+    KeyedProblems,
+    Plain,
+    read_table,
+    read_value,
+    written,
+)
 from tribodyn.study.machine.tables import BearingTable, CouplingTable, GearTable, ShaftTable
 
 LENGTH = number(
@@ -25,6 +32,8 @@ _SECTION = (
     "both diameters of the end"
 )
 _PARTS = ("length", "outer_diameter", "inner_diameter", "end_outer_diameter", "end_inner_diameter")
+#: Tables of parts, each with a name.
+_NAMED = ("shafts", "bearings", "gears", "meshes", "couplings", "planets", "faults")
 _SHARE = re.compile(r"\s*([\d.]+)\s*%\s*")
 
 
@@ -41,14 +50,12 @@ def in_si(data: Any) -> Any:
 
 def tables_of(data: Mapping[str, Any], group: str, problems: KeyedProblems) -> dict[str, Any]:
     """Tables of a group by name; anything else in it is a problem."""
-    group_tables = data.get(group, {})
-    if not isinstance(group_tables, Mapping):
-        remedy = f"Write [{group}.NAME] with the keys of each part"
-        problems.append((group, Problem(f"{group} is not a table", "", "", remedy)))
-        return {}
     tables = {}
-    for name, body in group_tables.items():
-        if isinstance(body, Mapping):
+    for name, body in data.get(group, {}).items():
+        if not name:
+            what, remedy = "a part has no name", f"Write [{group}.NAME]"
+            problems.append((group, Problem(what, "", "Others refer to it by name", remedy)))
+        elif isinstance(body, Mapping):
             tables[str(name)] = dict(body)
             continue
         what, why = f"{name} = {body!r}", f"[{group}] holds one table for each part"
@@ -123,6 +130,7 @@ def read_bearing(name: str, body: dict[str, Any], problems: KeyedProblems) -> Be
 
 def _rolling(key: str, body: dict[str, Any], problems: KeyedProblems) -> Any:
     kind = body.pop("type")
+    kind = kind if isinstance(kind, str) else written(kind)
     if kind not in ROLLING_BEARINGS:
         names = list(ROLLING_BEARINGS)
         why, remedy = f"Known: {', '.join(names)}", did_you_mean(kind, names, "Choose one of these")
@@ -173,7 +181,8 @@ def rolling_options(law: type) -> dict[str, Option]:
 def read_coupling(name: str, body: dict[str, Any], problems: KeyedProblems) -> Coupling | None:
     """Coupling of a table."""
     key, count = f"couplings.{name}", len(problems)
-    shafts = body.pop("shafts", ())
+    shafts: Any = body.pop("shafts", ())
+    shafts = shafts if isinstance(shafts, list | tuple) else written(shafts)
     table = read_table(CouplingTable, body, key, {}, problems)
     if len(problems) > count:
         return None
@@ -214,16 +223,23 @@ def read_share(key: str, value: Any, problems: KeyedProblems) -> float | None:
     return float(value)
 
 
-def unknown_keys(
-    key: str, body: Mapping[str, Any], allowed: tuple[str, ...], problems: KeyedProblems
-) -> None:
-    """Report keys of a table that it does not have."""
-    for name in body:
+def check_tables(data: dict[str, Any], allowed: tuple[str, ...], problems: KeyedProblems) -> None:
+    """Report keys that a case of parts does not have; remove what is no table or no text."""
+    for name in list(data):
         if name not in allowed:
             remedy = did_you_mean(name, allowed, "Remove it")
-            why = f"{f'[{key}]' if key else 'A machine'} has: {', '.join(allowed)}"
-            place = f"{key}.{name}" if key else str(name)
-            problems.append((place, Problem(f"{name}: unknown key", "", why, remedy)))
+            why = f"A machine has: {', '.join(allowed)}"
+            problems.append((name, Problem(f"{name}: unknown key", "", why, remedy)))
+            continue
+        is_text = name in ("title", "origin")
+        if isinstance(data[name], str if is_text else Mapping) or name == "load_cases":
+            continue
+        if data[name] is not None:
+            what = f"{name} is {'no text' if is_text else 'not a table'}"
+            table = f"{name}.NAME" if name in _NAMED else name
+            remedy = "Write it in quotes" if is_text else f"Write [{table}] with its keys"
+            problems.append((name, Problem(what, "", "", remedy)))
+        del data[name]
 
 
 def table_of(kind: type[Table], body: Any, key: str, problems: KeyedProblems) -> Any:

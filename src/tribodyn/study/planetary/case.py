@@ -30,11 +30,11 @@ from tribodyn.study.faults.planetary_section import (
 from tribodyn.study.machine.load_cases import LoadCase, read_loads
 from tribodyn.study.machine.pair_cases import MESH_KEYS, SHARED, mesh_tables, pair_case
 from tribodyn.study.machine.read_parts import (
+    check_tables,
     in_si,
     read_gear,
     table_of,
     tables_of,
-    unknown_keys,
 )
 from tribodyn.study.machine.tables import STIFF, MotionTable, PlanetsTable
 from tribodyn.study.machine.unused_keys import unused_keys, unused_keys_of_stage
@@ -105,11 +105,11 @@ class PlanetaryCase(PartsCase):
         self.source = source
         tables = deepcopy(data) if source is not None else in_si(data)
         self.data, self.uncertain, problems = without_spread(_for_each_planet(tables), lists=True)
-        unknown_keys("", data, (*_TOP, *SHARED, "assumed"), problems)
+        check_tables(self.data, (*_TOP, *SHARED, "assumed"), problems)
         problems += [*unused_keys(self.data), *unused_keys_of_stage(self.data)]
-        self.title: str = str(data.get("title", "Planetary stage"))
-        self.origin: str | None = data.get("origin")
-        problems += reason_faults(data.get("assumed", {}))
+        self.title: str = self.data.get("title", "Planetary stage")
+        self.origin: str | None = self.data.get("origin")
+        problems += reason_faults(self.data.get("assumed", {}))
         self.name, self.table = self._read_planets(problems)
         bodies = tables_of(self.data, "gears", problems)
         parts = {n: read_gear(n, {"shaft": n, **b}, problems) for n, b in bodies.items()}

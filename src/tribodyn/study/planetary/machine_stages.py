@@ -276,6 +276,9 @@ def read_stages(
             problems += _double_problems(key, table)
         else:
             roles = (*roles, "ring_planet")
+        if not table.carrier:
+            problem = Problem('carrier = ""', "", "It names a shaft", "Give its name")
+            problems.append((f"{key}.carrier", problem))
         for role in roles:
             if (gear := getattr(table, role)) not in gears:
                 why, remedy = f"Known: {', '.join(gears)}", "Add the gear, or correct the name"
