@@ -44,9 +44,9 @@ def impacts_of(
         if not rates.size:
             what = f"the record holds {used.size * turn / rate:.3g} turns of the shaft"
             raise InputError(what, "", "Too few for any modulation", "Record longer")
-        quiet = (
-            used if mesh_frequency is None else lifter(used, rate, remove=[1.0 / mesh_frequency])
-        )
+        quiet = used
+        if mesh_frequency is not None and mesh_frequency < 0.5 * rate:
+            quiet = lifter(used, rate, remove=[1.0 / mesh_frequency])
         return cyclic_coherence(quiet, rate, rates[rates < 0.4 * rate])
 
     parts["coherence"] = attempt("cyclic coherence", coherence, notes)

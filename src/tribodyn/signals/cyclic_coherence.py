@@ -254,7 +254,7 @@ def cyclic_coherence(
         edge = 0.5 * each + frequency[1]
         inside = (frequency >= edge) & (frequency <= 0.5 * sampling_rate - edge)
         inside &= power > 0.0
-        coherence[inside, column] = cross[inside] / power[inside]
+        coherence[inside, column] = np.minimum(cross[inside] / power[inside], 1.0)
     threshold = 1.0 - _FALSE_ALARM ** (1.0 / (independent - 1.0))
     return CyclicCoherence(frequency, alpha, coherence, threshold, independent, spread)
 

@@ -150,3 +150,16 @@ def test_a_random_modulation_stands_above_the_limit_and_noise_does_not() -> None
         assert (numbers["coherence"] > numbers["coherence_limit"]) == (depth > 0.0)
         statements = signal_report.signal_report_data(analysis).statements
         assert any(finding in text for text in statements)
+
+
+def test_coherence_of_a_transient_is_at_most_one() -> None:
+    """The mean power of a step, which leaks to low rates, is subtracted."""
+    step = (np.arange(10_000) > 4000) * 1.0
+    result = cyclic_coherence(step, 5000.0, np.arange(2.5, 20.0, 0.25))
+    assert result.coherence.max() <= 1.0
+
+
+def test_a_mesh_above_half_the_rate_does_not_prevent_the_coherence() -> None:
+    run = Recording({"acc": np.random.default_rng(2).standard_normal(6000)}, 3000.0, {})
+    analysis = analyse_signal(run, "acc", speed=2.0 * np.pi * 20.0, teeth=100)
+    assert analysis.coherence is not None
