@@ -21,7 +21,7 @@ from tribodyn.app.authentication import (
     headers,
 )
 from tribodyn.app.jobs import Jobs
-from tribodyn.app.session import TabSession, initial_case
+from tribodyn.app.session import TabSession, initial_case, number_of
 from tribodyn.app.workspace import Workspace
 from tribodyn.errors import InputError, TribodynError
 from tribodyn.report.html import text_of
@@ -161,14 +161,15 @@ class Page:
         self, path: str, edits: Any, act: Any, tick: Any, client_versions: Any
     ) -> list[Any]:
         """Perform the requested action and return the changed parts of the page."""
-        desk = self._guard.desk(self._session(), str(path).split("/")[2])
+        names = [*str(path).split("/"), "", ""]
+        desk = self._guard.desk(self._session(), names[2])
         with desk.lock:
-            _do(desk, edits or (), act)
+            _do(desk, edits, act)
             now, parts = _versions(desk), []
             for name in _PARTS:
                 same = isinstance(client_versions, dict) and client_versions.get(name) == now[name]
                 parts.append(dash.no_update if same else _DRAW[name](desk))
-            return [*parts, now, {"busy": desk.busy, "count": int(tick or 0)}]
+            return [*parts, now, {"busy": desk.busy, "count": number_of(tick)}]
 
 
 def _bound(host: str, port: int, application: Any) -> BaseWSGIServer:
@@ -243,9 +244,10 @@ def _layout() -> html.Div:
 def _do(desk: TabSession, edits: Any, act: Any) -> None:
     """Apply edits, then the action of a button, each once."""
     try:
-        for edit in edits:
-            desk.edit(edit)
-        if not isinstance(act, Mapping) or not desk.fresh(int(act.get("number", 0))):
+        for edit in edits if isinstance(edits, list) else ():
+            if isinstance(edit, Mapping):
+                desk.edit(edit)
+        if not isinstance(act, Mapping) or not desk.fresh(number_of(act.get("number"))):
             return
         what, of, text = (str(act.get(name, ""))[:500] for name in ("do", "of", "text"))
         if what in _ACTS:

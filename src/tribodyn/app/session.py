@@ -81,7 +81,7 @@ class TabSession:
 
     def edit(self, event: Mapping[str, Any]) -> None:
         """Apply an edit of a form field and check the case with it."""
-        key, number = str(event.get("key", "")), int(event.get("number", 0))
+        key, number = str(event.get("key", "")), number_of(event.get("number"))
         if event.get("form") == "study":
             if self.study and key in STUDIES[self.study].options and "value" in event:
                 self.values[self.study][key] = str(event["value"])[:_LONGEST].strip()
@@ -349,6 +349,11 @@ def _fault(key: str, error: TribodynError) -> dict[str, str]:
     parts = (p.rstrip(".") for p in (problem.what, problem.why, problem.remedy) if p)
     text = " ".join(p if p.endswith("?") else f"{p}." for p in parts)
     return {"key": key, "label": key_label(key) if key else "", "text": text}
+
+
+def number_of(value: Any) -> int:
+    """Whole number that a request counts with; 0 for anything else."""
+    return value if isinstance(value, int) else 0
 
 
 def _with_unit(option: Option, text: str, unit: str) -> str:

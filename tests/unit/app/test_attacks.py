@@ -113,7 +113,10 @@ def test_a_token_of_another_start_is_refused(page: Page, home: Path) -> None:
         again.close()
 
 
-@pytest.mark.parametrize("host", ["evil.example", "127.0.0.1.evil.example", "", "localhost.evil"])
+@pytest.mark.parametrize(
+    "host",
+    ["evil.example", "127.0.0.1.evil.example", "", "localhost.evil", "[", "[::1", "[x]:1", "a]b"],
+)
 def test_another_host_name_is_refused(user: Browser, host: str) -> None:
     assert user.get("/", Host=host).status_code == 421
 
@@ -232,6 +235,29 @@ def test_nonsense_is_passed_over(user: Browser, desk: str) -> None:
         assert user.ask(desk, do, of).status_code == 200
     answer = user.ask(desk, edit={"key": "no.such.key", "value": "1"})
     assert answer.json["response"]["form"]["data"]["case"]["faults"] == []
+
+
+@pytest.mark.parametrize(
+    "typed",
+    [
+        {"number": "x"}, {"number": None}, {"number": [1]}, {"number": 1e300}, {"key": 3},
+        {"key": ["operation.torque"]}, {"key": None, "value": "1"}, {"value": 5}, {"value": None},
+        {"value": ["90"]}, {"value": {"a": 1}}, {"unit": "nonsense"}, {"unit": 3}, {"unit": []},
+        {"form": 7}, {"form": "study", "value": 3}, {"form": None},
+    ],
+)  # fmt: skip
+def test_edits_of_a_wrong_type_are_answered(user: Browser, desk: str, typed: Any) -> None:
+    event = {"key": "operation.torque", "value": "90"} | typed
+    for edit in (event, {key: event[key] for key in event if key != "value"} | {"unit": "x"}):
+        assert user.ask(desk, edit=edit).status_code == 200
+    answer = user.ask(desk, edit={"key": "operation.torque", "value": "90", "unit": "N*m"})
+    assert answer.json["response"]["form"]["data"]["case"]["faults"] == []
+
+
+@pytest.mark.parametrize("number", ["x", None, [], {}, 1e300])
+def test_acts_of_a_wrong_type_are_answered(user: Browser, desk: str, number: Any) -> None:
+    for do in ("view", "stop"):
+        assert user.ask(desk, do, "files", act={"number": number}).status_code == 200
 
 
 def test_a_case_beyond_the_folder_is_not_begun_with(home: Path) -> None:
