@@ -19,8 +19,9 @@ import threading
 import time
 from collections.abc import Callable, Iterable, Iterator
 from concurrent.futures import Future, wait
-from contextlib import AbstractContextManager, contextmanager, suppress
+from contextlib import ExitStack, contextmanager, suppress
 from contextvars import copy_context
+from functools import cache
 from queue import SimpleQueue
 from types import FrameType, TracebackType
 from typing import Any, TypeVar
@@ -103,6 +104,7 @@ class Threads:
         self._handler: Any = None  #: handler of Ctrl-C before, where these threads replace it
         self._tasks: SimpleQueue[tuple[Future[Any], Callable[..., Any], Any] | None] = SimpleQueue()
         self._waiting: list[Future[Any]] = []
+        self._limits = ExitStack()
         self._threads = [threading.Thread(target=self._work, daemon=True) for _ in range(count)]
 
     def _work(self) -> None:
@@ -139,7 +141,8 @@ class Threads:
             raise KeyboardInterrupt
 
     def __enter__(self) -> Threads:
-        """Start the threads."""
+        """Start the threads; beside them the linear algebra starts none."""
+        self._limits.enter_context(single_blas_thread())
         try:
             if threading.current_thread() is threading.main_thread():
                 handler = signal.getsignal(signal.SIGINT)
@@ -168,15 +171,16 @@ class Threads:
             while any(thread.is_alive() for thread in self._threads):
                 for thread in self._threads:
                     thread.join(_POLL_INTERVAL)
-            self._restore_handler()
+            self._restore()
             if error is None:
                 self.refuse_interrupted()
         except BaseException:
             self._stop()
             raise
 
-    def _restore_handler(self) -> None:
-        """Give Ctrl-C back the handler that it had before, unless another one replaced ours."""
+    def _restore(self) -> None:
+        """Restore the linear algebra, and the handler of Ctrl-C unless another one replaced it."""
+        self._limits.close()
         if self in _awaited:
             _awaited.remove(self)
         if self._handler is not None and signal.getsignal(signal.SIGINT) == self._interrupt:
@@ -193,7 +197,7 @@ class Threads:
     def _stop(self) -> None:
         """Set the flag and give the threads a short time to end."""
         self.flag[0] = 1
-        self._restore_handler()
+        self._restore()
         self._dismiss(cancel=True)
         end = time.monotonic() + _GRACE
         while any(thread.is_alive() for thread in self._threads) and time.monotonic() < end:
@@ -216,13 +220,42 @@ def processors() -> int:
     return 1 if getattr(_thread_state, "alone", False) else os.cpu_count() or 1
 
 
-def single_blas_thread() -> AbstractContextManager[Any]:
-    """Limit the linear algebra to one thread: with small matrices threads only wait."""
-    import scipy.linalg  # noqa: F401  (brings a library of its own, which has to be limited too)
-    from threadpoolctl import threadpool_limits
+#: Blocks that limit the linear algebra now, and what restores it after the last one.
+_blas_users: list[Any] = [0, None]
+_blas_lock = threading.Lock()
 
-    limits: AbstractContextManager[Any] = threadpool_limits(1, "blas")
-    return limits
+
+@cache
+def _blas() -> Any:
+    import scipy.linalg  # noqa: F401  (brings a library of its own, which has to be limited too)
+    from threadpoolctl import ThreadpoolController
+
+    return ThreadpoolController()
+
+
+def _release_blas() -> None:
+    """Let any thread set the number of threads of the linear algebra (threadpoolctl 3.8)."""
+    for library in _blas().lib_controllers:
+        if hasattr(library, "clear_controlling_thread"):
+            library.clear_controlling_thread(force=True)
+
+
+@contextmanager
+def single_blas_thread() -> Iterator[None]:
+    """Limit the linear algebra to one thread until the last of such blocks, in any thread, ends."""
+    with _blas_lock:
+        _blas_users[0] += 1
+        if _blas_users[0] == 1:
+            _blas_users[1] = _blas().limit(limits=1, user_api="blas")
+    try:
+        yield
+    finally:
+        with _blas_lock:
+            _blas_users[0] -= 1
+            if not _blas_users[0]:
+                _release_blas()  # only the thread that set the limit could restore it
+                _blas_users[1].restore_original_limits()
+                _release_blas()
 
 
 def begins_thread() -> bool:

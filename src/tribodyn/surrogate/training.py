@@ -10,6 +10,7 @@ import numpy as np
 
 from tribodyn.checks import require_number, require_whole
 from tribodyn.errors import Argument, InputError, require_between
+from tribodyn.interrupt import single_blas_thread
 from tribodyn.progress import SILENT, Progress
 from tribodyn.surrogate.model import Surrogate
 from tribodyn.surrogate.network import Fit, Network, Squares, levenberg_marquardt
@@ -235,8 +236,6 @@ def _fitted(
     ready: Prepared, column: int, seed: int, training: Training
 ) -> tuple[Network, Fit, float, float]:
     """Best network of one target, with its validation errors in the unit of the target."""
-    from threadpoolctl import threadpool_limits
-
     network = Network(ready.features.shape[1], tuple(training.hidden), tuple(training.activations))
     inputs = ready.feature_scaling.scaled(ready.features)
     target = ready.target_scaling.scaled(ready.targets)[:, column]
@@ -245,7 +244,7 @@ def _fitted(
     validation = _Residuals(network, inputs[held_out], target[held_out])
     random = np.random.default_rng([seed, column])
     # Threads would wait for each other at every small product, and change the last digits.
-    with threadpool_limits(1, "blas"):
+    with single_blas_thread():
         fits = [
             levenberg_marquardt(
                 residuals.squares,

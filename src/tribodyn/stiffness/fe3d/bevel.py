@@ -12,6 +12,7 @@ import numpy as np
 
 from tribodyn.compiled import announce, source_digest
 from tribodyn.gear import HypoidFlanks, Material
+from tribodyn.interrupt import single_blas_thread
 from tribodyn.progress import SILENT, Progress
 from tribodyn.stiffness.fe2d.provider import load_arrays, store_arrays
 from tribodyn.stiffness.fe2d.ring import quadratic_shapes
@@ -116,6 +117,7 @@ class FlankInfluence:
         return np.asarray(self.unit.layer.ravel() * self.module)
 
 
+@single_blas_thread()
 def unit_flank_compliances(
     sector: BevelSector, neighbours: int = _NEIGHBOURS, progress: Progress = SILENT
 ) -> UnitFlankCompliances:

@@ -6,11 +6,13 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from tribodyn.interrupt import single_blas_thread
 from tribodyn.stiffness.fe3d.face import FaceBasis
 from tribodyn.stiffness.fe3d.sections import SectionMatrices, SolidMatrices
 from tribodyn.types import Array, Index
 
 
+@single_blas_thread()
 def eliminated(matrix: Array, count: int) -> Array:
     """Stiffness of the freedoms after the first ``count``, which are free of loads."""
     from scipy.linalg import cholesky, solve_triangular

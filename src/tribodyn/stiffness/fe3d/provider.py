@@ -13,6 +13,7 @@ import numpy as np
 from tribodyn.compiled import announce, source_digest
 from tribodyn.errors import Argument, InputError
 from tribodyn.gear import Material, SpurGear
+from tribodyn.interrupt import single_blas_thread
 from tribodyn.progress import SILENT, Progress
 from tribodyn.stiffness.fe2d.provider import (
     held_radius,
@@ -48,6 +49,7 @@ def gear_sector(gear: SpurGear, poissons_ratio: float, size: SolidSize) -> Secto
     )
 
 
+@single_blas_thread()
 def unit_face_compliances(
     sector: Sector, neighbours: int, progress: Progress = SILENT
 ) -> UnitFaceCompliances:
