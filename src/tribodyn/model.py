@@ -85,7 +85,8 @@ class Option:
         if math.isfinite(self.low) and math.isfinite(self.high):
             sign = "above " if self.positive else ""
             return f"{sign}{self.show(self.low)} to {self.show(self.high)}"
-        return {"text": "text", "file": "path of a file"}.get(self.kind, "any finite value")
+        finite = f"any finite value in {self.display_unit}" if self.unit else "any finite value"
+        return {"text": "text", "file": "path of a file"}.get(self.kind, finite)
 
 
 def number(

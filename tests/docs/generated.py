@@ -14,12 +14,25 @@ from tribodyn.aliases import RENAMED
 from tribodyn.study import Case
 from tribodyn.study.case.reference import reference_tables, start_toml
 from tribodyn.study.case.section import Table
+from tribodyn.study.parts_reference import machine_tables
 from tribodyn.study.pipeline.citations import bibliography
 
 
 def _tables(text: str) -> str:
     """The page on the case file with the tables of all keys at its end."""
-    return text[: text.index("### Top of the file")] + reference_tables()
+    head = text[: text.index("### Top of the file")]
+    return f"{head}{reference_tables()}\n{_OF_PARTS}{machine_tables()}"
+
+
+_OF_PARTS = """## All keys of machines and planetary stages
+
+`NAME` stands for the name of a part. `[dynamics]` also has the keys of a pair but for `model` and
+`bearing_damping_ratio`, and a mesh or a stage may have them too; `[material]`, `[lubricant]`,
+`[film]`, `[stiffness]` and `[friction]` are those above, for all meshes or, as
+`[meshes.NAME.film]`, for one. `tribodyn new my.toml --machine`, `--stage` and `--hypoid` write
+short files to fill in.
+
+"""
 
 
 def _start(text: str) -> str:

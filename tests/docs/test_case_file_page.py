@@ -12,7 +12,7 @@ from pages import ROOT, blocks
 
 import tribodyn as td
 from tribodyn.cli import call
-from tribodyn.cli.app import COMMANDS
+from tribodyn.cli.app import COMMANDS, PAIR
 from tribodyn.ehl import FILM_MODELS
 from tribodyn.friction import LAWS
 from tribodyn.stiffness import MODELS
@@ -20,6 +20,7 @@ from tribodyn.study import read_case
 from tribodyn.study.case.checks import case_options
 from tribodyn.study.case.provenance import derived_values
 from tribodyn.study.case.reference import case_keys, reference_tables, start_toml
+from tribodyn.study.parts_reference import machine_tables
 
 _ROW = r"^\| `([\w-]+)` \| (.*) \|$"
 _INERTIAS = ("mass", "moment_of_inertia")
@@ -34,7 +35,8 @@ def test_pages_are_those_that_the_program_writes(page: str) -> None:
 
 def test_all_keys_are_on_the_page_as_they_are_checked() -> None:
     page = (_DOCS / "case-file.md").read_text(encoding="utf-8")
-    assert page.endswith(reference_tables())
+    assert reference_tables() in page
+    assert page.endswith(machine_tables())
     assert len(list(case_keys())) > 60
 
 
@@ -80,3 +82,10 @@ def test_every_command_is_on_its_page() -> None:
     page = (_DOCS / "command-line.md").read_text(encoding="utf-8")
     for command in COMMANDS:
         assert f"`tribodyn {command.name}" in page
+
+
+def test_commands_of_pairs_alone_are_listed() -> None:
+    page = (_DOCS / "command-line.md").read_text(encoding="utf-8")
+    sentence = page.partition("all commands but")[2].partition(". `tribodyn")[0]
+    named = [name.split()[0] for name in re.findall(r"`([^`]+)`", sentence)]
+    assert named == [each.name for each in COMMANDS if each.takes == PAIR]

@@ -9,8 +9,10 @@ from cyclopts import Parameter
 
 from tribodyn.cli.console import figures, say, say_json, show_warnings, table, tell
 from tribodyn.cli.settings import CaseName, Flag, Settings, changed_any_case, check_file
+from tribodyn.errors import InputError
 
 if TYPE_CHECKING:
+    from tribodyn.study.case.case import Case
     from tribodyn.study.machine.user_tables import PartsCase
 
 
@@ -106,6 +108,9 @@ def new(
     /,
     *,
     from_: Annotated[str | None, Parameter(name="--from")] = None,
+    machine: Flag = False,
+    stage: Flag = False,
+    hypoid: Flag = False,
     force: Flag = False,
     json: Flag = False,
 ) -> None:
@@ -118,17 +123,27 @@ def new(
     from_ : str
         Built-in case or case file to take all values from; by default a short file of no
         particular gears is written, to be filled in.
+    machine : bool
+        Short file of a gearbox with shafts and bearings in place of that of a gear pair.
+    stage : bool
+        Short file of a planetary stage.
+    hypoid : bool
+        Short file of a pair of hypoid gears.
     force : bool
         Replace an existing file.
     json : bool
         Write one JSON object to stdout.
     """
     from tribodyn.cases.load import load_case
-    from tribodyn.study.case.reference import start_toml
     from tribodyn.study.machine.case import MachineCase
     from tribodyn.study.machine.housing_files import copy_housing
     from tribodyn.study.pipeline.save import write_file
 
+    asked = {"from": from_, "machine": machine, "stage": stage, "hypoid": hypoid}
+    options = [name for name, value in asked.items() if value]
+    if len(options) > 1:
+        what = f"{' and '.join(f'--{name}' for name in options)} are both given"
+        raise InputError(what, "tribodyn new", "A file has one beginning", "Keep one of them")
     check_file(path, force)
     source = load_case(from_) if from_ else None
     files = []
@@ -138,9 +153,20 @@ def new(
         for file in files:
             check_file(file, force)
         source = copy_housing(source, path.parent, prefix)
-    write_file(path, source.to_toml() if source else start_toml())
+    write_file(path, _new_text(source, *options))
     if json:
         say_json({"path": str(path)} | ({"files": [str(file) for file in files]} if files else {}))
     else:
         say("\n".join(map(str, (path, *files))))
         tell(f"Edit it, then: tribodyn check {path}")
+
+
+def _new_text(source: Case | PartsCase | None, kind: str = "") -> str:
+    """Text of a case file with all values of a case, or to be filled in."""
+    from tribodyn.study.case.reference import start_toml
+    from tribodyn.study.machine.user_tables import PartsCase, commented_toml
+    from tribodyn.study.parts_reference import start_of
+
+    if source is None:
+        return start_of(kind) if kind else start_toml()
+    return commented_toml(source) if isinstance(source, PartsCase) else source.to_toml()

@@ -90,6 +90,13 @@ def _entries_by_name(query: str) -> Entries:
     candidates = _all_entries()
     term_entries = [_of_word(meant)] if (meant := find_term(query)) else []
     exact = [entry for names, entry in candidates if query in names]
+    group, _, key = query.partition(".")
+    name = f".{key.rpartition('.')[2]}"  # of bearings.A.clearance
+    exact = exact or [
+        entry
+        for names, entry in candidates
+        if key and names[0].startswith(f"{group}.NAME") and names[0].endswith(name)
+    ]
     plain_query = _plain_form(query)
     matches = exact or [e for names, e in candidates if plain_query in map(_plain_form, names)]
     return [*term_entries, *matches]
@@ -136,9 +143,13 @@ def _quantities() -> Iterator[tuple[tuple[str, ...], dict[str, Any]]]:
 
 def _keys() -> Iterator[tuple[tuple[str, ...], dict[str, Any]]]:
     from tribodyn.study.case.reference import case_keys, explanations, page_of
+    from tribodyn.study.parts_reference import machine_keys
 
     equations = explanations()["equations"]
-    for key, spec, default in case_keys():
+    pairs = list(case_keys())
+    of_pairs = {id(spec) for _, spec, _ in pairs}
+    parts = [row for row in machine_keys() if id(row[1]) not in of_pairs]
+    for key, spec, default in (*pairs, *parts):
         name = key.rpartition(".")[2]
         yield (
             (key, name),

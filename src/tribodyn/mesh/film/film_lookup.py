@@ -256,9 +256,9 @@ class FilmLookup:
             values=np.vstack([values, number]),
         )
 
-    def friction(self, load: Array) -> Array | FrictionParts:
-        """Friction of the sheared film of every contact under its load."""
-        sheared = ShearedFilms(self.settings, self.pairs, self.place)
+    def friction(self, load: Array, settings: ToothContact) -> Array | FrictionParts:
+        """Friction of the sheared film of every contact under its load, by the law of settings."""
+        sheared = ShearedFilms(settings, self.pairs, self.place)
         return sheared.friction(self._sheared_table(sheared), load)
 
     def _sheared_table(self, films: ShearedFilms) -> FittedTable:
@@ -294,7 +294,7 @@ class FilmsFromTable(LoadedFilms):
         """Evaluate the friction law; one that shears the film has a table of its own."""
         if not LAWS[settings.friction_law].needs_film:
             return friction_by_law(settings.friction_law, contact, settings.friction_options)
-        return self.path.friction(contact.load_per_width)
+        return self.path.friction(contact.load_per_width, settings)
 
     def reported(self, films: Films, load: Array) -> tuple[Films, Mask]:
         """Solve the contacts that results report; also return a mask of the certain quantities."""

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from functools import lru_cache
 from importlib.resources import files
 
@@ -14,19 +14,20 @@ from tribodyn.study.case.section import Section, Table, section_at
 
 def case_keys() -> Iterator[tuple[str, Option, str]]:
     """Iterate over all keys of the case file."""
-    yield from _walk(Case, ())
+    yield from walk(Case, ())
 
 
-def _walk(section: type[Section], path: tuple[str, ...]) -> Iterator[tuple[str, Option, str]]:
+def walk(section: type[Section], path: tuple[str, ...]) -> Iterator[tuple[str, Option, str]]:
+    """Iterate over the keys of a table at a path, and of those in it."""
     for name, field in section.section_keys().keys.items():
         if isinstance(field, Table):
-            yield from _walk(field.kind, (*path, name))
+            yield from walk(field.kind, (*path, name))
         else:
             declared = name in section.fields
-            yield ".".join((*path, name)), field, _default(field, declared)
+            yield ".".join((*path, name)), field, default_of(field, declared)
 
 
-def _default(option: Option, declared: bool) -> str:
+def default_of(option: Option, declared: bool = True) -> str:
     """Format the default of a declared key, or of an option of a model."""
     if option.required and declared:
         return "required"
@@ -36,10 +37,15 @@ def _default(option: Option, declared: bool) -> str:
 
 
 def reference_tables() -> str:
-    """Format all keys as Markdown tables, one for each table of the case file."""
+    """Format all keys of a pair of gears as Markdown tables."""
+    return key_tables(case_keys())
+
+
+def key_tables(keys: Iterable[tuple[str, Option, str]]) -> str:
+    """Format keys as Markdown tables, one for each table of the case file."""
     lines: list[str] = []
     table = ""
-    for key, spec, default in case_keys():
+    for key, spec, default in keys:
         place, _, name = key.rpartition(".")
         if place != table or not lines:
             table = place
@@ -51,24 +57,33 @@ def reference_tables() -> str:
     return "\n".join(lines).strip() + "\n"
 
 
-def start_toml() -> str:
+def start_toml(
+    name: str = "start",
+    section_of: Callable[[tuple[str, ...]], type[Section] | None] = section_at,
+) -> str:
     """Return a short template case file: required keys and recommended models."""
-    text = files("tribodyn.study.case").joinpath("texts", "start.toml").read_text(encoding="utf-8")
+    place = files("tribodyn.study.case").joinpath("texts", f"{name}.toml")
+    text = place.read_text(encoding="utf-8")
     lines: list[str] = []
     section: type[Section] | None = Case
     for line in text.splitlines():
         pair, _, note = line.partition("  # ")
         if line.startswith("["):
-            section = section_at(tuple(line.strip("[]").split(".")))
+            section = section_of(tuple(line.strip("[]").split(".")))
         name = pair.partition(" = ")[0]
         spec = section.spec(name) if section and not line.startswith("#") else None
         if spec is not None:
-            # Limits that only guard against typing errors do not help to choose a value.
-            limits = "" if note or "guards against" in spec.origin else _choice_or_range(spec)
-            comment = "; ".join(filter(None, (spec.meaning, limits, note)))
-            line = f"{pair:<34} # {f'{spec.symbol}: ' if spec.symbol else ''}{comment}"
+            line = f"{pair:<34} # {key_comment(spec, note)}"
         lines.append(line)
     return "\n".join(lines) + "\n"
+
+
+def key_comment(spec: Option, note: str = "") -> str:
+    """Symbol, meaning, and note or limits of a key, as a comment behind its value."""
+    # Limits that only guard against typing errors do not help to choose a value.
+    limits = "" if note or "guards against" in spec.origin else _choice_or_range(spec)
+    text = "; ".join(filter(None, (spec.meaning, limits, note)))
+    return f"{spec.symbol}: {text}" if spec.symbol else text
 
 
 def _choice_or_range(spec: Option) -> str:

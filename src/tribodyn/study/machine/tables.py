@@ -6,7 +6,7 @@ import math
 from collections.abc import Mapping
 from typing import Any
 
-from tribodyn.machine import STEEL
+from tribodyn.machine import ROLLING_BEARINGS, STEEL
 from tribodyn.model import REQUIRED, choice, file_path, flag, integer, number, numbers, text
 from tribodyn.study.case import gears
 from tribodyn.study.case.section import Section
@@ -452,4 +452,39 @@ TABLES: dict[str, type[Section]] = {
     "load_cases": LoadCaseTable,
     "dynamics": MotionTable,
     "faults": MachineFaultTable,
+}
+
+#: Keys that are read apart from the table of their group.
+APART: dict[str, dict[str, Any]] = {
+    "shafts": {
+        "sections": text(
+            None,
+            meaning="sections along x: length, outer and inner diameter, and for a cone both "
+            "diameters of the end; a rigid shaft by default",
+            example='[["60 mm", "40 mm"], ["20 mm", "50 mm", "10 mm"]]',
+        )
+    },
+    "bearings": {
+        "type": choice(
+            None,
+            tuple(ROLLING_BEARINGS),
+            meaning="rolling bearing, which is linearized at its load; a linear support by default",
+        )
+    },
+    "meshes": {"gears": text(REQUIRED, meaning="names of both gears", example='["z1", "z2"]')},
+    "couplings": {
+        "shafts": text(REQUIRED, meaning="names of both shafts", example='["engine", "input"]')
+    },
+    "housing": {
+        "nodes": text(
+            None,
+            meaning="rows of the matrices of each node along x, y, z and about them; -1 without",
+            example='{ "seat A" = [0, 1, 2, -1, -1, -1] }',
+        )
+    },
+    "load_cases": {
+        "share": text(
+            None, meaning="share of the time, a number up to 1 or a percentage", example='"30 %"'
+        )
+    },
 }

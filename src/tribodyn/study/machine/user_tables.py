@@ -15,13 +15,14 @@ from tribodyn.arguments.quantities import without_units
 from tribodyn.errors import InputError, Problem
 from tribodyn.machine.fields import display
 from tribodyn.study.case.provenance import Assumption
+from tribodyn.study.case.reference import key_comment
 from tribodyn.study.case.to_models import USUAL_GEARS
 from tribodyn.study.case.user_input import Source, spread_problem
 from tribodyn.study.case.values import FaultError, KeyedProblems, Plain, read_value
 from tribodyn.study.case.write import written_number
 from tribodyn.study.machine.pair_cases import option_at
 from tribodyn.study.machine.read_parts import LENGTH, in_si
-from tribodyn.study.machine.tables import LoadCaseTable
+from tribodyn.study.machine.tables import APART, LoadCaseTable
 from tribodyn.study.machine.unused_keys import unused_keys
 
 if TYPE_CHECKING:
@@ -314,23 +315,38 @@ def _option_at(case: PartsCase, path: tuple[str, ...]) -> Option | None:
     return option_at(case, path)
 
 
-def _lines(case: PartsCase, table: Mapping[str, Any], path: tuple[str, ...]) -> Iterator[str]:
+def commented_toml(case: PartsCase) -> str:
+    """Write the case file with the meaning and the range of each key."""
+    tables = with_spreads(case.data, case.uncertain)
+    return "\n".join(_lines(case, tables, (), comments=True)).strip() + "\n"
+
+
+def _lines(
+    case: PartsCase, table: Mapping[str, Any], path: tuple[str, ...], *, comments: bool = False
+) -> Iterator[str]:
     values = {k: v.value if isinstance(v, Plain) else v for k, v in table.items()}
     inner = {k: v for k, v in values.items() if isinstance(v, Mapping)}
     rows = {k: v for k, v in values.items() if _is_rows(v)}
     for name, value in table.items():
         if name not in inner and name not in rows and values[name] is not None:
             option = None if isinstance(value, str) else _option_at(case, (*path, name))
-            yield f"{_key(name)} = {written_value(value, option)}"
+            note = _note(case, (*path, name)) if comments else ""
+            yield f"{_key(name)} = {written_value(value, option)}{note}"
     for name, body in inner.items():
         place = (*path, name)
         if not body or any(not isinstance(v, Mapping) for v in body.values()):
             yield f"\n[{'.'.join(map(_key, place))}]"
-        yield from _lines(case, body, place)
+        yield from _lines(case, body, place, comments=comments)
     for name, bodies in rows.items():
         for body in bodies:
             yield f"\n[[{'.'.join(map(_key, (*path, name)))}]]"
-            yield from _lines(case, body, (*path, name))
+            yield from _lines(case, body, (*path, name), comments=comments)
+
+
+def _note(case: PartsCase, path: tuple[str, ...]) -> str:
+    """Comment of a key of the file; empty where it is named by the user."""
+    option = APART.get(path[0], {}).get(path[-1]) or _option_at(case, path)
+    return f"  # {key_comment(option)}" if option is not None and option.meaning else ""
 
 
 def _is_rows(value: Any) -> bool:

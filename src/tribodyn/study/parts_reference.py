@@ -1,0 +1,53 @@
+"""Keys of machines and planetary stages, for ``explain``, the documentation and files to start."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from tribodyn.machine import ROLLING_BEARINGS
+from tribodyn.model import Option
+from tribodyn.study.case.reference import default_of, key_tables, start_toml, walk
+from tribodyn.study.case.section import Section, section_at
+from tribodyn.study.machine.pair_cases import GROUPS, SHARED
+from tribodyn.study.machine.read_parts import rolling_options
+from tribodyn.study.machine.tables import APART, TABLES, HypoidMeshTable
+
+#: Files to start from.
+STARTS = ("machine", "stage", "hypoid")
+
+
+def machine_keys() -> Iterator[tuple[str, Option, str]]:
+    """Iterate over the keys of parts with their tables; NAME stands for that of a part."""
+    for group, table in TABLES.items():
+        path = (group, "NAME") if group in (*GROUPS, "planets") else (group,)
+        for name, option in APART.get(group, {}).items():
+            yield ".".join((*path, name)), option, default_of(option)
+        yield from walk(table, path)
+        if group == "bearings":
+            yield from _rolling_keys(group)
+        if group == "meshes":
+            yield from walk(HypoidMeshTable, (group, 'NAME with kind = "hypoid"'))
+
+
+def _rolling_keys(group: str) -> Iterator[tuple[str, Option, str]]:
+    """Keys of each type of rolling bearings."""
+    for kind, law in ROLLING_BEARINGS.all().items():
+        for name, option in rolling_options(law).items():
+            yield f'{group}.NAME with type = "{kind}".{name}', option, default_of(option)
+
+
+def machine_tables() -> str:
+    """Format the keys of parts as Markdown tables."""
+    return key_tables(machine_keys())
+
+
+def start_of(kind: str) -> str:
+    """Return a short case file of a machine, a stage or a hypoid pair, to be filled in."""
+    return start_toml(f"start_{kind}", _section)
+
+
+def _section(path: tuple[str, ...]) -> type[Section] | None:
+    """Table of a case of parts or of a pair at a path."""
+    if path[0] in SHARED or len(path) > 2 or path == ("gears",):
+        return section_at(path)
+    return TABLES.get(path[0]) or section_at(path)

@@ -1,0 +1,183 @@
+"""Every command on every built-in case, reduced in size: a result, or a refusal with a remedy."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+import tribodyn
+from tribodyn.cli import call
+from tribodyn.cli.app import ANY, COMMANDS, PAIR
+from tribodyn.study import Case, MachineCase
+
+pytestmark = pytest.mark.filterwarnings("ignore::tribodyn.errors.ModelWarning")
+
+_CASES = tuple(tribodyn.cases(machines=True))
+#: Commands that are tried apart: a server, and processes that compile.
+_APART = {"app", "warm-up"}
+#: Commands that compute no motion, or one that another test has computed.
+_LIGHT = {"check", "export", "friction-from-loss", "new", "signal"}
+#: Values that make the tooth contact of a case cheap, as far as the case has the keys.
+_CHEAP = {"film.model": "none", "friction.law": "none", "friction.shear_model": None}
+
+
+def _reduced(name: str) -> Any:
+    """Case with teeth that cost little."""
+    case = tribodyn.load_case(name)
+    if isinstance(case, MachineCase):
+        teeth = {f"meshes.{mesh}.stiffness": 5e8 for mesh in case.data.get("meshes", {})}
+        return case.replace({**teeth, **_CHEAP})
+    if isinstance(case, Case) and case.gears.kind == "hypoid":
+        return case.replace(_CHEAP)
+    return case.replace({**_CHEAP, "stiffness.model": "iso6336", "dynamics.mesh_law": "stiffness"})
+
+
+class _Place:
+    """Folder with the reduced files of all cases, and their results once they are computed."""
+
+    def __init__(self, folder: Path) -> None:
+        self.folder = folder
+        self._results: dict[str, str] = {}
+
+    def file(self, name: str) -> str:
+        path = self.folder / f"{name}.toml"
+        if not path.exists():
+            path.write_text(_reduced(name).to_toml(), encoding="utf-8")
+        return str(path)
+
+    def result(self, name: str) -> str:
+        if name not in self._results:
+            target = self.folder / f"{name}-result"
+            assert call(["run", self.file(name), "--out", str(target), "--quiet"]) == 0
+            self._results[name] = str(target)
+        return self._results[name]
+
+    def study(self, name: str) -> str:
+        path = self.folder / f"{name}-study.toml"
+        speeds = f'axes.operation.speed = "{_speed(name, 0.9)},{_speed(name)} rpm"'
+        path.write_text(f'case = "{name}.toml"\n{speeds}\n', encoding="utf-8")
+        return str(path)
+
+    def recording(self) -> str:
+        path = self.folder / "recording.csv"
+        time = np.arange(0.0, 0.4, 1e-4)
+        table = np.column_stack([time, np.sin(2.0 * np.pi * 400.0 * time)])
+        np.savetxt(path, table, delimiter=",", header="time [s],acc [m/s^2]", comments="")
+        return str(path)
+
+
+@pytest.fixture(scope="module")
+def place(tmp_path_factory: pytest.TempPathFactory) -> _Place:
+    return _Place(tmp_path_factory.mktemp("cases"))
+
+
+def _speed(name: str, factor: float = 1.0) -> str:
+    case = tribodyn.load_case(name)
+    load = case.operation if isinstance(case, Case) else case.operating_point
+    return f"{factor * load.speed * 30.0 / np.pi:.6g}"
+
+
+def _torque(name: str) -> str:
+    case = tribodyn.load_case(name)
+    load = case.operation if isinstance(case, Case) else case.operating_point
+    return f"{load.torque:.6g} N*m"
+
+
+def _range(name: str) -> str:
+    return f"{_speed(name, 0.97)}..{_speed(name)} rpm"
+
+
+def _spread(name: str) -> list[str]:
+    return ["--set", f"operation.torque={_torque(name)} +- 2 %"]
+
+
+def _gear(name: str) -> list[str]:
+    case = tribodyn.load_case(name)
+    return [] if isinstance(case, Case) else ["--gear", next(iter(case.gears))]
+
+
+def _sensor(name: str) -> str:
+    case = tribodyn.load_case(name)
+    if isinstance(case, MachineCase):
+        return f"meshes.{next(iter(case.meshes))}.mesh_force"
+    return "mesh_force" if isinstance(case, Case) else "planet_1.sun_mesh_force"
+
+
+#: Arguments of each command behind its name, for the place of the files and the name of a case.
+_ARGUMENTS: dict[str, Callable[[_Place, str], list[str]]] = {
+    "run": lambda p, n: [p.file(n)],
+    "check": lambda p, n: [p.file(n)],
+    "sweep": lambda p, n: [p.file(n), f"operation.speed={_speed(n, 0.97)},{_speed(n)} rpm"],
+    "ensemble": lambda p, n: [p.file(n), "--size", "3", *_spread(n)],
+    "sobol": lambda p, n: [
+        p.file(n), "--size", "2", *_spread(n), "--set", f"operation.speed={_speed(n)} rpm +- 1 %"
+    ],
+    "study": lambda p, n: [p.study(n)],
+    "modes": lambda p, n: [p.file(n)],
+    "run-up": lambda p, n: [p.file(n), _range(n), "--duration", "0.3"],
+    "compare": lambda p, n: [p.result(n), p.result(n)],
+    "recording": lambda p, n: [p.file(n), "--duration", "0.05 s", "--sensor", _sensor(n)],
+    "signal": lambda p, n: [p.recording(), "--channel", "acc", "--case", p.file(n), *_gear(n)],
+    "new": lambda p, n: ["my.toml", "--from", n],
+    "cite": lambda p, n: [p.result(n)],
+    "export": lambda p, n: [p.file(n), "--rexs", "my.rexs"],
+    "harris": lambda p, n: [p.file(n), _torque(n)],
+    "relief": lambda p, n: [p.file(n), _torque(n)],
+    "losses": lambda p, n: [p.file(n), "--torque", _torque(n), "--speed", f"{_speed(n)} rpm"],
+    "friction-from-loss": lambda p, n: ["fzg-wheel-driven", "--case", p.file(n)],
+    "bifurcation": lambda p, n: [
+        p.file(n), f"operation.speed={_range(n)}:3", "--cycles", "8", "--transient", "8"
+    ],
+    "continuation": lambda p, n: [p.file(n), f"operation.speed={_range(n)}"],
+    "basins": lambda p, n: [p.file(n), "--points", "3"],
+    "lyapunov": lambda p, n: [p.file(n), "--cycles", "8", "--transient", "8"],
+    "experiment": lambda p, n: [
+        "friction", p.file(n), "--roughness", "0.3,0.5 um", "--laws", "xu-2007"
+    ],
+    "surrogate": lambda p, n: ["train", p.file(n), "--size", "16"],
+    "paper": lambda p, n: [n],
+}  # fmt: skip
+
+
+def test_every_command_with_a_case_is_tried() -> None:
+    taking = {each.name for each in COMMANDS if each.takes}
+    assert set(_ARGUMENTS) | _APART == taking
+
+
+@pytest.mark.parametrize("name", _CASES)
+@pytest.mark.parametrize(
+    "command",
+    [
+        pytest.param(name, marks=() if name in _LIGHT else pytest.mark.slow)
+        for name in sorted(_ARGUMENTS)
+    ],
+)
+def test_it_computes_or_refuses(
+    command: str,
+    name: str,
+    place: _Place,
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    arguments = [command, *_ARGUMENTS[command](place, name), "--json"]
+    capsys.readouterr()
+    code = call(arguments)
+    output = capsys.readouterr()
+    assert "fault of tribodyn" not in output.err + output.out, output.err
+    if code:
+        problems = json.loads(output.out)["error"]["problems"]
+        assert code in (1, 2)
+        assert all(each["what"] and each["remedy"] for each in problems), problems
+    kinds = {each.name: each.takes for each in COMMANDS}
+    is_pair = isinstance(tribodyn.load_case(name), Case)
+    if kinds[command] == ANY:
+        assert code == 0, output.err
+    elif kinds[command] == PAIR and not is_pair:
+        assert code == 2
