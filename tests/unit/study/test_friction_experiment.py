@@ -72,6 +72,19 @@ def test_a_solved_film_is_shared_by_all_laws(case: Any) -> None:
     )
 
 
+@pytest.mark.slow
+def test_tabled_films_of_helical_teeth_are_sheared_by_the_law_of_each_state() -> None:
+    pair = td.load_case("helical-pair").replace(
+        {"film.model": "newton", "film.positions": 8, "friction.law": "none"}
+    )
+    experiment = friction_experiment(pair, laws=["ehl"], roughness=["0.4 um"])
+    alone = td.run(pair.replace({"friction.law": "ehl", "gears.composite_roughness": "0.4 um"}))
+    place = (("pinion", "wheel").index(pair.gears.driver), 0, experiment.index("ehl"))
+    assert experiment["mean_friction_coefficient"][place] == pytest.approx(
+        alone.summary()["mean_friction_coefficient"], rel=1e-9
+    )
+
+
 def test_a_law_of_the_film_gets_a_solved_one(case: Any) -> None:
     chosen = module._with_film(case, ("none", "ehl"))
     assert (case.film.model, chosen.film.model) == ("dowson-higginson", "newton")
