@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from tribodyn.study.machine.user_tables import PartsCase
 
 #: Endings of gearbox models of other programs.
-_REXS = (".rexs", ".rexsj", ".rexsz")
+_REXS = (".rexs", ".rexsj", ".rexsz", ".rexs.zip", ".rexsj.zip")
 
 
 def load_case(name_or_path: str | os.PathLike[str]) -> Any:
@@ -54,7 +54,7 @@ def load_changed_case(
 ) -> Any:
     """Load a case with values changed by dotted key; a REXS model may need some to be a case."""
     path = Path(os.fspath(name_or_path))
-    if path.suffix.lower() in _REXS and path.is_file():
+    if path.name.lower().endswith(_REXS) and path.is_file():
         from tribodyn.exchange.gearbox import read_rexs
         from tribodyn.exchange.to_machine import case_from_model
 

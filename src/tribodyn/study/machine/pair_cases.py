@@ -44,6 +44,8 @@ _STRUCTURES: dict[str, dict[str, Any]] = {
     "hypoid": {"model": "hypoid-14dof"},
 }
 _ROLES = ("pinion", "wheel")
+#: Torque of a mesh that is rounding [N*m].
+_IDLE = 1e-9
 
 
 @dataclass(frozen=True)
@@ -123,6 +125,12 @@ def pair_case(
     """Case of the pair of a mesh; hand (of hypoid teeth side), speed and torque of its pinion."""
     speed, torque = operation
     group, _, mesh = table.partition(".")
+    if torque < _IDLE:
+        what, why = f"mesh {mesh} carries no torque", "Its teeth have no contact to compute"
+        remedy = "Name the shaft where the power leaves behind it, or give it a constant stiffness"
+        stated = TABLES["operation"].spec("torque"), "torque", data["operation"]["torque"]
+        key = "operation.output" if read_value(*stated) else "operation.torque"
+        raise InputError((source or Source()).place([(key, Problem(what, "", why, remedy))]))
     body = data[group][mesh]
     inner, crossed = mesh_tables(body), mesh_table_kind(body) is HypoidMeshTable
     tables: dict[str, Any] = {
