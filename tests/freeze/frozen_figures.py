@@ -44,20 +44,25 @@ def case_figures() -> dict[str, dict[str, Any]]:
     return figures
 
 
-def differences(case: str, frozen: Mapping[str, float], current: Mapping[str, float]) -> list[str]:
+def differences(
+    case: str,
+    frozen: Mapping[str, float],
+    current: Mapping[str, float],
+    tolerance: float = TOLERANCE,
+) -> list[str]:
     """Say which frozen figures of a case are gone or differ."""
     changes = []
     for name, old in frozen.items():
         if name not in current:
             changes.append(f"{case}: {name} is gone")
-        elif not _same(case, name, old, current[name]):
+        elif not _same(case, name, old, current[name], tolerance):
             change = abs(current[name] / old - 1.0) if old else abs(current[name])
             changes.append(f"{case}: {name} was {old!r}, is {current[name]!r} ({change:.1e})")
     return changes
 
 
-def _same(case: str, name: str, old: float, new: float) -> bool:
+def _same(case: str, name: str, old: float, new: float, tolerance: float) -> bool:
     if name in _LEFT_OVER:
         return 0.0 <= new <= _LEFT_OVER[name]
     floor = _FLOORS.get((case, name), _APART.get(name, _ZERO))
-    return abs(new - old) <= max(TOLERANCE * abs(old), floor)
+    return abs(new - old) <= max(tolerance * abs(old), floor)

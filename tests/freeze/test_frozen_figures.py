@@ -14,6 +14,7 @@ def current() -> dict[str, dict[str, Any]]:
     return case_figures()
 
 
+@pytest.mark.processor
 @pytest.mark.parametrize("case", list(read("figures")))
 def test_figures_of_built_in_cases(case: str, current: dict[str, dict[str, Any]]) -> None:
     frozen = read("figures")[case]

@@ -70,6 +70,7 @@ def random_response(residual, generator, mean, spread):
     )
 
 
+@pytest.mark.processor
 @pytest.mark.parametrize("gap", [None, 0.2])
 def test_derivative_of_the_residual_is_that_by_differences(gap):
     parts = dict.fromkeys(("friction", "turning", "load_friction", "gyroscopic"), True)

@@ -327,6 +327,7 @@ def test_clearance_adds_its_half_to_the_displacement():
     assert 10e-6 < gain < 14e-6  # fewer rollers carry
 
 
+@pytest.mark.processor
 def test_linearized_machine_has_the_stiffness_of_the_load():
     machine = rolling_stage()
     balance = static_balance(machine)
@@ -425,6 +426,7 @@ def test_unrestrained_coordinates_are_named():
         static_balance(machine, loads={"z1": np.zeros(5)})
 
 
+@pytest.mark.processor
 @pytest.mark.parametrize("clearance", [0.0, 20e-6])
 @pytest.mark.parametrize("torque", [0.0, 1e-9])
 def test_forces_of_rounding_are_no_findings(torque, clearance):

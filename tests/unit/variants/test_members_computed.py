@@ -27,6 +27,7 @@ friction.coefficient = 0.05
 """
 
 
+@pytest.mark.processor
 def test_summaries_are_those_of_a_run(tmp_path: Path) -> None:
     text = f"""
 case = "fzg-roughness"
@@ -50,6 +51,7 @@ friction.law = ["none", "xu-2007"]
         assert stored == pytest.approx(value, rel=1e-9, abs=least), name
 
 
+@pytest.mark.processor
 def test_motions_are_those_of_a_map_and_of_one_thread(tmp_path: Path) -> None:
     text = f"""
 case = "fzg-roughness"
