@@ -52,7 +52,7 @@ class Bearing:
     tilting_damping : float or (2,) array
         Damping against tilting [N*m*s/rad].
     damping : (6, 6) or (5, 5) array, optional
-        All damping coefficients together.
+        All damping coefficients together [N*s/m, N*s, N*m*s].
     force : (6,) array
         Force and moment of the shaft on the bearing without a displacement: that of a rolling
         bearing whose stiffness is taken at its working load [N, N*m].
