@@ -34,6 +34,14 @@ from tribodyn.units import UnitProblemError, convert
 
 Base = Literal["measured", "computed", "mean"]
 _Row = tuple[str, str, str, float, float, float]
+#: Band of a recording over its sampling rate: above it anti-alias filters fall.
+_BAND = 0.4
+#: Directions in the names of signals by the axis in the names of coordinates.
+_DIRECTIONS = {
+    **dict.fromkeys("xv", ("oloa", "x")),
+    **dict.fromkeys("yw", ("loa", "y")),
+    "z": ("axial", "z"),
+}
 
 
 @dataclass(frozen=True)
@@ -53,7 +61,8 @@ class Comparison(Record):
     channel : (n,) array of str
         Measured channel of each row.
     measure : (n,) array of str
-        ``rms`` of the whole alternating signal, ``rms of mesh harmonics``, ``mesh harmonic k``.
+        ``rms`` of the alternating signal in the band that both have, ``rms of mesh harmonics``,
+        ``mesh harmonic k``.
     unit : (n,) array of str
         Unit of the row.
     computed : (n,) array
@@ -153,13 +162,13 @@ def compare(
 
     Parameters
     ----------
-    computed : Result, MachineResult or xarray.Dataset
+    computed : Result, MachineResult, PlanetaryResult or xarray.Dataset
         Steady-state result of :func:`tribodyn.run` or :func:`tribodyn.load_result`.
     measured : Recording
         Recording at about the same speed and the same torque.
     channels : mapping of str to str
         Measured channel to computed signal, such as ``{"acc": "acceleration_loa_pinion"}``, or
-        ``"housing.seat A.acceleration_y"`` of a machine.
+        ``"housing.seat A.acceleration_y"`` of a machine; every sensor of ``recording`` as well.
     harmonics : int
         Mesh harmonics that are compared.
     base : {"measured", "computed", "mean"}
@@ -206,8 +215,9 @@ def compare(
     -----
     Measured amplitudes are those over the angle of the mesh (:func:`order_spectrum`), which comes
     from the tachometer, from the channel with the angle, or from the mesh lines of all compared
-    channels (:func:`mesh_speed`). Noise and other sources count in the rms of the whole signal, and
-    not in that of the mesh harmonics.
+    channels (:func:`mesh_speed`). The rms of the signal is that up to 0.4 of the sampling rate,
+    which anti-alias filters pass, and up to the highest computed order. Noise and other sources
+    count in it, and not in that of the mesh harmonics.
 
     Examples
     --------
@@ -230,12 +240,12 @@ def compare(
     require_one_of("base", base, ("measured", "computed", "mean"))
     require_between("frequency_tolerance", frequency_tolerance, 0.0, 0.2)
     _refuse(measured, channels)
-    computed_frequency = _frequency(data)
+    computed_frequency = _frequency(data, computed)
     frequency = computed_frequency
     if mesh_frequency is not None:
         frequency = require_number("mesh_frequency", mesh_frequency)
     require_positive("mesh_frequency", frequency, "Hz")
-    signals = {name: _computed(data, signal, count) for name, signal in channels.items()}
+    signals = {name: _computed(computed, data, signal, count) for name, signal in channels.items()}
     factors = {
         name: _same_unit(measured.units.get(name, ""), unit, name)
         for name, (_, _, unit) in signals.items()
@@ -250,11 +260,11 @@ def compare(
         if speed.located:
             warn_of_harmonics(name, harmonic)
             shares[name] = harmonic.share
-        at_harmonics = size[(order >= 1.0) & (np.abs(order - np.rint(order)) < 1e-9)][:count]
+        at_harmonics = size[(order > 0.5) & (np.abs(order - np.rint(order)) < 1e-9)][:count]
         gains[name] = _gain(gain, name, at_harmonics, (harmonic, factors[name]), speed)
         size, at_harmonics = gains[name] * size, gains[name] * at_harmonics
-        level = _rms(size[order > 0.0]), factors[name] * float(np.std(measured[name]))
-        rows.append((name, "rms", unit, *level, 0.0))
+        level, of_record = _levels(order, size, measured[name], frequency / measured.sample_rate)
+        rows.append((name, "rms", unit, level, factors[name] * of_record, 0.0))
         rows += _harmonic_rows(name, unit, at_harmonics, (harmonic, factors[name]), speed.located)
         place, amplitude = harmonic.spectrum
         scale = speed.mesh_frequency if speed.located else frequency
@@ -300,7 +310,7 @@ def _data(computed: Any, mesh: str | None) -> Any:
     if hasattr(computed, "mesh_spectra"):
         return computed.mesh_spectra(mesh)
     if mesh is not None:
-        what, why = f'mesh = "{mesh}"', "A pair of gears has one mesh"
+        what, why = f'mesh = "{mesh}"', "A pair of gears and a stage have one mesh frequency"
         raise InputError(what, Argument("mesh"), why, "Leave it out")
     return computed.to_xarray() if hasattr(computed, "to_xarray") else computed
 
@@ -357,7 +367,18 @@ def _rms(amplitudes: Array) -> float:
     return float(np.sqrt(0.5 * np.sum(amplitudes**2)))
 
 
-def _frequency(data: Any) -> float:
+def _levels(order: Array, size: Array, values: Array, mesh: float) -> tuple[float, float]:
+    """Computed and recorded alternating rms in their common band; mesh frequency in rates."""
+    top = min(_BAND / mesh, float(order.max()) + 0.5)
+    lines = np.fft.rfft(values - values.mean())
+    lines[np.arange(lines.size) > top * mesh * values.size] = 0.0
+    recorded = np.fft.irfft(lines, values.size)
+    return _rms(size[(order > 0.0) & (order <= top)]), float(np.std(recorded))
+
+
+def _frequency(data: Any, computed: Any) -> float:
+    if "mesh_frequency" not in getattr(data, "attrs", {}) and _has_turning_motion(computed):
+        return float(computed.turning_motion.mesh_frequency)
     try:
         return float(data.attrs["mesh_frequency"])
     except (AttributeError, KeyError, TypeError, ValueError):
@@ -365,10 +386,30 @@ def _frequency(data: Any) -> float:
         raise InputError("it has no mesh frequency", Argument("computed"), why, remedy) from None
 
 
-def _computed(data: Any, signal: str, count: int) -> tuple[Array, Array, str]:
-    """Orders of the mesh, peak amplitudes and unit of a computed signal."""
-    name = f"{signal}_spectrum"
-    if name not in data:
+def _has_turning_motion(computed: Any) -> bool:
+    """Whether there is a motion that recordings are made of, without computing it."""
+    return hasattr(type(computed), "turning_motion")
+
+
+def _computed(computed: Any, data: Any, signal: str, count: int) -> tuple[Array, Array, str]:
+    """Orders of the mesh, peak amplitudes and unit of a computed signal.
+
+    With faults it is that of the motion over whole turns, as in a recording; without, and for what
+    only the data of the result have, it is that of one mesh cycle.
+    """
+    name = _name_in_data(data, signal)
+    faults = getattr(getattr(computed, "case", None), "faults", None)
+    if _has_turning_motion(computed) and (name is None or faults):
+        try:
+            unit = computed.turning_motion.signal(signal)[1]
+        except InputError:
+            if name is None:
+                raise
+        else:
+            frequency, lines = computed.turning_motion.harmonics(signal)
+            order = frequency[1:] / _frequency(data, computed)
+            return _resolved(order, count), np.abs(lines[1:]), unit
+    if name is None:
         names = [str(entry) for entry in data]
         available = sorted(
             entry.removesuffix("_spectrum") for entry in names if "_spectrum" in entry
@@ -379,13 +420,26 @@ def _computed(data: Any, signal: str, count: int) -> tuple[Array, Array, str]:
             f"It has {', '.join(available)}" if available else "It is not a steady state",
             "Use one of these" if available else 'Compute with solver.method = "steady"',
         )
-    order = np.asarray(data["order"].values, dtype=float)
+    order = _resolved(np.asarray(data["order"].values, dtype=float), count)
+    return order, np.asarray(data[name].values, dtype=float), str(data[name].attrs.get("units", ""))
+
+
+def _name_in_data(data: Any, signal: str) -> str | None:
+    """Name of the spectrum of a signal, also by the name of its coordinate."""
+    gear, _, axis = signal.rpartition("_")
+    names = [signal, *(f"acceleration_{way}_{gear}" for way in _DIRECTIONS.get(axis, ()))]
+    names += ["dynamic_transmission_error"] if signal == "transmission_error" else []
+    return next((f"{name}_spectrum" for name in names if f"{name}_spectrum" in data), None)
+
+
+def _resolved(order: Array, count: int) -> Array:
+    """Orders of a computed motion that holds so many harmonics."""
     if order.max() < count:
         why = f"The computed motion holds {order.max():.0f}"
         raise InputError(
             f"harmonics = {count}", Argument("harmonics"), why, "Request fewer harmonics"
         )
-    return order, np.asarray(data[name].values, dtype=float), str(data[name].attrs.get("units", ""))
+    return order
 
 
 def _same_unit(unit: str, target_unit: str, name: str) -> float:

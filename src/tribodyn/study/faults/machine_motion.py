@@ -23,9 +23,9 @@ from tribodyn.study.faults.loose_seat import (
     with_lifted_forces,
     with_loose_seats,
 )
-from tribodyn.study.faults.machine_section import faults_of_mesh
+from tribodyn.study.faults.machine_section import OF_SHAFTS, faults_of_mesh
 from tribodyn.study.faults.motion import SAMPLES, even_samples, signal_lines, turning_system_of
-from tribodyn.study.faults.recording import unlisted_sensor
+from tribodyn.study.faults.sensors import MachineSensors, SensorPlace, seat_accelerance
 from tribodyn.study.machine.first_look import warn_of_orders, warn_of_period
 from tribodyn.types import Array, ComplexArray
 
@@ -35,15 +35,15 @@ if TYPE_CHECKING:
     from tribodyn.study.machine.case import MachineCase
     from tribodyn.study.machine.motion import MachineMotion
     from tribodyn.study.machine.result import LoadResult
-    from tribodyn.study.planetary.case import PlanetaryCase
 
 #: Steps of a cycle of the fastest mesh, tried in turn.
 _STEPS = (128, 256)
 #: Change of the motion with half the steps, over its size, that is small enough.
 _ACCURATE = 2e-3
+#: Faults that change the motion of equal teeth.
+_OTHERS = (*OF_SHAFTS, "looseness")
 #: Certified error that suffices beside it.
 _CERTIFIED = 1e-4
-_AXES = {"x": (1.0, 0.0, 0.0), "y": (0.0, 1.0, 0.0), "z": (0.0, 0.0, 1.0)}
 
 
 @dataclass(frozen=True, eq=False)
@@ -85,23 +85,14 @@ class MachineTurningMotion:
 
     def rotation_frequency(self, shaft: str) -> float:
         """Turns of a shaft per second [Hz]."""
+        MachineSensors(self.machine, self.seat).check_tacho(shaft)
         clock = self.machine.clock
-        if shaft not in clock.turns:
-            why = f"The shafts are {', '.join(clock.turns)}"
-            raise InputError(f'there is no shaft "{shaft}"', "argument tacho", why, "Name one")
         return float(clock.turns[shaft]) * clock.frequency
 
     @property
     def sensors(self) -> tuple[str, ...]:
         """Signals of :meth:`signal`; an angle from y towards z may stand for x, y or z."""
-        motion, axes = self.motion, "xyz"
-        nodes = {n for n, b in self.machine.bearings.items() if self.seat or b.node}
-        return (
-            *(f"housing.{n}.acceleration_{a}" for n in motion.node for a in axes),
-            *(f"bearings.{n}.acceleration_{a}" for n in motion.bearing if n in nodes for a in axes),
-            *(f"bearings.{n}.force_{a}" for n in motion.bearing for a in axes),
-            *(f"meshes.{n}.{s}" for n in motion.mesh for s in ("mesh_force", "transmission_error")),
-        )
+        return MachineSensors(self.machine, self.seat).names
 
     def signal(self, sensor: str) -> tuple[Array, str]:
         """Acceleration, force or transmission error on even samples of a period, with its unit."""
@@ -153,68 +144,9 @@ class MachineTurningMotion:
         return f"MachineTurningMotion({self.period:.5g} s, turns of the shafts: {turns})"
 
 
-@dataclass(frozen=True)
-class SensorPlace:
-    """Where a sensor is, and what it measures."""
-
-    quantity: str  #: ``acceleration``, ``force``, ``mesh_force`` or ``transmission_error``
-    part: str  #: node of the housing, bearing or mesh
-    direction: Array  #: of an acceleration or a force
-    unit: str
-    seat: Callable[[Array], ComplexArray] | None = None  #: between the force and the acceleration
-
-
 def read_sensor(motion: MachineTurningMotion, sensor: str) -> SensorPlace:
     """Place of a sensor by its name."""
-    group, _, inside = sensor.partition(".")
-    part, _, name = inside.rpartition(".")
-    quantity, _, axis = name.rpartition("_")
-    if sensor in motion.sensors and group == "meshes":
-        return SensorPlace(name, part, np.zeros(3), "N" if name == "mesh_force" else "m")
-    direction = _direction(axis)
-    bearing = motion.machine.bearings.get(part) if group == "bearings" else None
-    if direction is not None and bearing is not None and quantity == "force":
-        return SensorPlace("force", part, direction, "N")
-    if direction is not None and quantity == "acceleration":
-        if group == "housing" and part in motion.motion.node:
-            return SensorPlace("acceleration", part, direction, "m/s^2")
-        if bearing is not None and bearing.node is not None:
-            return SensorPlace("acceleration", bearing.node, direction, "m/s^2")
-        if bearing is not None and motion.seat is not None:
-            return SensorPlace("force", part, direction, "m/s^2", motion.seat)
-        if bearing is not None:
-            what = f"the seat of bearing {part} is rigid, so that nothing accelerates"
-            why = "There is no housing, and no seat that moves"
-            remedy = 'Give seat_mass and seat_frequency in [dynamics], such as "10 kg" and "2 kHz"'
-            raise InputError(what, "argument sensor", why, remedy)
-    raise unlisted_sensor(sensor, motion.sensors)
-
-
-def _direction(axis: str) -> Array | None:
-    """Unit vector of ``x``, ``y``, ``z`` or an angle such as ``30deg``; None of anything else."""
-    if axis in _AXES:
-        return np.array(_AXES[axis])
-    try:
-        angle = math.radians(float(axis.removesuffix("deg")))
-    except ValueError:
-        return None
-    if not axis.endswith("deg") or not math.isfinite(angle):
-        return None
-    return np.array([0.0, math.cos(angle), math.sin(angle)])
-
-
-def seat_accelerance(case: MachineCase | PlanetaryCase) -> Callable[[Array], ComplexArray] | None:
-    """Accelerance of a seat of one mass on a spring; None where the case has none."""
-    data = case.motion
-    if data.seat_mass is None or data.seat_frequency is None:
-        return None
-    mass, natural, damping = data.seat_mass, data.seat_frequency, data.seat_damping_ratio
-
-    def accelerance(frequency: Array) -> ComplexArray:
-        ratio = np.asarray(frequency) / natural
-        return np.asarray(-(ratio**2) / (mass * (1.0 - ratio**2 + 2j * damping * ratio)))
-
-    return accelerance
+    return MachineSensors(motion.machine, motion.seat).place(sensor)
 
 
 def turning_machine(case: MachineCase, sound: LoadResult) -> Machine:
@@ -301,13 +233,18 @@ def repeated(response: Response, frequency: float, slower: float) -> Response:
 def machine_turning_motion(
     case: MachineCase, sound: LoadResult, progress: Progress = SILENT
 ) -> MachineTurningMotion:
-    """Compute the steady motion of a machine over whole turns of its shafts."""
+    """Compute the steady motion over whole turns; with equal teeth it is that of the result."""
     from tribodyn.machine import system as system_of
     from tribodyn.study.machine.motion import machine_motion
 
     with single_blas_thread():
         progress.start("Teeth over whole turns")
         machine = turning_machine(case, sound)
+        tacho, seat = machine.operation.input, seat_accelerance(case)
+        of_teeth = all(fault.kind not in _OTHERS for fault in case.faults.values())
+        if of_teeth and machine.meshes == sound.machine.meshes:
+            same = sound.structure, sound.motion
+            return MachineTurningMotion(sound, *same, seat, tacho, np.zeros_like)
         warn_of_period(machine)
         clock = machine.clock
         mesh_frequency = max(clock.cycles.values()) * clock.frequency
@@ -335,5 +272,4 @@ def machine_turning_motion(
         motion = with_lifted_forces(machine_motion(structure, response), response, seats)
         periods = round(clock.frequency / frequency)
         motion = replace(motion, cycles=periods * motion.cycles, frequency=frequency)
-    tacho, seat = machine.operation.input, seat_accelerance(case)
     return MachineTurningMotion(sound, structure, motion, seat, tacho, driven.lead)

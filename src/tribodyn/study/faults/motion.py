@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, ClassVar
@@ -11,10 +11,12 @@ import numpy as np
 
 from tribodyn.errors import collected, warn
 from tribodyn.faults import BearingDefect
+from tribodyn.nomenclature import GEARS
 from tribodyn.progress import SILENT, Progress
 from tribodyn.record import Record, fact, quantity, record
 from tribodyn.study.faults.clock import turning_clock
-from tribodyn.study.faults.recording import require_sensor
+from tribodyn.study.faults.recording import unlisted_sensor
+from tribodyn.study.pipeline.computed import Computed
 from tribodyn.types import Array, ComplexArray
 
 if TYPE_CHECKING:
@@ -26,8 +28,11 @@ if TYPE_CHECKING:
     from tribodyn.study.pipeline.result import Result
     from tribodyn.study.pipeline.run import PreparedRun
 
-#: Signals of a mesh.
-MESH_SENSORS = ("mesh_force", "transmission_error")
+#: Signals of a mesh by their names in the data of a result.
+_MESH_SENSORS = {
+    "mesh_force": "mesh_force",
+    "dynamic_transmission_error": "transmission_error",
+}
 #: Steps of the search for each mesh cycle, tried in turn, and even samples of the motion.
 _STEPS, SAMPLES = (128, 256, 512), 512
 #: Mesh order up to which the acceleration is that of the positions; from half of it on in part.
@@ -77,22 +82,25 @@ class TurningMotion(Record):
     @property
     def sensors(self) -> tuple[str, ...]:
         """Signals of :meth:`signal`."""
-        return (*self.names, *MESH_SENSORS)
+        return tuple(pair_sensors(self.names))
 
     def signal(self, sensor: str) -> tuple[Array, str]:
         """Return acceleration of a coordinate, mesh force or transmission error, with its unit."""
-        if sensor in self.names:
-            unit = "rad/s^2" if "_theta" in sensor else "m/s^2"
-            return self.acceleration[:, self.names.index(sensor)], unit
-        require_sensor(sensor, self.sensors)
-        return getattr(self, sensor), "N" if sensor == "mesh_force" else "m"
+        name = pair_sensor(self.names, sensor)
+        if name in self.names:
+            unit = "rad/s^2" if "_theta" in name else "m/s^2"
+            return self.acceleration[:, self.names.index(name)], unit
+        return getattr(self, name), "N" if name == "mesh_force" else "m"
 
     def impacts(
         self, sensor: str, defect: tuple[str, BearingImpacts], time: Array, seed: int
     ) -> Array | float:
         """Acceleration of the impacts of a bearing of a gear at the sensors of this gear."""
         gear, impacts = defect
-        if sensor.partition("_")[0] != gear or self.signal(sensor)[1] != "m/s^2":
+        if (
+            pair_sensor(self.names, sensor).partition("_")[0] != gear
+            or self.signal(sensor)[1] != "m/s^2"
+        ):
             return 0.0
         assert isinstance(impacts, BearingDefect)
         return impacts.signal(self.rotation_frequency(gear), time, seed)
@@ -110,28 +118,60 @@ class TurningMotion(Record):
         )
 
 
+def pair_sensors(names: Sequence[str]) -> dict[str, str]:
+    """Coordinates and attributes of the signals of a pair, by their names in its data."""
+    from tribodyn.study.pipeline.response_series import centre_column, directions_of
+
+    by_coordinate = {name: name for name in names}
+    for gear in GEARS:
+        for direction, (axis, _) in directions_of(names).items():
+            column = centre_column(names, gear, axis)
+            if column is not None:
+                by_coordinate[names[column]] = f"acceleration_{direction}_{gear}"
+    return {signal: name for name, signal in by_coordinate.items()} | _MESH_SENSORS
+
+
+def pair_sensor(names: Sequence[str], sensor: str) -> str:
+    """Coordinate or attribute of a signal, whose name is also accepted; refuse another one."""
+    by_name = pair_sensors(names)
+    if sensor in by_name or sensor in by_name.values():
+        return by_name.get(sensor, sensor)
+    alike = [a if a == b else f"{b} or {a}" for a, b in by_name.items()]
+    raise unlisted_sensor(sensor, alike)
+
+
 def even_samples(phase: Array, count: int) -> Callable[[Array], Array]:
-    """Linear interpolation of periodic values (p, ...) at phases to ``count`` even samples."""
+    """Means of periodic values (p, ...) over ``count`` equal intervals about their middles."""
+    # Samples at the middles would alias jumps, which are two values at one phase.
     order = np.argsort(phase, kind="stable")
     order = np.concatenate((order[-1:], order, order[:1]))
     place = phase[order] + np.array([-1.0, *np.zeros(phase.size), 1.0])
-    at = np.arange(count) / count
-    after = np.searchsorted(place, at, side="right")
-    width = place[after] - place[after - 1]
-    part = np.divide(at - place[after - 1], width, out=np.zeros(count), where=width > 0.0)
-    left, right = order[after - 1], order[after]
+    widths = np.diff(place)
+    edges = (np.arange(count + 1) - 0.5) / count
+    turned = (edges < place[0]).astype(float)
+    edges += turned
+    before = np.clip(np.searchsorted(place, edges, side="right") - 1, 0, widths.size - 1)
+    part = np.divide(
+        edges - place[before], widths[before], out=np.zeros(count + 1), where=widths[before] > 0.0
+    )
 
     def sampled(values: Array) -> Array:
-        weight = part.reshape(-1, *[1] * (values.ndim - 1))
-        begin = values[left]
-        return np.asarray(begin + weight * (values[right] - begin))
+        rows = values[order].reshape(order.size, -1)
+        steps = 0.5 * (rows[1:] + rows[:-1]) * widths[:, None]
+        integral = np.concatenate((np.zeros((1, rows.shape[1])), np.cumsum(steps, axis=0)))
+        change = (rows[before + 1] - rows[before]) * part[:, None]
+        reached = (rows[before] + 0.5 * change) * (part * widths[before])[:, None]
+        period = turned[:, None] * integral[-2]  # from the first to the last but one place
+        means = np.diff(integral[before] + reached - period, axis=0) * count
+        return np.asarray(means.reshape(count, *values.shape[1:]))
 
     return sampled
 
 
 def signal_lines(values: Array, period: float) -> tuple[Array, ComplexArray]:
-    """Frequencies and complex peak amplitudes of even samples of a period, from its mean on."""
+    """Frequencies and complex peak amplitudes of :func:`even_samples`, from the mean on."""
     lines = np.fft.rfft(values) / values.size
+    lines /= np.sinc(np.arange(lines.size) / values.size)  # gain of the means
     lines[1:] *= 2.0
     return np.arange(lines.size) / period, lines
 
@@ -198,15 +238,20 @@ def driven_system(
 
 
 def turning_motion(result: Result | PreparedRun, progress: Progress = SILENT) -> TurningMotion:
-    """Compute the steady motion of a result over whole turns of its gears."""
+    """Compute the steady motion over whole turns; with equal teeth it is that of the result."""
     from tribodyn.dynamics import harmonic_balance
     from tribodyn.study.case.to_models import locate_errors
+    from tribodyn.study.pipeline.response_series import is_steady
 
     case = result.case
     with locate_errors(case):
         clock = turning_clock(case)
         progress.start(f"Teeth over whole turns: {clock}")
         mesh = turning_mesh_of(case, result.mesh)
+        if not _varies(case):
+            sound = result if isinstance(result, Computed) else result.result(progress)
+            if is_steady(sound.response):
+                return _motion_of_run(sound, mesh)
         driven = driven_system(case, result.mesh, result.damping, mesh)
         frequency = result.mesh.mesh_frequency / driven.cycles
         response: Response | None = None
@@ -225,7 +270,40 @@ def turning_motion(result: Result | PreparedRun, progress: Progress = SILENT) ->
         for warning in model_warnings:
             warn(warning.code, warning.message)
     assert response is not None
-    return _sampled(case, mesh, driven, response, result.mesh.mesh_frequency)
+    return _driven_motion(case, mesh, driven, response, result.mesh.mesh_frequency)
+
+
+def _varies(case: Case) -> bool:
+    """Whether teeth differ or the drive is unsteady; a damaged bearing changes neither."""
+    from tribodyn.study.faults.section import excitations, gear_faults
+
+    pair = case.spur_pair
+    differ = pair is not None and pair.teeth_differ
+    return differ or bool(gear_faults(case)) or bool(excitations(case))
+
+
+def _motion_of_run(result: Computed, mesh: TurningMesh) -> TurningMotion:
+    """The motion of a result on evenly spaced samples."""
+    from tribodyn.study.pipeline.response_series import mesh_force, transmission_error
+
+    response, cycles = result.response, result.response.periods
+    fine, count = response.fine, SAMPLES * cycles
+    phase = fine.phase - fine.phase[0]
+    even = even_samples(phase / cycles, count)
+    return _motion(
+        result.case,
+        mesh,
+        response,
+        {
+            "position": even(fine.position),
+            "velocity": even(fine.velocity),
+            "acceleration": even(fine.acceleration),
+            "mesh_force": even(mesh_force(fine)),
+            "transmission_error": even(transmission_error(result, fine)),
+            "lead": np.zeros(count),
+        },
+        result.mesh.mesh_frequency,
+    )
 
 
 def _accelerations(position: Array, sampled: Array, cycles: int, period: float) -> Array:
@@ -240,35 +318,59 @@ def _accelerations(position: Array, sampled: Array, cycles: int, period: float) 
     return np.asarray(np.fft.irfft(blended, len(sampled), axis=0))
 
 
-def _sampled(
+def _driven_motion(
     case: Case, mesh: TurningMesh, driven: DrivenSystem, response: Response, mesh_frequency: float
 ) -> TurningMotion:
-    """The motion on evenly spaced samples."""
+    """The motion of teeth that differ or of an unsteady drive on evenly spaced samples."""
     cycles = driven.cycles
     fine, count, period = response.fine, SAMPLES * cycles, cycles / mesh_frequency
     at, even = np.arange(count) / count, even_samples(fine.phase, count)
 
-    def over(values: Array, turned: int | None = None) -> Array:
+    def over(values: Array, turned: int) -> Array:
         """Values on the samples of the period, with a derivative of the fluctuating rotation."""
         samples = even(values)
-        if turned is not None and driven.lead.lines.any():
+        if driven.lead.lines.any():
             lead = driven.lead.derivative(turned)(at) / period**turned
             samples = samples + lead[:, None] * driven.rotation
         return np.asarray(samples)
 
-    position = over(fine.position, 0)
+    return _motion(
+        case,
+        mesh,
+        response,
+        {
+            "position": over(fine.position, 0),
+            "velocity": over(fine.velocity, 1),
+            "acceleration": over(fine.acceleration, 2),
+            "mesh_force": even(fine.contact_force.sum(axis=1)),
+            "transmission_error": even(fine.deflection[:, 0]) - 0.5 * case.backlash,
+            "lead": driven.lead(at),
+        },
+        mesh_frequency,
+    )
+
+
+def _motion(
+    case: Case,
+    mesh: TurningMesh,
+    response: Response,
+    samples: dict[str, Any],
+    mesh_frequency: float,
+) -> TurningMotion:
+    """Motion from its even samples."""
+    count = len(samples["position"])
+    cycles = count // SAMPLES
+    period = cycles / mesh_frequency
+    teeth = {name: abs(gear.teeth) for name, gear in case.gears.by_name.items()}
+    smooth = _accelerations(samples["position"], samples["acceleration"], cycles, period)
     return TurningMotion(
-        time=at * period,
-        position=position,
-        velocity=over(fine.velocity, 1),
-        acceleration=_accelerations(position, over(fine.acceleration, 2), cycles, period),
-        mesh_force=over(fine.contact_force.sum(axis=1)),
-        transmission_error=over(fine.deflection[:, 0]) - 0.5 * case.backlash,
+        time=np.arange(count) / count * period,
+        **{**samples, "acceleration": smooth},
         names=response.names,
         mesh=mesh,
         mesh_frequency=mesh_frequency,
         cycles=cycles,
-        **{f"{name}_teeth": abs(gear.teeth) for name, gear in case.gears.by_name.items()},
+        pinion_teeth=teeth[GEARS[0]],
+        wheel_teeth=teeth[GEARS[1]],
         response=response,
-        lead=driven.lead(at),
     )

@@ -17,10 +17,15 @@ from tribodyn.errors import InputError, collected, warn
 from tribodyn.interrupt import single_blas_thread
 from tribodyn.machine.planetary.ring_sensor import passing_weights
 from tribodyn.study.faults.driven_shafts import drive_stage
-from tribodyn.study.faults.machine_motion import repeated, seat_accelerance
+from tribodyn.study.faults.machine_motion import repeated
 from tribodyn.study.faults.machine_section import OF_SHAFTS, name_of
 from tribodyn.study.faults.motion import SAMPLES, even_samples, signal_lines
-from tribodyn.study.faults.recording import unlisted_sensor
+from tribodyn.study.faults.sensors import (
+    check_stage_sensor,
+    check_stage_tacho,
+    seat_accelerance,
+    stage_sensors,
+)
 from tribodyn.study.machine.first_look import warn_of_orders
 from tribodyn.types import Array, ComplexArray
 
@@ -82,11 +87,9 @@ class PlanetaryTurningMotion:
 
     def rotation_frequency(self, shaft: str) -> float:
         """Turns of a member per second, or of a planet about its pin [Hz]."""
+        check_stage_tacho(self.case, shaft)
         members = {name: role for role, name in self.case.members.items()}
         planet = self.case.table.planet
-        if shaft not in (*members, planet):
-            why = f"The members are {', '.join((*members, planet))}"
-            raise InputError(f'there is no member "{shaft}"', "argument tacho", why, "Name one")
         stage = self.sound.kinematics
         speed = stage.relative_speeds["planet"] if shaft == planet else stage.speeds[members[shaft]]
         if speed == 0.0:
@@ -97,19 +100,11 @@ class PlanetaryTurningMotion:
     @property
     def sensors(self) -> tuple[str, ...]:
         """Signals of :meth:`signal`."""
-        planets = range(1, self.case.table.count + 1)
-        seat = ("ring.acceleration",) if seat_accelerance(self.case) else ()
-        forces = (f"planet_{i}.{mesh}_mesh_force" for mesh in ("sun", "ring") for i in planets)
-        return (*seat, "ring.force", *forces)
+        return stage_sensors(self.case)
 
     def signal(self, sensor: str) -> tuple[Array, str]:
         """Force or acceleration on even samples of the period, with its unit."""
-        if sensor not in self.sensors:
-            if sensor == "ring.acceleration":
-                what, why = "the ring is rigid at its sensor", "Nothing accelerates there"
-                remedy = "Give seat_mass and seat_frequency in [dynamics]"
-                raise InputError(what, "argument sensor", why, remedy)
-            raise unlisted_sensor(sensor, self.sensors)
+        check_stage_sensor(self.case, sensor)
         count, motion = SAMPLES * self.repeat, self.motion
         rounds = self.cycles // self.repeat
         if sensor.startswith("planet_"):

@@ -56,7 +56,7 @@ class PeriodicMotion(Protocol):
         """Signals as smooth functions; filled where they are used."""
 
     def signal(self, sensor: str) -> tuple[Array, str]:
-        """Even samples of a period, and their unit."""
+        """Means over even intervals of a period about each sample, and their unit."""
 
     @property
     def lead(self) -> Any:
@@ -75,12 +75,6 @@ def unlisted_sensor(sensor: str, sensors: Sequence[str]) -> InputError:
     """Error of a sensor that a motion does not have."""
     why, remedy = f"The sensors are {', '.join(sensors)}", "Name one of these"
     return InputError(f'no sensor is named "{sensor}"', "argument sensor", why, remedy)
-
-
-def require_sensor(sensor: str, sensors: Sequence[str]) -> None:
-    """Refuse a sensor that a motion does not have."""
-    if sensor not in sensors:
-        raise unlisted_sensor(sensor, sensors)
 
 
 def recording_of(
@@ -164,7 +158,7 @@ def _band_limited(motion: PeriodicMotion, values: Array, sample_rate: float) -> 
     lines = np.fft.rfft(values)
     frequency = np.arange(lines.size) / motion.period
     passed = anti_alias(frequency / sample_rate)
-    lines *= passed
+    lines *= passed / np.sinc(np.arange(lines.size) / values.size)  # values are means
     highest = int(np.flatnonzero(passed > 0.0)[-1]) + 1
     points = max(_OVERSAMPLED * highest, 64)
     dense = np.fft.irfft(lines[:highest], points) * (points / values.size)

@@ -134,8 +134,8 @@ def record_set(
     ...     "faults.crack.kind": "crack", "faults.crack.gear": "pinion",
     ...     "faults.crack.tooth": 1, "faults.crack.depth": "1 mm"})
     >>> sizes = {"faults.crack.depth": ["0 mm", "1 mm", "2 mm"]}
-    >>> record_set(case, "cracks", sizes, sensor="pinion_y", duration=1.0,
-    ...            repeats=100, noise=2.0)  # doctest: +SKIP
+    >>> record_set(case, "cracks", sizes, sensor="acceleration_loa_pinion",
+    ...            duration=1.0, repeats=100, noise=2.0)  # doctest: +SKIP
     RecordingSet(300 recordings of 1 s over faults.crack.depth)
     """
     repeats = require_whole("repeats", repeats, 1)
@@ -224,8 +224,10 @@ def _recorder(case: Case | PartsCase, sensor: str) -> Callable[[float, float, Sc
     from tribodyn.study.machine.user_tables import PartsCase
 
     if isinstance(case, PartsCase):
+        from tribodyn.study.faults.sensors import check_sensors
         from tribodyn.study.planetary.run import run_parts
 
+        check_sensors(case, sensor)
         result: Any = run_parts(case.replace({"load_cases": None}))
         return lambda duration, rate, draw: result.recording(
             sensor, duration, rate, **draw._asdict()

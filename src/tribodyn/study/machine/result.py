@@ -260,7 +260,9 @@ class MachineResult(PartsResult):
         """
         from tribodyn.study.faults.machine_section import defects_of
         from tribodyn.study.faults.recording import Scatter, recording_of
+        from tribodyn.study.faults.sensors import check_sensors
 
+        check_sensors(self.case, sensor, tacho)
         motion = self.turning_motion
         return recording_of(
             motion if tacho is None else replace(motion, tacho=tacho),

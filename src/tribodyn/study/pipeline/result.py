@@ -142,8 +142,10 @@ class Result(Computed):
         Parameters
         ----------
         sensor : str or sequence of str
-            A coordinate, whose acceleration is recorded, ``"mesh_force"`` or
-            ``"transmission_error"``; several make several channels.
+            A signal in the data of the result, such as ``"acceleration_loa_pinion"``,
+            ``"mesh_force"`` or ``"dynamic_transmission_error"``, or a rotation such as
+            ``"pinion_theta"``, whose acceleration is recorded; several make several channels.
+            ``"pinion_y"`` and ``"transmission_error"`` stand for the same signals.
         duration : float
             Length of the recording [s].
         sample_rate : float
@@ -174,14 +176,14 @@ class Result(Computed):
         >>> case = tribodyn.load_case("fzg-roughness").replace({
         ...     "faults.crack.kind": "crack", "faults.crack.gear": "pinion",
         ...     "faults.crack.tooth": 1, "faults.crack.depth": "1 mm"})
-        >>> tribodyn.run(case).recording("pinion_y", 1.0, noise=0.5)  # doctest: +SKIP
+        >>> tribodyn.run(case).recording("acceleration_loa_pinion", 1.0)  # doctest: +SKIP
         """
-        from tribodyn.study.faults.motion import MESH_SENSORS
-        from tribodyn.study.faults.recording import Scatter, recording_of, require_sensor
+        from tribodyn.study.faults.motion import pair_sensor
+        from tribodyn.study.faults.recording import Scatter, recording_of
         from tribodyn.study.faults.section import bearing_defects
 
         for name in [sensor] if isinstance(sensor, str) else sensor:  # before the longest part
-            require_sensor(name, (*self.response.names, *MESH_SENSORS))
+            pair_sensor(self.response.names, name)
         return recording_of(
             self.turning_motion,
             tuple(bearing_defects(self.case).values()),

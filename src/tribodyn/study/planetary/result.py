@@ -273,7 +273,9 @@ class PlanetaryResult(PartsResult):
         """
         from tribodyn.study.faults.planetary_motion import RingSensor
         from tribodyn.study.faults.recording import Scatter, recording_of
+        from tribodyn.study.faults.sensors import check_sensors
 
+        check_sensors(self.case, sensor, tacho)
         place = RingSensor(sensor_angle, window)
         motion = replace(self.turning_motion, sensor=place, tacho=tacho or self.case.ends[0])
         return recording_of(

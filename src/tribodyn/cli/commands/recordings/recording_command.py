@@ -30,6 +30,8 @@ _OPTIONS = {
         *("tacho_jitter", "seed", "repeats"),
     )
 } | {"path": "--out", "folder": "--out"}
+#: Keys of the truth beside the faults, in SI.
+_OPERATION = tuple(f"operation.{key}" for key in ("torque", "speed", "speed_of", "input", "output"))
 
 
 def _help(text: str) -> Any:
@@ -44,8 +46,8 @@ class Sampling:
     sensor: Annotated[
         str,
         _help(
-            'Signals such as "pinion_y,wheel_y", "mesh_force" or "transmission_error"; one for a '
-            "set."
+            'Signals such as "acceleration_loa_pinion,acceleration_loa_wheel", "mesh_force" or '
+            '"dynamic_transmission_error"; one for a set.'
         ),
     ]
     duration: Annotated[str, _help('Length of a recording: "2 s".')] = "1 s"
@@ -126,6 +128,8 @@ def _record(
     from tribodyn.cases.load import run
     from tribodyn.cli.progress_bar import progress_bar
     from tribodyn.measurement.writers import check_ending
+    from tribodyn.study.faults.sensors import check_sensors
+    from tribodyn.study.machine.user_tables import PartsCase
 
     file = out if out is not None else Path(f"{Path(case).stem}-recording.mat")
     settings = sampling.settings()
@@ -136,6 +140,8 @@ def _record(
     check_ending(file)
     ready = changed_any_case(case, set_ or [])
     names = [name.strip() for name in sampling.sensor.split(",")]
+    if isinstance(ready, PartsCase):
+        check_sensors(ready, names)
     with progress_bar() as progress:
         result: Any = run(ready, progress)
         recorded: Recording = result.recording(names, settings.pop("duration"), **settings)
@@ -144,10 +150,11 @@ def _record(
         name: {key: value for key, value in vars(fault).items() if value is not None}
         for name, fault in (faults if isinstance(faults, dict) else vars(faults)).items()
     }
-    recorded.save(file, truth={"title": ready.title, "faults": truth})
+    operation = {key: value for key, value in ready.values() if key in _OPERATION}
+    recorded.save(file, truth={"title": ready.title, **operation, "faults": truth})
     rate, size = recorded.sample_rate, next(iter(recorded.channels.values())).size
     facts = {"file": str(file), "sample_rate": rate, "samples": size}
-    return {**facts, "units": dict(recorded.units), "faults": truth}, [
+    return {**facts, "units": dict(recorded.units), **operation, "faults": truth}, [
         f"{ready.title}\n{recorded}",
         f"Recording: {file}, truth: {file.with_suffix('.json')}",
         f"Analyse it: tribodyn signal {file} --channel {names[0]} --tacho tacho",
