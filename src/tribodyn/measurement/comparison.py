@@ -392,11 +392,7 @@ def _has_turning_motion(computed: Any) -> bool:
 
 
 def _computed(computed: Any, data: Any, signal: str, count: int) -> tuple[Array, Array, str]:
-    """Orders of the mesh, peak amplitudes and unit of a computed signal.
-
-    With faults it is that of the motion over whole turns, as in a recording; without, and for what
-    only the data of the result have, it is that of one mesh cycle.
-    """
+    """Orders of the mesh, amplitudes and unit of a signal; with faults as in a recording."""
     name = _name_in_data(data, signal)
     faults = getattr(getattr(computed, "case", None), "faults", None)
     if _has_turning_motion(computed) and (name is None or faults):
