@@ -215,9 +215,9 @@ def compare(
     -----
     Measured amplitudes are those over the angle of the mesh (:func:`order_spectrum`), which comes
     from the tachometer, from the channel with the angle, or from the mesh lines of all compared
-    channels (:func:`mesh_speed`). The rms of the signal is that up to 0.4 of the sampling rate,
-    which anti-alias filters pass, and up to the highest computed order. Noise and other sources
-    count in it, and not in that of the mesh harmonics.
+    channels (:func:`mesh_speed`). The computed rms is that of the band of the recording: from 0.4
+    to 0.5 of the sampling rate it falls as by an anti-alias filter. Noise and other sources count
+    in the measured one, and not in that of the mesh harmonics.
 
     Examples
     --------
@@ -263,8 +263,9 @@ def compare(
         at_harmonics = size[(order > 0.5) & (np.abs(order - np.rint(order)) < 1e-9)][:count]
         gains[name] = _gain(gain, name, at_harmonics, (harmonic, factors[name]), speed)
         size, at_harmonics = gains[name] * size, gains[name] * at_harmonics
-        level, of_record = _levels(order, size, measured[name], frequency / measured.sample_rate)
-        rows.append((name, "rms", unit, level, factors[name] * of_record, 0.0))
+        passed = _passed(order * frequency / measured.sample_rate)[order > 0.0]
+        level = _rms(size[order > 0.0] * passed), factors[name] * float(np.std(measured[name]))
+        rows.append((name, "rms", unit, *level, 0.0))
         rows += _harmonic_rows(name, unit, at_harmonics, (harmonic, factors[name]), speed.located)
         place, amplitude = harmonic.spectrum
         scale = speed.mesh_frequency if speed.located else frequency
@@ -367,13 +368,10 @@ def _rms(amplitudes: Array) -> float:
     return float(np.sqrt(0.5 * np.sum(amplitudes**2)))
 
 
-def _levels(order: Array, size: Array, values: Array, mesh: float) -> tuple[float, float]:
-    """Computed and recorded alternating rms in their common band; mesh frequency in rates."""
-    top = min(_BAND / mesh, float(order.max()) + 0.5)
-    lines = np.fft.rfft(values - values.mean())
-    lines[np.arange(lines.size) > top * mesh * values.size] = 0.0
-    recorded = np.fft.irfft(lines, values.size)
-    return _rms(size[(order > 0.0) & (order <= top)]), float(np.std(recorded))
+def _passed(frequency: Array) -> Array:
+    """Gain of an anti-alias filter over the frequency, in sampling rates."""
+    fall = np.clip((frequency - _BAND) / (0.5 - _BAND), 0.0, 1.0)
+    return np.asarray(0.5 * (1.0 + np.cos(np.pi * fall)))
 
 
 def _frequency(data: Any, computed: Any) -> float:
@@ -395,7 +393,8 @@ def _computed(computed: Any, data: Any, signal: str, count: int) -> tuple[Array,
     """Orders of the mesh, amplitudes and unit of a signal; with faults as in a recording."""
     name = _name_in_data(data, signal)
     faults = getattr(getattr(computed, "case", None), "faults", None)
-    if _has_turning_motion(computed) and (name is None or faults):
+    whole = name is None or faults or hasattr(computed, "mesh_spectra")
+    if _has_turning_motion(computed) and whole:
         try:
             unit = computed.turning_motion.signal(signal)[1]
         except InputError:
