@@ -127,7 +127,7 @@ def _require_external(model: GearboxModel, stage: Stage) -> None:
         what = f"stage {stage.id} has a ring gear"
     if what:
         why = "Only external pairs on fixed axes are supported"
-        remedy = "List the data of all stages by the same command without --out"
+        remedy = f"Compute all stages together: tribodyn run {model.path}"
         raise InputError(what, model.path, why, remedy)
 
 

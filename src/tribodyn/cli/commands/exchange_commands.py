@@ -65,7 +65,8 @@ def import_(
         else:
             say(_tables(model))
             _show_remarks(model)
-            tell(f"To compute a stage: tribodyn import {file} --stage NUMBER --out case.toml")
+            if any(not s.planetary and s.gear_1.teeth * s.gear_2.teeth > 0 for s in model.stages):
+                tell(f"To compute a stage: tribodyn import {file} --stage NUMBER --out case.toml")
             tell(f"To compute all of them: tribodyn run {file}")
         return
     check_file(out, force)
