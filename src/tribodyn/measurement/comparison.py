@@ -61,7 +61,7 @@ class Comparison(Record):
     channel : (n,) array of str
         Measured channel of each row.
     measure : (n,) array of str
-        ``rms`` of the alternating signal in the band that both have, ``rms of mesh harmonics``,
+        ``rms`` of the alternating signal in the band of the recording, ``rms of mesh harmonics``,
         ``mesh harmonic k``.
     unit : (n,) array of str
         Unit of the row.
