@@ -23,7 +23,7 @@ from tribodyn.machine.assembly import system
 from tribodyn.machine.bearing import Bearing
 from tribodyn.machine.gear import Gear
 from tribodyn.machine.graph.bodies import GearBody
-from tribodyn.machine.graph.clock import Clock
+from tribodyn.machine.graph.clock import Clock, Phases
 from tribodyn.machine.graph.crossed import CrossedAxes
 from tribodyn.machine.graph.directions import MeshDirection
 from tribodyn.machine.graph.kinematics import Kinematics, MeshLoad, ShaftLoad
@@ -90,6 +90,7 @@ __all__ = [
     "MeshPhases",
     "MeshedPlanets",
     "Operation",
+    "Phases",
     "Placement",
     "PlanetaryKinematics",
     "PlanetaryModes",

@@ -24,13 +24,16 @@ from tribodyn.machine.structure import MachineStructure
 from tribodyn.types import Array
 
 
-def system(machine: Machine | MachineStructure) -> System:
+def system(machine: Machine | MachineStructure, *, phases: bool = False) -> System:
     """Assemble the equations of motion of a machine.
 
     Parameters
     ----------
     machine : Machine or MachineStructure
         The machine, whose matrices :func:`machine_structure` computes, or its matrices.
+    phases : bool
+        Give the contacts their cycles over ``machine.phases``, so that
+        ``harmonic_balance(system, machine.phases.frequency)`` needs no common period.
 
     Returns
     -------
@@ -64,11 +67,11 @@ def system(machine: Machine | MachineStructure) -> System:
     frictions: list[LoadFriction] = []
     for name, mesh in machine.meshes.items():
         if mesh.contacts:
-            law = _in_space(structure, name, len(contacts))
+            law = _in_space(structure, name, len(contacts), phases)
             contacts += law[0]
             frictions += law[1]
         else:
-            contacts.append(_contact(structure, name))
+            contacts.append(_contact(structure, name, phases))
     return System(
         mass=structure.mass,
         damping=structure.damping,
@@ -82,7 +85,7 @@ def system(machine: Machine | MachineStructure) -> System:
     )
 
 
-def _contact(structure: MachineStructure, name: str) -> Contact:
+def _contact(structure: MachineStructure, name: str, phases: bool) -> Contact:
     mesh = structure.machine.meshes[name]
     return Contact(
         direction=structure.mesh(name),
@@ -92,17 +95,16 @@ def _contact(structure: MachineStructure, name: str) -> Contact:
         gap=mesh.gap,
         friction=None if mesh.friction is None else _friction(structure, name),
         events=mesh.events,
-        **_clock(structure.machine, name),
+        **_clock(structure.machine, name, phases),
     )
 
 
-def _clock(machine: Machine, name: str) -> dict[str, Any]:
-    """Periods of a mesh in one of the clock, and where its first begins."""
+def _clock(machine: Machine, name: str, phases: bool) -> dict[str, Any]:
+    """Periods of a mesh in one of the clock or of each phase, and where its first begins."""
     mesh = machine.meshes[name]
-    return {
-        "cycles": machine.clock.cycles[name] // mesh.period,
-        "offset": mesh.offset / mesh.period,
-    }
+    one = machine.clock.cycles[name] // mesh.period
+    cycles = machine.phases.cycles[name] if phases else one
+    return {"cycles": cycles, "offset": mesh.offset / mesh.period}
 
 
 def mesh_contacts(structure: MachineStructure, system: System) -> list[tuple[Contact, ...]]:
@@ -113,7 +115,7 @@ def mesh_contacts(structure: MachineStructure, system: System) -> list[tuple[Con
 
 
 def _in_space(
-    structure: MachineStructure, name: str, first: int
+    structure: MachineStructure, name: str, first: int, phases: bool
 ) -> tuple[list[Contact], list[LoadFriction]]:
     """Force law of computed teeth over the coordinates; its contacts are numbered from first."""
     machine, mesh = structure.machine, structure.machine.meshes[name]
@@ -122,7 +124,7 @@ def _in_space(
     direction, crossing = machine.directions[name], mesh.crossing
     onto = pair_coordinates(direction, size, first_drives=drives, crossing=crossing)
     onto = onto @ np.vstack([structure.gear(gear) for gear in mesh.gears])
-    clock = _clock(machine, name)
+    clock = _clock(machine, name, phases)
     parts: tuple[Sequence[Contact], Sequence[LoadFriction]] = mesh.contacts, mesh.frictions
     if crossing is not None and not drives:
         parts = [run_back(each) for each in parts[0]], [run_back(each) for each in parts[1]]

@@ -16,7 +16,7 @@ from tribodyn.machine.bearing import Bearing
 from tribodyn.machine.fields import check_name, check_number, quoted
 from tribodyn.machine.gear import Gear
 from tribodyn.machine.graph.bodies import GearBody, body_problems, gear_body
-from tribodyn.machine.graph.clock import Clock, clock_of
+from tribodyn.machine.graph.clock import Clock, Phases, clock_of, phases_of
 from tribodyn.machine.graph.directions import MeshDirection, mesh_direction
 from tribodyn.machine.graph.kinematics import Kinematics, kinematics, ratio_problems
 from tribodyn.machine.graph.mesh_checks import mesh_problems
@@ -203,6 +203,11 @@ class Machine:
             cycles[name] = abs((ratios[gear.shaft] - carrier) * gear.teeth)
         clock = clock_of(cycles, ratios, abs(self.operation.speed) / (2.0 * math.pi))
         return clock.with_whole_periods({name: mesh.period for name, mesh in self.meshes.items()})
+
+    @cached_property
+    def phases(self) -> Phases:
+        """Independent phases of the meshes, for a motion that needs no common period."""
+        return phases_of(self.clock, {name: mesh.period for name, mesh in self.meshes.items()})
 
     @cached_property
     def directions(self) -> Mapping[str, MeshDirection]:

@@ -208,6 +208,7 @@ def _on_clock(
     progress: Progress,
 ) -> Response:
     """Periodic motion on one clock."""
+    frequency = frequency[0] if np.shape(frequency) == (1,) else frequency
     require_number("frequency", frequency)
     require_positive("frequency", frequency, "Hz")
     count = _FIRST if steps is None else require_whole("steps", steps, 8)

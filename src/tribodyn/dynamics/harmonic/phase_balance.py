@@ -27,11 +27,12 @@ from tribodyn.types import Array, Index, Mask
 #: Points over a phase of meshes, and over one that only turns shafts, with which an automatic
 #: choice starts, and those with which it tries at last to find a motion.
 _MESH, _SHAFT, _LAST = 16, 8, 64
-#: Change of the motion with twice the points at which an automatic choice stops: the first up to so
-#: many points, the second beyond, where forces that bend or jump cost points of all phases.
-_ACCURATE, _ENOUGH, _MANY, _MOST = 2e-7, 1e-3, 2**14, 2**17
-#: Step error that causes a warning.
-_LIMIT = 1e-2
+#: Change of the motion with twice the points at which an automatic choice stops: the first while it
+#: falls to less than this part from grid to grid, the second where forces that bend or jump make it
+#: fall slowly or the points are many; and the most points.
+_ACCURATE, _FALLING, _ENOUGH, _MANY, _MOST = 2e-7, 0.1, 1e-3, 2**14, 2**17
+#: Step error that causes a warning; part of the largest change with which a phase is refined too.
+_LIMIT, _WORST = 1e-2, 0.2
 #: Damping added at first where Newton's method does not converge, over the critical damping at
 #: the highest mesh frequency, and the factors by which it is reduced; Newton steps with each.
 _ADDED, _TRIES = (0.3, 0.1, 0.03, 0.01, 0.003), 12
@@ -120,12 +121,13 @@ def phase_balance(
     search = _Search.of(system, frequency)
     shape = _first_shape(search.rows) if steps is None else _read_steps(steps, system.phases)
     residual, solution = search.first(shape, start, tolerance, steps is None)
-    step_error = float("nan")
+    step_error, smooth = float("nan"), True
     while solution.error <= tolerance:
         errors = search.changes(residual, solution.state.y)
+        smooth &= not errors.sum() > _FALLING * step_error  # the first one has none before it
         step_error = float(errors.sum())
-        limit = _ACCURATE if residual.grid.size <= _MANY else _ENOUGH
-        poor = np.flatnonzero(errors > limit / errors.size)
+        limit = _ACCURATE if smooth and residual.grid.size <= _MANY else _ENOUGH
+        poor = np.flatnonzero(errors > max(limit / errors.size, _WORST * errors.max()))
         shape = _doubled(residual.grid.shape, poor)
         if steps is not None or not poor.size or np.prod(shape) > _MOST:
             break

@@ -1,13 +1,16 @@
-"""One clock for all meshes: whole numbers of mesh cycles in its period."""
+"""One clock for all meshes, whole numbers of mesh cycles in its period; or phases of their own."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 
 from tribodyn.errors import InputError, did_you_mean
+
+#: Meshes share a phase if each has no more cycles in a period of it.
+_SHARED = 4
 
 
 @dataclass(frozen=True)
@@ -72,6 +75,58 @@ class Clock:
             {shaft: factor * turns for shaft, turns in self.turns.items()},
             self.frequency / factor,
         )
+
+
+@dataclass(frozen=True)
+class Phases:
+    """Independent phases of the meshes of a machine; a common period is not needed.
+
+    Parameters
+    ----------
+    cycles : mapping of str to tuple of int
+        Mesh cycles of each mesh over each phase; of teeth that differ, the periods of them.
+    frequency : tuple of float
+        Frequency of each phase [Hz].
+
+    Examples
+    --------
+    >>> clock = clock_of({"first": Fraction(27), "second": Fraction(23 * 27, 51)}, {}, 10.0)
+    >>> phases_of(clock, {"first": 1, "second": 1}).cycles
+    {'first': (1, 0), 'second': (0, 1)}
+    """
+
+    cycles: Mapping[str, tuple[int, ...]]
+    frequency: tuple[float, ...]
+
+
+def phases_of(clock: Clock, periods: Mapping[str, int]) -> Phases:
+    """Phases of meshes, whose teeth repeat after these periods."""
+    rates = {mesh: Fraction(cycles, periods[mesh]) for mesh, cycles in clock.cycles.items()}
+    groups: list[list[Fraction]] = []
+    for rate in dict.fromkeys(rates.values()):
+        group = next((each for each in groups if _most_cycles([*each, rate]) <= _SHARED), None)
+        if group is None:
+            groups.append(group := [])
+        group.append(rate)
+    bases = [_common(group) for group in groups]
+    pairs = list(zip(groups, bases, strict=True))
+    cycles = {
+        mesh: tuple(int(rate / base) if rate in group else 0 for group, base in pairs)
+        for mesh, rate in rates.items()
+    }
+    return Phases(cycles, tuple(clock.frequency * float(base) for base in bases))
+
+
+def _common(rates: Sequence[Fraction]) -> Fraction:
+    """Largest rate of which all these are whole multiples."""
+    return Fraction(
+        math.gcd(*(rate.numerator for rate in rates)),
+        math.lcm(*(rate.denominator for rate in rates)),
+    )
+
+
+def _most_cycles(rates: Sequence[Fraction]) -> int:
+    return int(max(rates) / _common(rates))
 
 
 def clock_of(

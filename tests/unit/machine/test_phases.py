@@ -1,0 +1,86 @@
+"""Independent phases of the meshes of a machine."""
+
+from __future__ import annotations
+
+from fractions import Fraction
+
+import numpy as np
+import pytest
+
+from tribodyn.dynamics import harmonic_balance
+from tribodyn.machine import Bearing, Gear, Machine, Mesh, Operation, Section, Shaft, system
+from tribodyn.machine.graph.clock import clock_of, phases_of
+
+
+def waving(k, part):
+    """Stiffness that varies smoothly over the mesh cycle."""
+    return lambda phase: k * (1.0 + part * np.cos(2 * np.pi * phase))
+
+
+def machine(*teeth: int) -> Machine:
+    """Two stages on elastic shafts, with these numbers of teeth."""
+    middle = Shaft([Section(0.12, 0.03)])
+    gears = {
+        "z1": Gear("input", 0.0, teeth[0], 0.03),
+        "z2": Gear("middle", 0.03, teeth[1], 0.03),
+        "z3": Gear("middle", 0.09, teeth[2], 0.04),
+        "z4": Gear("output", 0.0, teeth[3], 0.04),
+    }
+    meshes = {
+        "first": Mesh(("z1", "z2"), normal_module=2e-3, stiffness=waving(3e8, 0.15), gap=5e-5,
+                      error=lambda phase: 2e-6 * np.cos(2 * np.pi * phase), damping_ratio=0.06),
+        "second": Mesh(("z3", "z4"), normal_module=3e-3, stiffness=waving(5e8, 0.1), gap=6e-5,
+                       offset=0.3, damping_ratio=0.06),
+    }  # fmt: skip
+    bearings = {
+        "A": Bearing("middle", 0.0, radial_stiffness=3e8, axial_stiffness=1e8),
+        "B": Bearing("middle", 0.12, radial_stiffness=3e8),
+    }
+    shafts = {"input": Shaft(), "middle": middle, "output": Shaft()}
+    return Machine(
+        shafts=shafts, gears=gears, meshes=meshes, bearings=bearings,
+        operation=Operation("input", "output", speed=80.0, torque=100.0),
+    )  # fmt: skip
+
+
+def test_hunting_teeth_have_the_motion_of_their_period_in_few_points() -> None:
+    train = machine(19, 23, 17, 31)
+    assert train.clock.cycles == {"first": 23, "second": 17}
+    assert train.phases.cycles == {"first": (1, 0), "second": (0, 1)}
+    turns = 80.0 / (2 * np.pi)
+    assert train.phases.frequency == pytest.approx((19 * turns, 19 / 23 * 17 * turns), rel=1e-14)
+    clock = harmonic_balance(system(train), train.clock.frequency)
+    phases = harmonic_balance(system(train, phases=True), train.phases.frequency)
+    assert np.prod(phases.points) < len(clock.time)
+    at = phases.at(clock.time)
+    assert at.contact_force == pytest.approx(clock.contact_force, rel=2e-6)
+
+
+def test_teeth_without_a_common_factor_cost_no_more() -> None:
+    near, far = (
+        harmonic_balance(system(each, phases=True), each.phases.frequency)
+        for each in (machine(19, 23, 17, 31), machine(190, 229, 171, 311))
+    )
+    assert np.prod(far.points) <= 4 * np.prod(near.points)
+    assert far.converged
+
+
+def test_meshes_of_equal_or_simply_related_frequency_share_a_phase() -> None:
+    rates = {"a": Fraction(27), "b": Fraction(27), "c": Fraction(81, 2), "d": Fraction(620, 51)}
+    phases = phases_of(clock_of(rates, {}, 10.0), dict.fromkeys(rates, 1))
+    assert phases.cycles == {"a": (2, 0), "b": (2, 0), "c": (3, 0), "d": (0, 1)}
+    assert phases.frequency == pytest.approx((135.0, 6200 / 51))
+
+
+def test_teeth_that_differ_repeat_after_their_period() -> None:
+    rates = {"a": Fraction(27), "b": Fraction(13)}
+    phases = phases_of(clock_of(rates, {}, 1.0).with_whole_periods({"a": 27}), {"a": 27, "b": 1})
+    assert phases.frequency == pytest.approx((1.0, 13.0))
+
+
+def test_one_phase_is_the_clock() -> None:
+    train = machine(20, 40, 20, 40)
+    assert train.phases.cycles == {"first": (2,), "second": (1,)}
+    phased = harmonic_balance(system(train, phases=True), train.phases.frequency)
+    clock = harmonic_balance(system(train), train.clock.frequency)
+    assert np.array_equal(phased.contact_force, clock.contact_force)
