@@ -106,19 +106,22 @@ class Contact:
     ramp_gap: Entry = ()
     turning_error: Any = ()
     turning_cycles: Any = ()
-    #: Turning errors with their cycles.
-    turning: tuple[Turning, ...] = field(init=False, repr=False, compare=False)
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "events", read_events(self.events, "Contact.events"))
         require_flag("damping_in_gap", self.damping_in_gap)
         object.__setattr__(self, "cycles", read_cycles("cycles", self.cycles))
-        object.__setattr__(self, "turning", read_turning(self.turning_error, self.turning_cycles))
+        read_turning(self.turning_error, self.turning_cycles)
         require_number("offset", self.offset)
         require_between("offset", self.offset, 0.0, float(np.nextafter(1.0, 0.0)), "")
         where = "Contact.direction"
         if not varies(self.direction) and not real_numbers(where, self.direction).any():
             raise no_direction(where)
+
+    @property
+    def turning(self) -> tuple[Turning, ...]:
+        """Turning errors with their cycles."""
+        return read_turning(self.turning_error, self.turning_cycles)
 
     def __repr__(self) -> str:
         """One line."""
@@ -256,8 +259,6 @@ class System:
     balance: ArrayLike | None = None
     frictions: Sequence[LoadFriction] = ()
     gyroscopic: ArrayLike | None = None
-    #: Independent phases; 0 where all contacts follow one clock.
-    phases: int = field(default=0, init=False, repr=False, compare=False)
     #: Largest rate of the motion by the number of steps with which it was computed.
     _rates: dict[int, float] = field(default_factory=dict, init=False, repr=False, compare=False)
     #: Matrices about the static load, by the phase at which they were computed.
@@ -297,7 +298,7 @@ class System:
         object.__setattr__(self, "names", names)
         _inverse_of(matrices["mass"], names)
         _refuse_missing_contacts(self)
-        object.__setattr__(self, "phases", count_phases(self.contacts))
+        count_phases(self.contacts)
         for f, friction in enumerate(self.frictions):
             refuse_several_clocks(friction, self.contacts, f"System.frictions[{f}]")
         if self.gyroscopic is not None:
@@ -331,6 +332,11 @@ class System:
         """Damping plus gyroscopic matrix, (n, n) [N*s/m or N*m*s]."""
         damping = np.asarray(self.damping)
         return damping if self.gyroscopic is None else damping + np.asarray(self.gyroscopic)
+
+    @property
+    def phases(self) -> int:
+        """Number of independent phases; 0 where all contacts follow one clock."""
+        return count_phases(self.contacts)
 
     @cached_property
     def cycles(self) -> int:

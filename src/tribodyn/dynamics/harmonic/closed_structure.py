@@ -10,6 +10,7 @@ is regular; the rest of their forces is part of ``u``.
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from functools import cached_property
 
 import numpy as np
@@ -100,14 +101,17 @@ class ClosedStructure:
         ]
         return np.concatenate(parts)
 
-    def refuse_resonance(self, omega: Array) -> None:
-        """Refuse a mode without damping whose frequency is one of these."""
+    def refuse_resonance(
+        self, omega: Array, names: Callable[[int], str] = "harmonic {} of the clock".format
+    ) -> None:
+        """Refuse a mode without damping whose frequency is one of these lines."""
         values = np.linalg.eigvals(self.matrix) if self.modes is None else self.modes[0]
         still = np.abs(values.real) <= _UNDAMPED * np.abs(values)
         for value in np.abs(values[still & (values.imag > 0.0)]):
-            if np.abs(np.abs(omega) - value).min() <= _UNDAMPED * value:
+            line = int(np.argmin(np.abs(np.abs(omega) - value)))
+            if abs(abs(omega[line]) - value) <= _UNDAMPED * value:
                 what = f"a mode of {value / (2.0 * np.pi):.6g} Hz has no damping"
-                why = "It is a harmonic of the meshes, so that its motion grows without bounds"
+                why = f"It is {names(line)}, so that its motion grows without bounds"
                 remedy = "Give System.damping or Contact.damping, or another frequency"
                 raise ComputationError(Problem(what, "System.damping", why, remedy))
 

@@ -203,7 +203,8 @@ class PhaseResidual(Residual):
     def __init__(self, structure: ClosedStructure, contacts: PhaseContacts) -> None:
         self.structure, self.contacts, self.frequency = structure, contacts, 1.0
         self.grid, self.omega = contacts.grid, contacts.grid.omega
-        structure.refuse_resonance(self.omega)
+        numbers = self.grid.numbers
+        structure.refuse_resonance(self.omega, lambda k: f"the line {numbers[k]} of the phases")
         self.receptances = structure.receptances(self.omega)
         self.receptances[self.grid.unpaired] = 0.0
         self._differentiate = np.where(self.grid.unpaired, 0.0, 1j * self.omega)[:, None]
