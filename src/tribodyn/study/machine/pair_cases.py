@@ -128,8 +128,10 @@ def pair_case(
     if torque < _IDLE:
         what, why = f"mesh {mesh} carries no torque", "Its teeth have no contact to compute"
         remedy = "Name the shaft where the power leaves behind it, or give it a constant stiffness"
-        stated = TABLES["operation"].spec("torque"), "torque", data["operation"]["torque"]
-        key = "operation.output" if read_value(*stated) else "operation.torque"
+        option = TABLES["operation"].spec("torque")
+        assert option is not None
+        stated = read_value(option, "torque", data["operation"]["torque"])
+        key = "operation.output" if stated else "operation.torque"
         raise InputError((source or Source()).place([(key, Problem(what, "", why, remedy))]))
     body = data[group][mesh]
     inner, crossed = mesh_tables(body), mesh_table_kind(body) is HypoidMeshTable
