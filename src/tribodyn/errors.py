@@ -224,15 +224,18 @@ class ModelWarning(UserWarning):
         Stable identifier such as ``"friction-range"``.
     message : str
         Value, limit and remedy.
+    affected : array of bool or float, optional
+        Which of the evaluated points it concerns, or their part of the load; None if all.
     """
 
-    def __init__(self, code: str, message: str) -> None:
+    def __init__(self, code: str, message: str, affected: Any = None) -> None:
         self.code = code
         self.message = message
+        self.affected = affected
         super().__init__(f"[{code}] {message}")
 
 
-def warn(code: str, message: str, *, stacklevel: int = 2) -> None:
+def warn(code: str, message: str, *, stacklevel: int = 2, affected: Any = None) -> None:
     """Issue a :class:`ModelWarning` with a stable code.
 
     Parameters
@@ -243,8 +246,10 @@ def warn(code: str, message: str, *, stacklevel: int = 2) -> None:
         Value, limit and remedy.
     stacklevel : int
         Frames to skip, as in :func:`warnings.warn`.
+    affected : array of bool or float, optional
+        As of :class:`ModelWarning`.
     """
-    warning = ModelWarning(code, message)
+    warning = ModelWarning(code, message, affected)
     if not any(takes(warning) for takes in reversed(_listeners.get())):
         warnings.warn(warning, stacklevel=frames(stacklevel + 1, sys._getframe()))
 
@@ -452,14 +457,8 @@ def require_between(
     --------
     >>> require_between("poissons_ratio", 0.3, 0.0, 0.5)
     """
-    _check(
-        name,
-        value,
-        unit,
-        lambda a: (a >= low) & (a <= high),
-        f"between {low:g} and {high:g} {unit}".rstrip(),
-        remedy,
-    )
+    limit = f"between {low:g} and {high:g} {unit}".rstrip()
+    _check(name, value, unit, lambda a: (a >= low) & (a <= high), limit, remedy)
 
 
 @with_old_names

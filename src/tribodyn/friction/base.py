@@ -14,7 +14,7 @@ from tribodyn.aliases import with_old_names
 from tribodyn.ehl.traction.film_temperature import STEEL_THERMAL_CONTACT_COEFFICIENT
 from tribodyn.errors import InputError, Problem, require_between, require_positive, shortened, warn
 from tribodyn.model import Model, Registry
-from tribodyn.types import Array
+from tribodyn.types import Array, Mask
 
 if TYPE_CHECKING:
     from tribodyn.ehl.traction.film_state import FilmState
@@ -408,14 +408,19 @@ class Range(NamedTuple):
 
 def warn_outside(law: str, ranges: Iterable[Range], remedy: str) -> None:
     """Warn once, naming every quantity outside of its range with all that it runs through."""
-    faults = [_range_text(quantity) for quantity in ranges if _leaves(quantity)]
+    outside = [(quantity, _outside(quantity)) for quantity in ranges]
+    faults = [(_range_text(quantity), mask) for quantity, mask in outside if np.any(mask)]
     if faults:
-        warn("friction-range", f"{law}: {'; '.join(faults)}. {remedy}", stacklevel=3)
+        texts, masks = zip(*faults, strict=True)
+        affected = np.any(np.broadcast_arrays(*masks), axis=0)
+        message = f"{law}: {'; '.join(texts)}. {remedy}"
+        warn("friction-range", message, stacklevel=3, affected=affected)
 
 
-def _leaves(quantity: Range) -> bool:
-    low, high = float(np.min(quantity.value)), float(np.max(quantity.value))
-    return not quantity.low <= low <= high <= quantity.high
+def _outside(quantity: Range) -> Mask:
+    """Mask of the values outside of the range."""
+    value = np.asarray(quantity.value)
+    return ~((quantity.low <= value) & (value <= quantity.high))
 
 
 def _range_text(quantity: Range) -> str:

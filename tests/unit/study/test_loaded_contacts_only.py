@@ -9,9 +9,10 @@ import numpy as np
 import pytest
 
 import tribodyn as td
-from tribodyn.errors import collected
+from tribodyn.errors import ModelWarning, collected
 from tribodyn.mesh import MeshTable
 from tribodyn.plot import FIGURES
+from tribodyn.study.machine.run import MeshWarning, warn_of_meshes
 from tribodyn.study.pipeline.cautions import mesh_cautions
 from tribodyn.study.pipeline.tooth_contact import hypoid_friction_of, mesh_of
 
@@ -122,3 +123,63 @@ def test_the_caption_of_film_on_the_flank_names_the_lines_that_are_drawn() -> No
     with collected():
         rubbed = hypoid_friction_of(thin)
     assert "lines at 2 separate" in figure.caption_of(rubbed)
+
+
+@pytest.mark.parametrize(
+    ("name", "torque", "warned"),
+    [
+        ("helical-pair", 1.0, False),
+        ("hypoid-mixed-ehl", 1.0, False),
+        ("hypoid-mixed-ehl", 0.1, True),
+        ("time-varying-friction", 1.0, True),
+    ],
+)
+def test_a_built_in_pair_warns_where_a_real_part_of_the_load_is_outside(
+    name: str, torque: float, warned: bool
+) -> None:
+    case = td.load_case(name)
+    case = case.replace({"operation.torque": torque * case.operation.torque})
+    _, warnings = mesh(case, rehearsal=True)
+    assert ("friction-range" in warnings) == warned
+
+
+@pytest.mark.parametrize("case", ["fzg-roughness", "helical-pair"])
+def test_the_part_of_the_load_outside_is_that_of_the_table(case: str) -> None:
+    law = {"friction.law": "xu-2007", "film.model": "dowson-higginson"}
+    if case == "fzg-roughness":
+        law |= {"operation.speed": "1500 rpm", "gears.composite_roughness": "0.4 um"}
+    parts = []
+    for torque in (3.0, 1.0, 0.25, 0.1):
+        changed = td.load_case(case)
+        force = {"operation.torque": torque * changed.operation.torque}
+        table, warnings = mesh(changed.replace({**law, **force}))
+        load, pressure = table.load_per_width, table.hertz_pressure
+        judged = load >= 0.25 * load.max()
+        ratio = np.abs(table.slide_to_roll_ratio)
+        outside = judged & ((pressure < 0.5e9) | (ratio > 1.0))
+        outside |= judged & ((table.equivalent_radius < 5e-3) | (table.entrainment_speed < 1.0))
+        part = float(load[outside].sum() / load.sum())
+        assert ("friction-range" in warnings) == (part >= 0.2), (part, warnings)
+        if part >= 0.2:
+            stated = re.findall(r"concerns (\d+)% of the load", warnings["friction-range"])
+            assert [int(each) for each in stated] == [pytest.approx(100.0 * part, abs=1.0)]
+        parts.append(part)
+    assert max(parts[0], 0.2) < parts[-1]
+
+
+def test_meshes_of_a_machine_are_counted_in_one_warning_of_each_law() -> None:
+    def of(mesh: str, part: float | None, quantity: str) -> MeshWarning:
+        text = f"xu-2007: {quantity} 0.3 to 0.7, fitted for 1 to 2. Compare."
+        return MeshWarning(mesh, "operation", ModelWarning("friction-range", text, part))
+
+    listed = [of("a", 0.3, "pressure"), of("b", 0.9, "speed"), of("c", 0.25, "pressure")]
+    with collected() as warnings:
+        warn_of_meshes(listed)
+    assert len(warnings) == 1
+    assert warnings[0].message == (
+        "mesh b, operation: xu-2007: speed 0.3 to 0.7, fitted for 1 to 2. Compare. "
+        "The same in mesh a, operation (30%); mesh c, operation (25%)."
+    )
+    with collected() as warnings:
+        warn_of_meshes([of("a", None, "pressure"), of("b", None, "speed")])
+    assert len(warnings) == 2

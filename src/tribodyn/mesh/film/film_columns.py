@@ -13,7 +13,7 @@ import numpy as np
 from tribodyn.contact import effective_modulus
 from tribodyn.ehl import FILM_MODELS, film_load_share
 from tribodyn.ehl.steady.batch import Films
-from tribodyn.errors import Problem, TribodynError, collected, require_between
+from tribodyn.errors import Problem, TribodynError, collected, require_between, warn
 from tribodyn.friction import LAWS, FrictionParts, TribologicalContact
 from tribodyn.gear import Material
 from tribodyn.lubricant import Lubricant
@@ -128,6 +128,9 @@ def judged(load_per_width: Array) -> Mask:
     return np.asarray(load_per_width >= JUDGED_LOAD * load_per_width.max(axis=-1, keepdims=True))
 
 
+#: Part of the load outside of the range of a friction law from which there is a warning.
+EXTRAPOLATED_LOAD = 0.2
+
 Answer = TypeVar("Answer")
 
 
@@ -143,14 +146,25 @@ def warn_of_loaded(compute: Callable[[], Answer], again: Callable[[], object]) -
 def friction_by_law(
     law: str, contact: TribologicalContact, options: Mapping[str, Any]
 ) -> Array | FrictionParts:
-    """Friction of every contact, with warnings of those that carry load alone."""
-    judge = judged(np.asarray(contact.load_per_width))
+    """Friction of every contact; warn where a real part of the load is outside of the law."""
+    load = np.asarray(contact.load_per_width)
+    judge = judged(load)
 
-    def of_judged() -> object:
+    def of_judged() -> None:
         columns = {each.name: getattr(contact, each.name) for each in fields(contact)}
         columns = {n: c for n, c in columns.items() if np.shape(c) == judge.shape}
         part = replace(contact, **{name: c[judge] for name, c in columns.items()})
-        return LAWS[law].evaluate(part, options)
+        with collected() as warnings:
+            LAWS[law].evaluate(part, options)
+        for warning in warnings:
+            if warning.affected is None:
+                warn(warning.code, warning.message)
+                continue
+            outside = np.broadcast_to(warning.affected, np.shape(load[judge]))
+            share = float(load[judge][outside].sum() / load.sum())
+            if share >= EXTRAPOLATED_LOAD:
+                text = f"{warning.message} This concerns {share:.0%} of the load."
+                warn(warning.code, text, affected=share)
 
     return warn_of_loaded(lambda: LAWS[law].evaluate(contact, options), of_judged)
 

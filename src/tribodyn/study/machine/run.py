@@ -200,15 +200,28 @@ def static_with_teeth(
 
 
 def warn_of_meshes(mesh_warnings: Iterable[MeshWarning]) -> None:
-    """Warn of the teeth, each reason once with all the meshes and loads that have it."""
+    """Warn of the teeth, each reason once, greatest part of the load first, with all its meshes."""
     groups: dict[tuple[str, str], list[MeshWarning]] = {}
     for each in mesh_warnings:
-        text = re.sub(r"[-+]?\d[\d.e+-]*", "#", each.warning.message)
-        groups.setdefault((each.warning.code, text), []).append(each)
+        message = each.warning.message
+        model = re.sub(r"[-+]?\d[\d.e+-]*", "#", message)
+        if _part(each):
+            model = message.partition(":")[0]
+        groups.setdefault((each.warning.code, model), []).append(each)
     for (code, _), group in groups.items():
-        first, places = group[0], [f"mesh {mesh}, {load}" for mesh, load, _ in group[1:]]
-        others = f" The same in {'; '.join(dict.fromkeys(places))}." if places else ""
-        warn(code, f"mesh {first.mesh}, {first.load}: {first.warning.message}{others}")
+        first, *others = sorted(group, key=_part, reverse=True)
+        places = [
+            f"mesh {each.mesh}, {each.load}" + (f" ({_part(each):.0%})" if _part(each) else "")
+            for each in others
+        ]
+        same = f" The same in {'; '.join(dict.fromkeys(places))}." if places else ""
+        warn(code, f"mesh {first.mesh}, {first.load}: {first.warning.message}{same}")
+
+
+def _part(mesh_warning: MeshWarning) -> float:
+    """Part of the load that a warning concerns; zero where it does not say."""
+    part = mesh_warning.warning.affected
+    return part if isinstance(part, float) else 0.0
 
 
 def _static(

@@ -163,7 +163,7 @@ def meshes_of(cases: Sequence[Case]) -> list[Callable[[], MeshTable]]:
 
 def _repeat_warnings(table: MeshTable, model_warnings: Sequence[ModelWarning]) -> MeshTable:
     for warning in model_warnings:
-        warn(warning.code, warning.message)
+        warn(warning.code, warning.message, affected=warning.affected)
     return table
 
 
