@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from functools import cached_property
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -89,6 +90,19 @@ class MeshFunctions:
         InputError
             If the mesh has no force law.
         """
+        error, _ = self._tangent_error(np.asarray(phase, dtype=float))
+        return np.zeros_like(error) if self._is_linear else error
+
+    @cached_property
+    def _is_linear(self) -> bool:
+        """Whether the tangent begins at zero: between knots only interpolation would be left."""
+        tangent = self.tangent_stiffness
+        knots = tangent.grid.phase if isinstance(tangent, PhaseFunction) else self.event_phases
+        error, size = self._tangent_error(np.asarray(knots, dtype=float))
+        return bool(np.all(np.abs(error) <= _ROUNDING * np.abs(size)))
+
+    def _tangent_error(self, phase: Array) -> tuple[Array, Array]:
+        """Error of the tangent and static transmission error."""
         tangent, static = self.tangent_stiffness, self.static_transmission_error
         if tangent is None or static is None or self.total_normal_force is None:
             raise InputError(
@@ -99,13 +113,11 @@ class MeshFunctions:
                 remedy='Take such a stiffness model, or mesh_force = "stiffness"',
             )
         deflection = np.asarray(static(phase))
-        error = deflection - self.total_normal_force / np.asarray(tangent(phase))
-        # Of a linear law only rounding is left, whose bends would count as jumps.
-        return np.where(np.abs(error) > _ROUNDING * np.abs(deflection), error, 0.0)
+        return deflection - self.total_normal_force / np.asarray(tangent(phase)), deflection
 
 
 #: Difference of two deflections over their size that is none.
-_ROUNDING = 1e-13
+_ROUNDING = 1e-12
 #: The sums of a mesh table that act on a structure, in this order.
 CHANNELS = ("friction_sum", "friction_moment_pinion", "friction_moment_wheel")
 #: Part of the first of them that asperities cause, where the friction law has such a part.

@@ -1,5 +1,7 @@
 """The force law of a mesh: sums of ramps against quadrature, root finding and bad input."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from scipy.integrate import quad
@@ -145,3 +147,22 @@ def test_the_tangent_meets_the_law_at_the_nominal_load():
     np.testing.assert_allclose(force, load, rtol=1e-12)
     with pytest.raises(InputError, match="no tangent stiffness"):
         MeshFunctions(zero, zero, zero, zero, GRID.event_phases).tangent_error(0.0)
+
+
+@pytest.mark.parametrize("steps", [16, 512])
+def test_the_tangent_of_a_linear_law_begins_at_zero(steps):
+    """Stiffness and deflection are interpolated apart, which leaves no displacement."""
+    grid, load = phase_grid((0.0, 0.3), steps), 3000.0
+    stiffness = 2e8 + 1e8 * (grid.phase - 0.4) ** 2
+    zero = PhaseFunction(grid, np.zeros(grid.phase.size))
+    mesh = MeshFunctions(
+        zero, zero, zero, zero, grid.event_phases,
+        tangent_stiffness=PhaseFunction(grid, stiffness),
+        static_transmission_error=PhaseFunction(grid, load / stiffness),
+        total_normal_force=load,
+    )  # fmt: skip
+    assert not mesh.tangent_error(np.linspace(0.0, 1.0, 999)).any()
+    displaced = PhaseFunction(grid, load / stiffness + 1e-9)
+    assert replace(mesh, static_transmission_error=displaced).tangent_error(0.5) == pytest.approx(
+        1e-9, rel=0.1
+    )
