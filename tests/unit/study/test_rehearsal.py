@@ -1,5 +1,6 @@
 """A rehearsal refuses what a run refuses because of the case alone; a run-away names friction."""
 
+import tracemalloc
 import warnings
 
 import pytest
@@ -9,6 +10,7 @@ from tribodyn.cli import main
 from tribodyn.errors import ComputationError, InputError, ModelWarning
 from tribodyn.friction import LAWS
 from tribodyn.study.pipeline.run import computed, rehearse
+from tribodyn.study.planetary.run import rehearse_planetary
 
 
 def _message(study, case):
@@ -74,6 +76,43 @@ def test_check_rehearses(tmp_path, capsys):
         main(["check", str(path)])
     assert left.value.code == 2
     assert "diverges at 1.13 um" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize(
+    "name",
+    ["fzg-roughness", pytest.param("helical-pair", marks=pytest.mark.slow), "planetary-stage"],
+)
+def test_a_slow_case_is_rehearsed_without_the_tables_of_its_run(name):
+    """Steps of a mesh cycle grow with its length; tables of all steps take up to 3 GB."""
+    changes = {"stiffness.model": "iso6336", "operation.speed": "1 rpm", "load_cases": None}
+    if name != "planetary-stage":
+        changes |= {"solver.steps_per_mesh_cycle": 131072}
+        del changes["load_cases"]
+    case = td.load_case(name).replace(changes)
+    tracemalloc.start()
+    try:
+        assert not _message(rehearse_planetary if "load_cases" in changes else rehearse, case)
+        peak = tracemalloc.get_traced_memory()[1]
+    finally:
+        tracemalloc.stop()
+    assert peak < 150e6
+
+
+def test_too_few_steps_are_refused_as_in_the_run():
+    slow = {"operation.speed": "1 rpm", "solver.steps_per_mesh_cycle": 4096}
+    case = td.load_case("fzg-roughness").replace({**slow, "film.model": "moes"})
+    message = _message(rehearse, case)
+    assert "Runge-Kutta is unstable" in message
+    assert message == _message(computed, case)
+
+
+@pytest.mark.parametrize("speed", ["0.06 rpm", "1 rpm"])
+def test_a_slow_stage_needs_no_steps_of_a_time_integration(speed):
+    """Its motion is found by harmonic balance, at any speed."""
+    case = td.load_case("planetary-stage").replace(
+        {"operation.speed": speed, "film.model": "dowson-higginson", "load_cases": None}
+    )
+    assert _message(rehearse_planetary, case) == _message(td.run, case) == ""
 
 
 def test_a_law_of_a_third_party_is_checked_too():

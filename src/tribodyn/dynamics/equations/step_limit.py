@@ -209,6 +209,12 @@ def refuse_unstable_step(
 ) -> float:
     """Return ``omega_max * dt`` of the widest step, or refuse it."""
     rate = largest_rate(system, nodes, factors) if rate is None else rate
+    return _refuse_rate(system, grid, mesh_frequency, rate, lane)
+
+
+def _refuse_rate(
+    system: System, grid: Grid, mesh_frequency: float, rate: float, lane: str = ""
+) -> float:
     number = rate * float(grid.width.max()) / mesh_frequency
     if number > LIMIT:
         steps = grid.steps // system.cycles
@@ -221,6 +227,12 @@ def refuse_unstable_step(
             f"Use at least {needed} steps per mesh cycle",
         )
     return number
+
+
+def refuse_steps(system: System, mesh_frequency: float, steps: int) -> None:
+    """Refuse steps as the compiled system does, without its tables."""
+    grid = build_grid(system_events(system), steps * system.cycles)
+    _refuse_rate(system, grid, mesh_frequency, rate_on_grid(system, steps))
 
 
 def refuse_unstable_lanes(

@@ -96,13 +96,15 @@ def _has_marched() -> bool:
 
 def rehearse(case: Case) -> tuple[ModelWarning, ...]:
     """Raise the input errors of a run without computing it; return its warnings on the load."""
-    from tribodyn.dynamics.equations.compiled import compile_for
+    from tribodyn.dynamics.equations.program import compile_system
+    from tribodyn.dynamics.equations.step_limit import FEWEST, refuse_steps
 
     with locate_errors(case), collected():
         mesh = mesh_of(case, rehearsal=True)
         system = system_of(case, mesh, damping_of(case, mesh))
         steps = steps_of(case, system, mesh.mesh_frequency)
-        compile_for(system, mesh.mesh_frequency, steps)
+        compile_system(system, FEWEST)  # the tables of a slow run take gigabytes
+        refuse_steps(system, mesh.mesh_frequency, steps)
     return load_cautions(mesh, teeth_contact_ratio(case))
 
 

@@ -15,7 +15,6 @@ from tribodyn.progress import SILENT, Progress
 from tribodyn.study.machine.case import MachineCase
 from tribodyn.study.machine.load_cases import LoadCase
 from tribodyn.study.machine.run import MeshWarning, run_machine, warn_of_meshes
-from tribodyn.study.pipeline.run import rehearse
 from tribodyn.study.planetary.case import PlanetaryCase
 from tribodyn.study.planetary.motion import planetary_motion
 from tribodyn.study.planetary.result import STEPS, PlanetaryLoadResult, PlanetaryResult
@@ -103,6 +102,8 @@ def run_load(
 
 
 def rehearse_planetary(case: PlanetaryCase) -> None:
-    """Raise the input errors of the tooth contacts of a stage without computing it."""
-    for pair in case.pairs.values():
-        rehearse(pair)
+    """Raise the input errors of a stage without computing its films and motion."""
+    with collected(), single_blas_thread():
+        for load in (case.operating_point, *case.load_cases):
+            teeth = stage_teeth(case, load, rehearsal=True)
+            stage_system(case, load, teeth, stage_data(case, load, teeth.tables, case.phases(load)))

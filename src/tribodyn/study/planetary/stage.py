@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import replace
+from functools import partial
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
@@ -37,12 +38,12 @@ class StageTeeth(NamedTuple):
     warnings: list[MeshWarning]
 
 
-def stage_teeth(case: PlanetaryCase, load: LoadCase) -> StageTeeth:
+def stage_teeth(case: PlanetaryCase, load: LoadCase, *, rehearsal: bool = False) -> StageTeeth:
     """Compute the teeth of one sun mesh and one ring mesh; those of all planets are equal."""
     pairs = case.pairs_under(load)
-    results = dict(
-        zip(MESHES, in_threads(teeth_of, list(pairs.values()), processors()), strict=True)
-    )
+    compute = partial(teeth_of, rehearsal=rehearsal)
+    computed = in_threads(compute, list(pairs.values()), processors())
+    results = dict(zip(MESHES, computed, strict=True))
     warnings: list[ModelWarning]
     listed = []
     for mesh, (_, _, warnings) in results.items():
