@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Protocol
 
-__all__ = ["SILENT", "Progress"]
+__all__ = ["SILENT", "Progress", "StageProgress"]
 
 
 class Progress(Protocol):
@@ -35,3 +35,27 @@ class _Silent:
 
 #: Progress receiver that ignores everything: the default.
 SILENT: Progress = _Silent()
+
+
+class StageProgress:
+    """Progress of one step of a study, named where the display has a method ``describe``."""
+
+    def __init__(self, study_progress: Progress) -> None:
+        self._describe = getattr(study_progress, "describe", None)
+        self._task, self._done = "", 0
+        self._total: int | None = None
+
+    def start(self, task: str, total: int | None = None) -> None:
+        """Name the stage."""
+        self._task, self._total, self._done = task, total, 0
+        self.advance(0)
+
+    def advance(self, steps: int = 1) -> None:
+        """Name the stage with its count."""
+        self._done += steps
+        count = "" if self._total is None else f" {self._done} of {self._total}"
+        if self._describe is not None:
+            self._describe(self._task + count)
+
+    def finish(self) -> None:
+        """Do nothing: the next stage replaces the name."""

@@ -6,13 +6,16 @@ import subprocess
 import sys
 from pathlib import Path
 
+import numpy as np
 import pytest
 from rich.console import Console
 
+import tribodyn as td
 from tribodyn.analysis import bifurcation
-from tribodyn.cli.progress_bar import Bar, counted, left
+from tribodyn.cli.progress_bar import Bar, Lines, counted, left
 from tribodyn.compiled import announcing_to
 from tribodyn.dynamics import System
+from tribodyn.errors import collected
 
 _KERNEL = """
 import sys
@@ -81,3 +84,34 @@ def test_a_diagram_of_many_steps_estimates_its_time(transient: int, times: int) 
     estimates = [text for text in messages if "2 motions with up to 512 steps" in text]
     assert len(estimates) == times
     assert all("min at most" in text for text in estimates)
+
+
+@pytest.mark.parametrize(
+    "name", [pytest.param("two-stage-spur", marks=pytest.mark.slow), "planetary-stage"]
+)
+def test_an_ensemble_of_a_machine_reports_teeth_and_members(
+    name: str, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.setattr("tribodyn.cli.progress_bar._INTERVAL", 0.0)
+    case = td.load_case(name).replace({"load_cases": None})
+    torque = f"{case.operating_point.torque} N*m +- 1 %"
+    with collected():
+        td.ensemble(case, {"operation.torque": torque}, 3, seed=1, progress=Lines())
+    lines = capsys.readouterr().err.splitlines()
+    for number in range(5):
+        assert any(line.startswith(f"Variants: {number} of 4") for line in lines)
+    assert sum("Tooth contact: " in line and " 1 of 2)" in line for line in lines) >= 4
+    assert sum("(Motion: " in line for line in lines) >= 4
+
+
+def test_lines_of_progress_are_rare(capsys: pytest.CaptureFixture[str]) -> None:
+    times = iter(np.arange(0.0, 200.0, 5.0))
+    lines = Lines(lambda: float(next(times)))
+    lines.start("Motions", 12)
+    for _ in range(12):
+        lines.advance()
+    lines.finish()
+    written = capsys.readouterr().err.splitlines()
+    assert 2 <= len(written) <= 4
+    assert written[0].startswith("Motions: ")
+    assert all("about" in line for line in written[1:])

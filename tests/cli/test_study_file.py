@@ -7,8 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from tribodyn.cli import call
-from tribodyn.cli.commands import study_command
+from tribodyn.cli import call, progress_bar
 
 _STUDY = """
 case = "fzg-roughness"
@@ -46,12 +45,12 @@ def test_a_study_is_computed_and_summarised(
     captured = capsys.readouterr()
     assert "2 of 4 members are done (50 %)" in captured.out
     assert "the same command continues from there" in captured.err
-    monkeypatch.setattr(study_command, "_BETWEEN", 0.0)
+    monkeypatch.setattr(progress_bar, "_INTERVAL", 0.0)
     assert call(["study", "s.toml"]) == 0
     captured = capsys.readouterr()
     assert "4 of 4 members are done (100 %)\n  2 of them failed:\n         2  " in captured.out
     assert "the centre distance must be at least 240" in captured.out
-    assert "4 of 4 members" in captured.err
+    assert "Members: 4 of 4" in captured.err
     assert "Store: s-study" in captured.err
     assert call(["study", "s-study", "--status", "--json"]) == 0
     state = json.loads(capsys.readouterr().out)

@@ -112,6 +112,7 @@ class _Within:
 
     def __init__(self, study_progress: Progress) -> None:
         self.advance = study_progress.advance
+        self.describe = getattr(study_progress, "describe", None)
 
     def start(self, task: str, total: int | None = None) -> None:
         """Do nothing: the study has already started its progress."""

@@ -3,26 +3,19 @@
 from __future__ import annotations
 
 import logging
-import sys
-import time
-from collections.abc import Iterator
-from contextlib import contextmanager, suppress
+from contextlib import suppress
 from dataclasses import asdict
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from tribodyn.cli.commands.sweep_command import INTERRUPTED
 from tribodyn.cli.console import say, say_json, tell
-from tribodyn.cli.progress_bar import counted, left, progress_bar
+from tribodyn.cli.progress_bar import left, progress_bar
 from tribodyn.cli.settings import Flag, Output
 from tribodyn.errors import quiet
 
 if TYPE_CHECKING:
-    from tribodyn.progress import Progress
     from tribodyn.variants import StudyState
-
-#: Time between two lines of progress where there is no terminal [s].
-_BETWEEN = 30.0
 
 
 def study(
@@ -63,7 +56,7 @@ def study(
     if scheduler:
         _silence_dask()
     try:
-        with quiet("leftover"), _progress() as progress:
+        with quiet("leftover"), progress_bar() as progress:
             state = run_study(study, place, scheduler=scheduler, force=force, progress=progress)
     except KeyboardInterrupt:
         tell("interrupted: finished chunks are stored; the same command continues from there")
@@ -102,36 +95,3 @@ def _show(state: StudyState, as_json: bool) -> None:
         say(
             f"  {', '.join(running) if state.running else 'No process of this machine computes it'}"
         )
-
-
-@contextmanager
-def _progress() -> Iterator[Progress]:
-    """A bar in a terminal; elsewhere, as in the log of a cluster, a line from time to time."""
-    with progress_bar() as bar:
-        yield bar if sys.stderr.isatty() else _Lines()
-
-
-class _Lines:
-    """Progress as lines on stderr."""
-
-    def start(self, task: str, total: int | None = None) -> None:
-        """Begin the study."""
-        self._done, self._total, self._first = 0, total or 0, -1
-        self._start_time = self._last_report = time.monotonic()
-
-    def advance(self, steps: int = 1) -> None:
-        """Report the progress, unless that was done a moment ago."""
-        self._done += steps
-        if self._first < 0:  # what was stored already, which took no time
-            self._first = self._done
-        now = time.monotonic()
-        if now - self._last_report >= _BETWEEN and self._done > self._first:
-            self._last_report = now
-            each = (now - self._start_time) / (self._done - self._first)
-            remaining = left(each * (self._total - self._done))
-            tell(
-                ", ".join(filter(None, [f"{counted(self._done, self._total)} members", remaining]))
-            )
-
-    def finish(self) -> None:
-        """End it."""

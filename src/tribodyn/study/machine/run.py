@@ -5,9 +5,8 @@ from __future__ import annotations
 import re
 import sys
 import warnings
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
-from functools import partial
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from tribodyn.dynamics import law_contact
@@ -123,12 +122,11 @@ def balanced_machine(
     """Static balance of a machine with computed teeth, and their mesh tables."""
     # Deflected shafts misalign the flanks, which changes the stiffness of the teeth and so, a
     # little, the deflection: teeth and balance are repeated until they agree.
-    progress.start(f"Tooth contact: {load.name}")
     static = _static(case, load)  # with a usual stiffness of the teeth
     for _ in range(_PASSES):
         before = {name: static.meshes[name] for name in case.meshes_with_teeth}
         misalignment = {name: misalignment_of(mesh) for name, mesh in before.items()}
-        teeth = _teeth(case, load, misalignment, rehearsal)
+        teeth = _teeth(case, load, misalignment, rehearsal, progress)
         tables = {name: table for name, (table, _, _) in teeth.items()}
         laws = {name: law for name, (_, law, _) in teeth.items()}
         mesh_warnings = [  # those of the last pass are in force
@@ -152,6 +150,7 @@ def _teeth(
     load: LoadCase,
     misalignment: Mapping[str, float | Misalignment],
     rehearsal: bool,
+    progress: Progress,
 ) -> dict[str, tuple[MeshTable, dict[str, Any], list[ModelWarning]]]:
     """Computed teeth by mesh; planets with equal teeth and misalignment share them."""
     groups: dict[Any, list[str]] = {}
@@ -159,10 +158,24 @@ def _teeth(
         shift = round(value / _EQUAL) if isinstance(value, float) else name
         groups.setdefault((case.tooth_group(name), shift), []).append(name)
     pairs = [case.pair(names[0], load, misalignment[names[0]]) for names in groups.values()]
-    compute = partial(teeth_of, rehearsal=rehearsal)
-    computed = zip(groups.values(), in_threads(compute, pairs, processors()), strict=True)
+    listed = teeth_of_pairs(pairs, load, progress, rehearsal=rehearsal)
+    computed = zip(groups.values(), listed, strict=True)
     teeth = {name: each for names, each in computed for name in names}
     return {name: teeth[name] for name in misalignment}
+
+
+def teeth_of_pairs(
+    pairs: Sequence[Case], load: LoadCase, progress: Progress, *, rehearsal: bool = False
+) -> list[tuple[MeshTable, dict[str, Any], list[ModelWarning]]]:
+    """Teeth of several meshes under a load, in threads."""
+    progress.start(f"Tooth contact: {load.name}", len(pairs))
+
+    def compute(pair: Case) -> tuple[MeshTable, dict[str, Any], list[ModelWarning]]:
+        teeth = teeth_of(pair, rehearsal=rehearsal)
+        progress.advance()
+        return teeth
+
+    return in_threads(compute, pairs, processors())
 
 
 def misalignment_of(mesh: MeshBalance) -> float | Misalignment:

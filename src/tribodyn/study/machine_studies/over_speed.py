@@ -36,7 +36,8 @@ def parts_speed_sweep(case: PartsCase, speeds: Array, progress: Progress = SILEN
     middle: list[AnyLoadResult] = []
 
     def motions() -> Iterator[MachineMotion | None]:
-        for result, _ in results_under(case, [{"operation.speed": float(n)} for n in speeds]):
+        changes = [{"operation.speed": float(n)} for n in speeds]
+        for result, _ in results_under(case, changes, progress):
             if isinstance(result, InputError | ComputationError):
                 failed.append(str(result))
                 yield None

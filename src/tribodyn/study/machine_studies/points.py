@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 from tribodyn.errors import ComputationError, InputError, collected
 from tribodyn.interrupt import STOPPED, refuse_stopped, single_blas_thread, stop_flag
-from tribodyn.progress import SILENT, Progress
+from tribodyn.progress import SILENT, Progress, StageProgress
 from tribodyn.study.machine.case import MachineCase
 from tribodyn.study.machine.result import LoadResult
 from tribodyn.study.machine.run import MeshWarning, run_load
@@ -39,17 +39,17 @@ def result_under(
 
 
 def results_under(
-    case: PartsCase, changes: Sequence[Mapping[str, Any]]
+    case: PartsCase, changes: Sequence[Mapping[str, Any]], progress: Progress = SILENT
 ) -> Iterator[tuple[AnyLoadResult | InputError | ComputationError, tuple[str, ...]]]:
     """Results of a case at its operating point for changes of its keys, and warning codes."""
-    start = None
+    start, stages = None, StageProgress(progress)
     for change in changes:
         refuse_stopped(STOPPED * int(stop_flag()[0]))
         of_meshes: list[MeshWarning] = []
         with collected() as caught, single_blas_thread():
             try:
                 changed = case.replace(change)
-                result = result_under(changed, SILENT, of_meshes, start)
+                result = result_under(changed, stages, of_meshes, start)
             except (InputError, ComputationError) as error:
                 yield error, ()
                 continue
@@ -58,13 +58,17 @@ def results_under(
 
 
 def points_of_parts(
-    case: PartsCase, keys: Sequence[str], places: Sequence[tuple[Any, ...]]
+    case: PartsCase,
+    keys: Sequence[str],
+    places: Sequence[tuple[Any, ...]],
+    progress: Progress = SILENT,
 ) -> list[SweepPoint]:
     """Points of a sweep; a failed one holds its reason."""
     changes = [dict(zip(keys, values, strict=True)) for values in places]
+    results = results_under(case, changes, progress)
     return [
         SweepPoint.of_failure(values, result)
         if isinstance(result, InputError | ComputationError)
         else SweepPoint(values, result.figures, "", codes)
-        for values, (result, codes) in zip(places, results_under(case, changes), strict=True)
+        for values, (result, codes) in zip(places, results, strict=True)
     ]

@@ -70,8 +70,7 @@ def run_load(
     start: Response | None = None,
 ) -> PlanetaryLoadResult:
     """Compute a planetary stage under one load, its motion from that of a similar one if any."""
-    progress.start(f"Tooth contact: {load.name}")
-    teeth = stage_teeth(case, load)
+    teeth = stage_teeth(case, load, progress)
     of_meshes += teeth.warnings
     progress.finish()
     progress.start(f"Motion: {load.name}")

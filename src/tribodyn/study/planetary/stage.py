@@ -4,17 +4,16 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import replace
-from functools import partial
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
 from tribodyn.errors import ModelWarning
-from tribodyn.interrupt import in_threads, processors
 from tribodyn.machine import LoadShares, Mesh, load_shares, planetary_plane_model
 from tribodyn.machine.planetary.mesh_laws import PlanetMesh, with_computed_teeth
 from tribodyn.machine.planetary.plane_model import modal_damping, without_free_rotation
-from tribodyn.study.machine.run import MeshWarning, teeth_of
+from tribodyn.progress import SILENT, Progress
+from tribodyn.study.machine.run import MeshWarning, teeth_of_pairs
 from tribodyn.study.pipeline.assembly import geometry
 from tribodyn.study.planetary.machine_stages import carrier_body
 
@@ -38,12 +37,13 @@ class StageTeeth(NamedTuple):
     warnings: list[MeshWarning]
 
 
-def stage_teeth(case: PlanetaryCase, load: LoadCase, *, rehearsal: bool = False) -> StageTeeth:
+def stage_teeth(
+    case: PlanetaryCase, load: LoadCase, progress: Progress = SILENT, *, rehearsal: bool = False
+) -> StageTeeth:
     """Compute the teeth of one sun mesh and one ring mesh; those of all planets are equal."""
     pairs = case.pairs_under(load)
-    compute = partial(teeth_of, rehearsal=rehearsal)
-    computed = in_threads(compute, list(pairs.values()), processors())
-    results = dict(zip(MESHES, computed, strict=True))
+    teeth = teeth_of_pairs(list(pairs.values()), load, progress, rehearsal=rehearsal)
+    results = dict(zip(MESHES, teeth, strict=True))
     warnings: list[ModelWarning]
     listed = []
     for mesh, (_, _, warnings) in results.items():

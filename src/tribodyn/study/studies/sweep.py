@@ -39,7 +39,7 @@ if TYPE_CHECKING:
 
 Value = TypeVar("Value")
 #: Computes points of a grid by the values of the keys; prepares one of them.
-PointsAt = Callable[[Sequence[tuple[Any, ...]]], Sequence[SweepPoint]]
+PointsAt = Callable[..., Sequence[SweepPoint]]
 CaseAt = Callable[..., PendingRun]
 
 #: Number of points from which a shared table of solved films costs less than separate films.
@@ -236,6 +236,8 @@ def _over_points(
             first_call = places[0][:1] if case_at is None else None
             workers.each(points_at, pickled, places, keep_group, first_call)
         else:
+            if case_at is None:  # a machine names the stages of each point
+                points_at = partial(points_at, progress=progress)
             numbers = range(len(groups))
             in_threads(lambda i: keep_group(i, points_at(places[i])), numbers, count)
 
