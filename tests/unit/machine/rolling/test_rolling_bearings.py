@@ -4,9 +4,11 @@ import math
 
 import numpy as np
 import pytest
+from scipy.optimize import brentq
 
+import tribodyn as td
 from tribodyn.contact import hertz_ellipse, hertz_line
-from tribodyn.errors import ComputationError, InputError, ModelWarning
+from tribodyn.errors import ComputationError, InputError, ModelWarning, collected
 from tribodyn.machine import (
     ROLLING_BEARINGS,
     AngularContactBallBearing,
@@ -337,6 +339,33 @@ def test_pressures_above_the_static_limit_warn():
         assert bearing.state(high).inner_pressure.max() > 4.2e9
 
 
+@pytest.mark.parametrize(
+    ("bearing", "limit", "power"),
+    [
+        (DeepGrooveBallBearing(**BALLS), 4.2e9, 3),
+        (AngularContactBallBearing(**BALLS, contact_angle=25 * DEG, preload=200.0), 4.2e9, 3),
+        (CylindricalRollerBearing(**ROLLERS), 4.0e9, 2),
+    ],
+)
+def test_the_warning_begins_at_the_pressure_of_the_static_rating(bearing, limit, power):
+    """Hertz: the load of an element grows with the third (point) or second power (line)."""
+    direction = np.array([0.0, 1.0, 0.0, 0.0, 0.0])
+
+    def peak(depth):
+        with collected() as warnings:
+            state = bearing.state(depth * direction)
+        pressure = max(state.inner_pressure.max(), state.outer_pressure.max())
+        return pressure, state.element_load.max(), [each.code for each in warnings]
+
+    depth = brentq(lambda x: peak(x)[0] - limit, 1e-6, 1.5e-3, xtol=1e-12)
+    below, above = peak(depth - 1e-8), peak(depth + 1e-8)
+    assert below[2] == []
+    assert above[2] == ["bearing-pressure"]
+    half, load, _ = peak(0.3 * depth)
+    assert (limit / half) ** power == pytest.approx(above[1] / load, rel=2e-3)
+    assert 0.2 < half / limit < 0.9
+
+
 def test_loads_that_no_displacement_balances():
     with pytest.raises(ComputationError, match="carries no axial force"):
         CylindricalRollerBearing(**ROLLERS).displacement([100.0, 500.0, 0.0, 0.0, 0.0])
@@ -350,3 +379,17 @@ def test_loads_that_no_displacement_balances():
     angular = AngularContactBallBearing(**BALLS, contact_angle=15 * DEG)
     with pytest.warns(ModelWarning, match="low shoulder"):
         angular.state(angular.displacement([-50.0, 500.0, 0.0, 0.0, 0.0]))
+
+
+def test_the_warning_of_a_machine_names_each_bearing_above_its_limit():
+    case = td.load_case("two-stage-spur").replace({"operation.torque": "3000 N*m"})
+    with collected() as warnings:
+        balance = td.machine.static_balance(case.machine())
+    listed = " ".join(each.message for each in warnings if each.code == "bearing-pressure")
+    for name, bearing in balance.bearings.items():
+        peak = max(bearing.state.inner_pressure.max(), bearing.state.outer_pressure.max())
+        ball = "ball" in type(case.machine().bearings[name].rolling).__name__.lower()
+        limit = 4.2e9 if ball else 4.0e9
+        assert (f'bearing "{name}": ' in listed) == (peak > limit)
+        assert peak < limit or f"reaches {1e-6 * peak:.0f} MPa" in listed
+    assert 0 < sum(each.code == "bearing-pressure" for each in warnings) < len(balance.bearings)
