@@ -22,6 +22,9 @@ _CASES = tuple(tribodyn.cases(machines=True))
 _APART = {"app", "warm-up"}
 #: Commands that compute no motion, or one that another test has computed.
 _LIGHT = {"check", "export", "friction-from-loss", "new", "signal"}
+#: Reasons for which a command for all kinds may refuse a reduced case: a gear whose mate turns with
+#: a carrier, and machines whose constant teeth excite nothing.
+_EXCUSES = {"signal": "turns with a carrier", "sobol": "the output does not vary"}
 #: Values that make the tooth contact of a case cheap, as far as the case has the keys.
 _CHEAP = {"film.model": "none", "friction.law": "none", "friction.shear_model": None}
 
@@ -31,7 +34,8 @@ def _reduced(name: str) -> Any:
     case = tribodyn.load_case(name)
     if isinstance(case, MachineCase):
         teeth = {f"meshes.{mesh}.stiffness": 5e8 for mesh in case.data.get("meshes", {})}
-        return case.replace({**teeth, **_CHEAP})
+        films = _CHEAP if "planets" in case.data else {}  # others have no computed teeth left
+        return case.replace({**teeth, **films})
     if isinstance(case, Case) and case.gears.kind == "hypoid":
         return case.replace(_CHEAP)
     return case.replace({**_CHEAP, "stiffness.model": "iso6336", "dynamics.mesh_law": "stiffness"})
@@ -178,6 +182,6 @@ def test_it_computes_or_refuses(
     kinds = {each.name: each.takes for each in COMMANDS}
     is_pair = isinstance(tribodyn.load_case(name), Case)
     if kinds[command] == ANY:
-        assert code == 0, output.err
+        assert code == 0 or _EXCUSES.get(command, "\0") in output.err, output.err
     elif kinds[command] == PAIR and not is_pair:
         assert code == 2

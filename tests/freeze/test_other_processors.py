@@ -16,7 +16,7 @@ import tribodyn as td
 
 pytestmark = pytest.mark.processor
 
-CASES = ("fzg-stiffness", "fzg-roughness", "time-varying-friction")
+CASES = ("fzg-stiffness", "fzg-roughness", "time-varying-friction", "planetary-stage")
 #: Relative difference of figures; errors that were estimated differ by more.
 TOLERANCE = 1e-7
 COMPUTE = """
