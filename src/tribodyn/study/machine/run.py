@@ -198,7 +198,7 @@ def teeth_of(
     """Mesh table and force law of the teeth of a mesh, and their warnings."""
     with locate_errors(pair), collected() as caught:
         table = mesh_of(pair, about_load=True, rehearsal=rehearsal)
-        return table, _law(pair, table), caught
+        return table, _law(pair, table, rehearsal=rehearsal), caught
 
 
 def static_with_teeth(
@@ -260,10 +260,11 @@ def structure_of(case: MachineCase, machine: Machine) -> MachineStructure:
     return reduce_structure(MachineStructure(machine, ratio), limit)
 
 
-def _law(pair: Case, table: MeshTable) -> dict[str, Any]:
+def _law(pair: Case, table: MeshTable, *, rehearsal: bool = False) -> dict[str, Any]:
     """Force law of a mesh whose teeth are computed."""
     functions, single = table.functions(), mesh_law_of(pair) == "force-law"
-    plane = whole_system(pair, table, "stiffness" if single else None)  # one spring for the ramps
+    force = "stiffness" if single else None  # one spring for the ramps
+    plane = whole_system(pair, table, force, rehearsal=rehearsal)
     law = functions.force_law
     contacts = [law_contact(c, law) for c in plane.contacts] if single and law else plane.contacts
     return {

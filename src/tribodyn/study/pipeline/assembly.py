@@ -254,9 +254,11 @@ def system_of(
     return system if friction is None else follow_load(system, friction)
 
 
-def whole_system(case: Case, mesh: MeshTable, mesh_force: str | None = None) -> System:
+def whole_system(
+    case: Case, mesh: MeshTable, mesh_force: str | None = None, *, rehearsal: bool = False
+) -> System:
     """Build the structure of a case with its tooth contact, its damping and its friction."""
-    parts = damping_of(case, mesh), load_friction_of(case, mesh)
+    parts = damping_of(case, mesh), load_friction_of(case, mesh, rehearsal)
     return system_of(case, mesh, *parts, mesh_force)
 
 

@@ -16,7 +16,7 @@ from tribodyn.study.case.to_models import locate_errors
 from tribodyn.study.coupling import Follow, coupled
 from tribodyn.study.first_use import compile_in_parallel
 from tribodyn.study.heat_balance import balanced
-from tribodyn.study.pipeline.assembly import damping_of, system_of
+from tribodyn.study.pipeline.assembly import damping_of, system_of, whole_system
 from tribodyn.study.pipeline.cautions import (
     case_cautions,
     friction_cautions,
@@ -101,7 +101,7 @@ def rehearse(case: Case) -> tuple[ModelWarning, ...]:
 
     with locate_errors(case), collected():
         mesh = mesh_of(case, rehearsal=True)
-        system = system_of(case, mesh, damping_of(case, mesh))
+        system = whole_system(case, mesh, rehearsal=True)
         steps = steps_of(case, system, mesh.mesh_frequency)
         compile_system(system, FEWEST)  # the tables of a slow run take gigabytes
         refuse_steps(system, mesh.mesh_frequency, steps)

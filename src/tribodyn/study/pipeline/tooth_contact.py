@@ -203,7 +203,9 @@ def hypoid_loaded_contact_of(
     )
 
 
-def load_friction_of(case: Case, nominal: MeshTable) -> MeshFriction | None:
+def load_friction_of(
+    case: Case, nominal: MeshTable, rehearsal: bool = False
+) -> MeshFriction | None:
     """Friction of a case under any load of the teeth."""
     if case.dynamics.friction_load == "nominal":
         return None
@@ -213,8 +215,8 @@ def load_friction_of(case: Case, nominal: MeshTable) -> MeshFriction | None:
     with collected():
         for load in LOADS:
             try:
-                same = load == 1.0
-                tables.append(nominal if same else mesh_of(case, load=load, friction_alone=True))
+                at = partial(mesh_of, case, load=load, rehearsal=rehearsal, friction_alone=True)
+                tables.append(nominal if load == 1.0 else at())
             except ComputationError:
                 # An oil film in series is softer than lightly loaded teeth. Light loads rub little.
                 if load > _LIGHT:
