@@ -431,7 +431,7 @@ def test_what_does_not_fit_is_refused(pair: SpurPair) -> None:
         mesh_with(pair, Crack(tooth=17, depth=1e-3))
     with pytest.raises(InputError, match="a fifth has to be left"):
         mesh_with(pair, Crack(tooth=1, depth=9e-3))
-    with pytest.raises(InputError, match="tangents at"):
+    with pytest.raises(InputError, match="tangents of"):
         mesh_with(pair, Crack(tooth=1, depth=1e-3, root_tangent=math.radians(60.0)))
     with pytest.raises(InputError, match=r"45 to 90 deg"):
         mesh_with(pair, Crack(tooth=1, depth=1e-3, angle=math.radians(30.0)))
