@@ -408,7 +408,7 @@ def shortest_quantity(value: float, unit: str, display_unit: str = "") -> str:
         for digits in _DIGITS:
             text = f"{number:.{digits}g} {target}"
             # 0.4 um is read as the float next to 4e-7
-            rounding = 4.5e-16 if digits == _DIGITS[0] else 0.0
+            rounding = 2.3e-16 if digits == _DIGITS[0] else 0.0
             if math.isclose(parse(text, unit), value, rel_tol=rounding):
                 return text
     return f"{float(value)!r} {unit}"

@@ -214,7 +214,7 @@ def test_a_result_is_compared_with_a_recording(
     assert fitted["gains"]["acc"] == pytest.approx(0.5, rel=1e-3)
     for wrong, message in (
         (("--channel", "acc"), "names no pair"),
-        (("--channel", "acc=force"), "It has acceleration_loa_pinion"),
+        (("--channel", "acc=force"), 'no sensor is named "force"'),
         (("--gain", "much"), "--gain"),
     ):
         assert call([*arguments, *wrong]) == 2

@@ -89,7 +89,7 @@ def test_a_recording_of_the_same_motion_agrees_and_gives_its_speed(result):
         assert comparison.speed_ratio == pytest.approx(1.004, rel=1e-5)
         assert comparison.mesh_frequency == pytest.approx(250.0)
         assert np.abs(comparison.error).max() < 0.01
-    with pytest.raises(InputError, match="there is no computed signal"):
+    with pytest.raises(InputError, match="no sensor is named"):
         compare(result, record, {"error": "meshes.second.error"}, mesh="second")
     with pytest.raises(InputError, match="third"):
         compare(result, record, channels, mesh="third")

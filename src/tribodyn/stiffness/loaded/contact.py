@@ -323,6 +323,9 @@ def _solved(
     pair: SpurPair, totals: Array, film_stiffness: ArrayLike | None, settings: dict[str, Any]
 ) -> tuple[ContactProblem, Equilibrium]:
     """One problem for all loads, or one for each where the stiffness itself depends on the load."""
+    if film_stiffness is not None and not np.all(np.asarray(film_stiffness, float) > 0.0):
+        what, why = "a film stiffness is not positive", "Films in series with the teeth carry load"
+        raise InputError(what, Argument("film_stiffness"), why, "Give positive numbers in N/m")
 
     def solve(forces: Array) -> tuple[ContactProblem, Equilibrium]:
         problem = contact_problem(pair, total_force=float(forces[0]), **settings)
