@@ -185,7 +185,7 @@ class Machine:
 
         Returns
         -------
-        Kinematics
+        tribodyn.machine.Kinematics
             The torque of the input is that of the machine, the output has what the losses leave;
             the power of a mesh is that of its driving gear.
         """
