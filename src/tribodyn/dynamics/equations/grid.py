@@ -115,7 +115,8 @@ def _shares(lengths: Array, steps: int) -> Index:
     ideal *= free / ideal.sum() if ideal.sum() > 0 else 0.0
     counts = np.floor(ideal).astype(np.int64)
     remaining = free - int(counts.sum())
-    order = np.argsort(counts - ideal)
+    # Equal remainders go to the first segments, whatever rounding and the processor's sort say.
+    order = np.argsort(np.round(counts - ideal, 9), kind="stable")
     counts[order[:remaining]] += 1
     return np.asarray(counts + 2)
 
