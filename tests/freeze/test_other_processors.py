@@ -16,7 +16,10 @@ import tribodyn as td
 
 pytestmark = pytest.mark.processor
 
-CASES = ("fzg-stiffness", "fzg-roughness", "time-varying-friction", "planetary-stage")
+CASES = (
+    "fzg-stiffness", "fzg-roughness", "time-varying-friction", "planetary-stage",
+    "two-stage-helical",
+)  # fmt: skip
 #: Relative difference of figures; errors that were estimated differ by more.
 TOLERANCE = 1e-7
 COMPUTE = """
