@@ -13,8 +13,11 @@ from references.cracked_tooth import CRACKS
 from tribodyn.units import convert
 
 ROOT = Path(__file__).parents[2]
-PAGES = [*(ROOT / "docs").rglob("*.md"), ROOT / "README.md",
-         *(ROOT / "src/tribodyn/cookbook").rglob("*.py")]  # fmt: skip
+PAGES = [
+    *(page for page in (ROOT / "docs").rglob("*.md") if "_generated" not in page.parts),
+    ROOT / "README.md",
+    *(ROOT / "src/tribodyn/cookbook").rglob("*.py"),
+]
 #: A field of a format string with a power of ten, and the unit after it.
 SCALED = re.compile(r"\{(1e-?\d+) \* [^}]*\} ((?:[a-zA-Zµ%]+)(?:[ */^][a-zA-Z]+|\^\d)*)")
 #: SI units of what is printed; a product of two lengths over a force is a compliance.
