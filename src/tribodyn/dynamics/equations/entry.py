@@ -20,6 +20,8 @@ Entry = float | ArrayLike | Callable[[Array], Any]
 _SUSPECTS, _PARTS, _CUTS, _FREE, _KEPT, _JUMP = 8, 16, 4, 1, 0.4, 1e-7
 #: Difference of two calls with the same phases, over the size of the entry, that is rounding.
 _ROUNDING = 1e-9
+#: Part of the largest component of an entry below which another is judged as if it were so large.
+_SMALL = 1e-8
 
 
 def read_events(value: Any, where: str) -> tuple[float, ...]:
@@ -85,7 +87,8 @@ def refuse_jumps(where: str, entry: Any, nodes: Array, values: Array) -> None:
     The bend over a jump persists when the step is divided, that of a kink falls with it, others
     faster.
     """
-    size = np.abs(values).max(axis=(0, 1)) + 1e-300
+    size = np.abs(values).max(axis=(0, 1))
+    size = np.maximum(size, _SMALL * size.max()) + 1e-300  # components of rounding do not jump
     bend = (values[:, 0] - 2.0 * values[:, 1] + values[:, 2]) / size
     sharp = np.abs(np.diff(bend, 2, axis=0, prepend=bend[-1:], append=bend[:1])).max(axis=1)
     bend = np.abs(bend).max(axis=1)
