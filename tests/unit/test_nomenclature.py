@@ -1,7 +1,12 @@
 """The table of quantities is consistent with itself and with the unit reader."""
 
+import importlib
+import inspect
+import pkgutil
+
 import pytest
 
+import tribodyn
 from tribodyn.nomenclature import QUANTITIES, find, lookup
 from tribodyn.units import convert
 
@@ -45,3 +50,15 @@ def test_find_prefers_exact_symbol_then_parts() -> None:
     }
     assert find("contact ratio")[0].name == "transverse_contact_ratio"
     assert find("no such thing") == []
+
+
+def test_a_public_class_has_one_meaning() -> None:
+    places: dict[str, set[str]] = {}
+    for module in pkgutil.iter_modules(tribodyn.__path__, "tribodyn."):
+        public = importlib.import_module(module.name) if module.ispkg else None
+        for name in getattr(public, "__all__", ()):
+            value = getattr(public, name)
+            if inspect.isclass(value):
+                places.setdefault(name, set()).add(value.__module__)
+    assert len(places) > 100
+    assert {name: found for name, found in places.items() if len(found) > 1} == {}

@@ -26,7 +26,7 @@ from tribodyn.machine.graph.bodies import GearBody
 from tribodyn.machine.graph.clock import Clock, Phases
 from tribodyn.machine.graph.crossed import CrossedAxes
 from tribodyn.machine.graph.directions import MeshDirection
-from tribodyn.machine.graph.kinematics import Kinematics, MeshLoad, ShaftLoad
+from tribodyn.machine.graph.kinematics import MeshLoad, PowerFlow, ShaftLoad
 from tribodyn.machine.graph.placement import Placement
 from tribodyn.machine.housing import Housing
 from tribodyn.machine.hypoid.pair_machine import hypoid_machine
@@ -78,7 +78,6 @@ __all__ = [
     "GearBody",
     "HarmonicExcitation",
     "Housing",
-    "Kinematics",
     "LoadShares",
     "Machine",
     "MachineModes",
@@ -96,6 +95,7 @@ __all__ = [
     "PlanetaryModes",
     "PlanetaryPositions",
     "PlanetaryStage",
+    "PowerFlow",
     "Reduction",
     "RingSensorSignal",
     "RollingElementBearing",

@@ -18,7 +18,7 @@ from tribodyn.machine.gear import Gear
 from tribodyn.machine.graph.bodies import GearBody, body_problems, gear_body
 from tribodyn.machine.graph.clock import Clock, Phases, clock_of, phases_of
 from tribodyn.machine.graph.directions import MeshDirection, mesh_direction
-from tribodyn.machine.graph.kinematics import Kinematics, kinematics, ratio_problems
+from tribodyn.machine.graph.kinematics import PowerFlow, kinematics, ratio_problems
 from tribodyn.machine.graph.mesh_checks import mesh_problems
 from tribodyn.machine.graph.mobility import Drive
 from tribodyn.machine.graph.placement import (
@@ -170,11 +170,11 @@ class Machine:
         return ShaftGraph(edges, self.operation.input)
 
     @cached_property
-    def kinematics(self) -> Kinematics:
+    def kinematics(self) -> PowerFlow:
         """Speeds, torques and power of shafts and meshes, without losses."""
         return self.power_flow({})
 
-    def power_flow(self, efficiency: Mapping[str, float]) -> Kinematics:
+    def power_flow(self, efficiency: Mapping[str, float]) -> PowerFlow:
         """Speeds, torques and power of shafts and meshes, with the losses of meshes.
 
         Parameters
@@ -185,7 +185,7 @@ class Machine:
 
         Returns
         -------
-        tribodyn.machine.Kinematics
+        PowerFlow
             The torque of the input is that of the machine, the output has what the losses leave;
             the power of a mesh is that of its driving gear.
         """

@@ -82,7 +82,7 @@ class MeshLoad:
 
 
 @dataclass(frozen=True)
-class Kinematics:
+class PowerFlow:
     """Loads of all shafts and meshes by name.
 
     Parameters
@@ -148,7 +148,7 @@ def kinematics(
     meshes: Mapping[str, Mesh],
     drive: Drive,
     efficiency: Mapping[str, float] | None = None,
-) -> Kinematics:
+) -> PowerFlow:
     """Speeds and torques at speed and torque of the input, with the efficiency of some meshes."""
     mobility = Mobility(graph, gears, meshes, drive)
     ratios, speed, torque = mobility.ratios, drive.speed, drive.torque
@@ -192,7 +192,7 @@ def kinematics(
         entering = sign * 0.5 * (sum(map(abs, parts)) + abs(sum(parts)))
         turning = float(ratio) * speed
         shaft_loads[name] = ShaftLoad(ratio, turning, entering, entering * abs(turning))
-    return Kinematics(shaft_loads, mesh_loads, {name: -loads[name][0] for name in drive.couplings})
+    return PowerFlow(shaft_loads, mesh_loads, {name: -loads[name][0] for name in drive.couplings})
 
 
 def base_radius(mesh: Mesh, gear: Gear, sense: int = 1) -> float:

@@ -10,7 +10,7 @@ from tribodyn.plot.theme.labels import rounded
 from tribodyn.plot.theme.style import MUTED, figure, translucent
 
 if TYPE_CHECKING:
-    from tribodyn.machine import Kinematics, Machine
+    from tribodyn.machine import Machine, PowerFlow
     from tribodyn.study.machine.result import MachineResult
 
 
@@ -73,7 +73,7 @@ def machine_power(result: MachineResult) -> Any:
     return figure(title, [trace], {"height": 360, "hovermode": "closest"})
 
 
-def _gains(machine: Machine, flow: Kinematics, name: str) -> dict[str, float]:
+def _gains(machine: Machine, flow: PowerFlow, name: str) -> dict[str, float]:
     """Power that a mesh gives to its shafts and to its carrier; negative where it takes it."""
     mesh, (first, second) = machine.meshes[name], flow.meshes[name].torque
     shafts = [machine.gears[gear].shaft for gear in mesh.gears]

@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from tribodyn.dynamics import Response, System
     from tribodyn.errors import ModelWarning
     from tribodyn.gear import Misalignment, MisalignmentStudy
-    from tribodyn.machine import Kinematics, Machine, MachineModes, StaticBalance
+    from tribodyn.machine import Machine, MachineModes, PowerFlow, StaticBalance
     from tribodyn.machine.structure import MachineStructure
     from tribodyn.measurement import Recording
     from tribodyn.mesh import MeshTable
@@ -112,7 +112,7 @@ class LoadResult:
         }
 
     @cached_property
-    def power_flow(self) -> Kinematics:
+    def power_flow(self) -> PowerFlow:
         """Speeds, torques and power of shafts and meshes, less the friction of computed teeth."""
         return self.machine.power_flow({n: 1.0 - lost for n, lost in self._mesh_losses.items()})
 
