@@ -17,6 +17,8 @@ from tribodyn.study.case.read import read_case
 
 #: Values closer than this are the same: files hold decimal fractions of millimetres.
 _SAME = 1e-9
+#: Helix angle of rounding [rad].
+SPUR = 1e-6
 MODELS = {
     "film.model": "moes",
     "stiffness.model": "fe2d",
@@ -287,3 +289,28 @@ def nested(data: dict[str, Any]) -> dict[str, Any]:
             place = place.setdefault(table, {})
         place[name] = value
     return tree
+
+
+def shared_models(
+    model: GearboxModel, load: Load, changes: dict[str, Any]
+) -> tuple[dict[str, Any], dict[str, str]]:
+    """Tables of models that all meshes share, and what is assumed for their teeth."""
+    computed = [s for s in model.stages if f"meshes.stage_{s.id}.stiffness" not in changes]
+    values: dict[str, Any] = {"dynamics.backlash": ASSUMED["dynamics.backlash"][0]}
+    notes = {"dynamics.backlash": NOT_THERE + str(ASSUMED["dynamics.backlash"][1])}
+    if computed:
+        values |= {k: v for k, v in MODELS.items() if not k.startswith("dynamics.")}
+        if any(abs(stage.gear_1.helix_angle) > SPUR for stage in computed):
+            values["stiffness.model"] = "fe3d"  # thin slices are too stiff
+        oil, oil_notes = oil_values(model, load)
+        values |= oil
+        notes |= oil_notes
+        for key in () if oil else ("lubricant.name", "lubricant.temperature"):
+            values[key], reason = ASSUMED[key]
+            notes[key] = NOT_THERE + str(reason)
+    for stage in computed:
+        for gear in (stage.gear_1, stage.gear_2):
+            if gear.roughness_ra is None:
+                values[f"gears.gear_{gear.id}.roughness_ra"] = 0.4e-6
+                notes[f"gears.gear_{gear.id}.roughness_ra"] = NOT_THERE + "ground flanks"
+    return nested(values), notes

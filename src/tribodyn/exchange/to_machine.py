@@ -17,16 +17,14 @@ from tribodyn.exchange.machine_parts import (
     gear_table,
 )
 from tribodyn.exchange.to_case import (
-    ASSUMED,
-    MODELS,
-    NOT_THERE,
+    SPUR,
     case_from_rexs,
     material_values,
-    nested,
-    oil_values,
     rack_values,
+    shared_models,
     stored_case_text,
 )
+from tribodyn.exchange.to_planets import stage_from_rexs
 from tribodyn.study.case.case import Case
 from tribodyn.study.case.user_input import Source
 from tribodyn.study.machine.case import MachineCase
@@ -34,7 +32,6 @@ from tribodyn.study.machine.read_parts import in_si
 from tribodyn.study.machine.user_tables import changed_tables
 from tribodyn.study.planetary.case import PlanetaryCase
 
-_SPUR = 1e-6
 #: Part of a face without a mate that is rounding of the positions [m].
 _FACE = 1e-5
 #: Deviation of the axes from a centre distance that is worth a remark [m].
@@ -108,8 +105,6 @@ def case_from_model(
     model: GearboxModel, changes: dict[str, Any], by: str
 ) -> Case | MachineCase | PlanetaryCase:
     """Case of a REXS file: the one that tribodyn stored in it, or that of its stages."""
-    from tribodyn.exchange.to_planets import stage_from_rexs
-
     if stored_case_text(model):
         case = case_from_rexs(model)
         return case.replace(changes, by=by) if changes else case
@@ -205,7 +200,7 @@ def _mesh(
         "normal_pressure_angle": gear.normal_pressure_angle,
         "center_distance": stage.center_distance,
     }
-    if abs(gear.helix_angle) > _SPUR:
+    if abs(gear.helix_angle) > SPUR:
         table["helix_angle"] = abs(gear.helix_angle)
         table["hand"] = "right" if gear.helix_angle > 0.0 else "left"
     rack = rack_values(model, stage.gear_1, stage.gear_2)
@@ -305,31 +300,6 @@ def _along_x(model: GearboxModel, shaft: int, shafts: dict[int, int]) -> int:
     pair = axes[0], axes[1]
     opposed = None not in pair and np.dot(np.array(pair[0]), np.array(pair[1])) < 0.0
     return -1 if opposed else 1
-
-
-def shared_models(
-    model: GearboxModel, load: Load, changes: dict[str, Any]
-) -> tuple[dict[str, Any], dict[str, str]]:
-    """Tables of models that all meshes share, and what is assumed for their teeth."""
-    computed = [s for s in model.stages if f"meshes.stage_{s.id}.stiffness" not in changes]
-    values: dict[str, Any] = {"dynamics.backlash": ASSUMED["dynamics.backlash"][0]}
-    notes = {"dynamics.backlash": NOT_THERE + str(ASSUMED["dynamics.backlash"][1])}
-    if computed:
-        values |= {k: v for k, v in MODELS.items() if not k.startswith("dynamics.")}
-        if any(abs(stage.gear_1.helix_angle) > _SPUR for stage in computed):
-            values["stiffness.model"] = "fe3d"  # thin slices are too stiff
-        oil, oil_notes = oil_values(model, load)
-        values |= oil
-        notes |= oil_notes
-        for key in () if oil else ("lubricant.name", "lubricant.temperature"):
-            values[key], reason = ASSUMED[key]
-            notes[key] = NOT_THERE + str(reason)
-    for stage in computed:
-        for gear in (stage.gear_1, stage.gear_2):
-            if gear.roughness_ra is None:
-                values[f"gears.gear_{gear.id}.roughness_ra"] = 0.4e-6
-                notes[f"gears.gear_{gear.id}.roughness_ra"] = NOT_THERE + "ground flanks"
-    return nested(values), notes
 
 
 def _remark_on_forces(model: GearboxModel) -> None:

@@ -8,8 +8,7 @@ import numpy as np
 
 from tribodyn.errors import InputError, Problem
 from tribodyn.exchange.gearbox import GearboxModel, Load, StageGear
-from tribodyn.exchange.to_case import NOT_THERE, material_values, nested, rack_values
-from tribodyn.exchange.to_machine import shared_models
+from tribodyn.exchange.to_case import NOT_THERE, material_values, nested, rack_values, shared_models
 from tribodyn.study.case.user_input import Source
 from tribodyn.study.machine.read_parts import in_si
 from tribodyn.study.machine.user_tables import changed_tables

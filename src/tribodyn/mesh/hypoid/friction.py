@@ -17,6 +17,7 @@ from tribodyn.mesh.film.film_columns import smallest_film
 from tribodyn.mesh.hypoid.cells import wrench
 from tribodyn.mesh.hypoid.film import ELLIPTICAL, CellFilms, cell_films
 from tribodyn.mesh.hypoid.loaded_contact import HypoidLoadedContact
+from tribodyn.mesh.hypoid.table import mesh_table_of
 from tribodyn.mesh.sharing import ToothContact
 from tribodyn.mesh.table import MeshTable
 from tribodyn.model import NO_OPTIONS
@@ -134,8 +135,6 @@ class HypoidFriction(Record):
             Directions have twelve columns: three displacements and three rotations of each gear,
             in the frames of :class:`HypoidLoadedContact`.
         """
-        from tribodyn.mesh.hypoid.table import mesh_table_of
-
         return mesh_table_of(self)
 
     plot_friction = figure_method("hypoid_friction", "Draw friction and film over the flank.")

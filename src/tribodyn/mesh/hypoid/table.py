@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from typing import Any, cast
+from typing import TYPE_CHECKING, Any, cast
 
 import numpy as np
 
@@ -11,10 +11,12 @@ from tribodyn.friction import LAWS
 from tribodyn.mesh.force_law import MeshForceLaw
 from tribodyn.mesh.gears import NoGears
 from tribodyn.mesh.hypoid.cells import wrench
-from tribodyn.mesh.hypoid.friction import HypoidFriction
 from tribodyn.mesh.hypoid.loaded_contact import HypoidLoadedContact, wheel_torque_at
 from tribodyn.mesh.table import MeshTable
 from tribodyn.types import Array, Mask
+
+if TYPE_CHECKING:
+    from tribodyn.mesh.hypoid.friction import HypoidFriction
 
 #: Deflections of the points of the force law, over that at the load of the table.
 _POINTS = np.array([0.0, 0.03, 0.06, *np.geomspace(0.1, 1.0, 13), 1.2, 1.5, 1.9, 2.4, 3.0])
