@@ -261,3 +261,17 @@ def test_function_has_to_return_a_system():
         continuation(hysteresis_system(), between=(0.138, 0.14), start=fold, steps=128)
     with pytest.raises(ComputationError, match="no branch"):
         continuation(hysteresis_system(), between=(0.138, 0.145), start=fold, steps=128)
+
+
+def test_twice_the_period_does_not_depend_on_the_sign_of_an_eigenvector(monkeypatch):
+    system = oscillator(0.5, 0.1, gap=1.0, load=0.5)
+    first = continuation(system, between=(2.4 / TURN, 1.9 / TURN), steps=128)
+    doubling = first.special("period-doubling")[0]
+    eig, signs, starts = np.linalg.eig, (1.0, -1.0), []
+    for sign in signs:
+        monkeypatch.setattr(np.linalg, "eig", lambda a, s=sign: (eig(a)[0], s * eig(a)[1]))
+        branch = continuation(
+            system, between=(2.4 / TURN, 1.9 / TURN), start=doubling, steps=128, points=4
+        )
+        starts.append(np.concatenate(branch.start(1)))
+    np.testing.assert_array_equal(*starts)

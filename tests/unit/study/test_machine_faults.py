@@ -406,3 +406,31 @@ def test_a_loose_seat_lifts_once_a_turn() -> None:
     assert abs(lines[1][1]) > 0.02 * abs(lines[1][0])  # twice the order
     with pytest.raises(InputError, match=r"faults\.f\.stiffness_share.*missing"):
         case_with(f={"kind": "looseness", "bearing": "A"})
+
+
+def test_a_drive_whose_shafts_slide_freely_along_their_axes_turns_all_the_same(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    from tribodyn.study.faults import driven_shafts
+
+    spur = {
+        "meshes.first.helix_angle": None, "meshes.first.hand": None, "load_cases": None,
+        "meshes.first.center_distance": None,
+    }  # fmt: skip
+    loose = {f"bearings.{name}.axial_stiffness": None for name in "AC"}
+    uneven = {
+        "kind": "speed-fluctuation", "shaft": "output", "orders": [2], "fluctuations": [0.01],
+    }  # fmt: skip
+    stated = {f"faults.motor.{key}": value for key, value in uneven.items()}
+
+    def force(changes: dict[str, Any]) -> np.ndarray:
+        run = td.run(result().case.replace({**spur, **stated, **changes}, by="test"))
+        return np.asarray(run.turning_motion.signal("meshes.first.mesh_force")[0])
+
+    held = force({})
+    assert np.ptp(held) > 50.0
+    np.testing.assert_allclose(force(loose), held, atol=1e-6 * held.max())
+    motions = driven_shafts.free_motions
+    turned = np.linalg.qr(np.random.default_rng(1).standard_normal((3, 3)))[0]
+    monkeypatch.setattr(driven_shafts, "free_motions", lambda system: motions(system) @ turned)
+    np.testing.assert_allclose(force(loose), held, atol=1e-6 * held.max())

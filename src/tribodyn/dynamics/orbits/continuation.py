@@ -224,6 +224,8 @@ def _aside(function: FamilyMap, start: SpecialPoint, tolerance: float) -> Branch
     # Over twice the period the multiplier is +1: the direction is that in which nothing changes.
     values, vectors = np.linalg.eig(function.jet(x).matrix)
     real = np.real(vectors[:, np.argmin(np.abs(values - 1.0))])
+    # Its sign is free, and that of a library: the first large component is positive.
+    real *= np.sign(real[np.abs(real) > 0.5 * np.abs(real).max()][0])
     along = np.append(real / np.linalg.norm(real), 0.0)
     for length in _ASIDE * 0.5 ** np.arange(6 if start.kind == "period-doubling" else 0):
         try:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from fractions import Fraction
 from typing import TYPE_CHECKING, Any
 
@@ -21,18 +21,33 @@ if TYPE_CHECKING:
 
 #: Eigenvalues below this share of the largest are those of free motions.
 _FREE = 1e-12
+#: Share up to which turns of shafts are those of one free motion.
+_SAME = 1e-6
+#: Mesh phases at which directions of contacts are read.
+_PHASES = np.arange(8) / 8.0
 
 
-def free_rotation(system: System) -> Array:
-    """Motion of the coordinates in which nothing is strained (n,); zero where there is none."""
+def free_motions(system: System) -> Array:
+    """Motions of the coordinates in which no spring and no contact is strained (n, k)."""
     from scipy.linalg import eigh
 
-    from tribodyn.dynamics.linear.natural_modes import linear_system
+    stiffness = np.array(system.stiffness, dtype=float)
+    size = float(np.abs(stiffness).max()) or 1.0
+    for contact in system.contacts:
+        along = contact.direction
+        rows = np.atleast_2d(along(_PHASES) if callable(along) else np.asarray(along))
+        stiffness += size * rows.T @ rows
+    squares, shapes = eigh(stiffness, np.asarray(system.mass))
+    return np.asarray(shapes[:, np.abs(squares) < _FREE * squares.max()])
 
-    linear = linear_system(system)
-    squares, shapes = eigh(linear.stiffness, linear.mass)
-    free = shapes[:, np.abs(squares) < _FREE * squares.max()]
-    return np.asarray(free[:, 0] if free.shape[1] == 1 else np.zeros(system.size))
+
+def free_rotation(system: System, torques: Sequence[Array], turned: Sequence[float]) -> Array:
+    """Free motion in which shafts with unit torques turn by these angles; zero without one."""
+    free = free_motions(system)
+    rows = np.asarray(torques) @ free
+    shares = np.linalg.lstsq(rows, np.asarray(turned), rcond=_SAME)[0]
+    fits = np.allclose(rows @ shares, turned, atol=_SAME * np.abs(turned).max())
+    return np.asarray(free @ shares if fits else np.zeros(system.size))
 
 
 def drive_machine(
@@ -48,7 +63,7 @@ def drive_machine(
     cycles = max(clock.cycles.values())
     return _drive(
         system, cycles, faults, mesh_frequency=cycles * clock.frequency,
-        turns=clock.turns, torques=torques, reference=run.input,
+        turns=clock.turns, torques=torques,
     )  # fmt: skip
 
 
@@ -70,7 +85,7 @@ def drive_stage(
     return _drive(
         system, cycles, case.faults, mesh_frequency=stage.mesh_frequency,
         turns={case.members[role]: abs(turn - turns[fixed_role]) for role, turn in turns.items()},
-        torques=torques, reference=case.ends[0],
+        torques=torques,
     )  # fmt: skip
 
 
@@ -82,13 +97,13 @@ def _drive(
     mesh_frequency: float,
     turns: Mapping[str, Fraction],
     torques: Mapping[str, Array],
-    reference: str,
 ) -> DrivenSystem:
     """Drive shafts, whose turns in the cycles are by name, by torques in their running sense."""
     excitations = [shaft_excitation(fault) for fault in faults.values() if fault.kind in OF_SHAFTS]
-    rotation = free_rotation(system) if excitations else np.zeros(system.size)
-    if turned := float(rotation @ torques[reference]):
-        rotation = rotation * (2.0 * np.pi * float(turns[reference]) / cycles / turned)
+    rotation = np.zeros(system.size)
+    if excitations:
+        turned = [2.0 * np.pi * float(turns[shaft]) / cycles for shaft in torques]
+        rotation = free_rotation(system, list(torques.values()), turned)
     teeth = {shaft: Fraction(cycles) / turn for shaft, turn in turns.items() if turn}
     return drive(
         system, cycles, excitations, mesh_frequency=mesh_frequency, teeth=teeth,
