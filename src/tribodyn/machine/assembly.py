@@ -19,6 +19,8 @@ from tribodyn.machine.plane_law import (
     projected,
     run_back,
 )
+from tribodyn.machine.planetary.plane_model import without_free_rotation
+from tribodyn.machine.planetary.turning_frame import frame_terms
 from tribodyn.machine.reduction import machine_structure
 from tribodyn.machine.structure import MachineStructure
 from tribodyn.types import Array
@@ -72,10 +74,10 @@ def system(machine: Machine | MachineStructure, *, phases: bool = False) -> Syst
             frictions += law[1]
         else:
             contacts.append(_contact(structure, name, phases))
-    return System(
+    whole = System(
         mass=structure.mass,
         damping=structure.damping,
-        stiffness=structure.stiffness,
+        stiffness=structure.stiffness + frame_terms(structure, machine.operation.speed)[1],
         force=structure.force,
         contacts=contacts,
         frictions=frictions,
@@ -83,6 +85,7 @@ def system(machine: Machine | MachineStructure, *, phases: bool = False) -> Syst
         balance=structure.balance,
         gyroscopic=gyroscopic if gyroscopic.any() else None,
     )
+    return without_free_rotation(whole) if structure.frame else whole
 
 
 def _contact(structure: MachineStructure, name: str, phases: bool) -> Contact:

@@ -9,9 +9,12 @@ import numpy as np
 from tribodyn.arrays.eigenvectors import leading
 from tribodyn.dynamics.equations.system import Contact, System
 from tribodyn.dynamics.linear.natural_modes import frequencies_at, linear_system, natural_modes
+from tribodyn.errors import Argument, InputError
 from tribodyn.machine.assembly import mesh_contacts, system
 from tribodyn.machine.machine import Machine
 from tribodyn.machine.mesh import mean_over_phase
+from tribodyn.machine.planetary.modes import PlanetaryModes, modes_of_stage
+from tribodyn.machine.planetary.turning_frame import frame_terms
 from tribodyn.machine.reduction import machine_structure
 from tribodyn.machine.structure import MachineStructure
 from tribodyn.record import Record, fact, quantity, record
@@ -66,6 +69,30 @@ class MachineModes(Record):
             for kind in ("meshes", "shafts", "bearings", "housing")
         }
 
+    def of_stage(self, name: str) -> PlanetaryModes:
+        """Select the motions of a planetary stage in its plane.
+
+        Parameters
+        ----------
+        name : str
+            Name of the stage.
+
+        Returns
+        -------
+        PlanetaryModes
+            All modes with their types.
+
+        Raises
+        ------
+        InputError
+            If the machine has no such stage.
+        """
+        stages = self.structure.machine.planets
+        if name not in stages:
+            why = f"Stages: {', '.join(stages) or 'none'}"
+            raise InputError(f'there is no stage "{name}"', Argument("name"), why, "Name one")
+        return modes_of_stage(self, name)
+
     def __repr__(self) -> str:
         """One line."""
         first = f", first {self.frequency[0]:.6g} Hz" if self.frequency.size else ""
@@ -110,10 +137,11 @@ def machine_modes(machine: Machine | MachineStructure, speed: float | None = Non
     structure = machine_structure(machine) if isinstance(machine, Machine) else machine
     names = tuple(structure.machine.meshes)
     speed = structure.machine.operation.speed if speed is None else float(speed)
-    linear = replace(
-        _with_mean_stiffness(structure), gyroscopic=structure.gyroscopic(speed) if speed else None
-    )
-    modes = natural_modes(linear, elements=structure.elements)
+    elements = dict(structure.elements)
+    if structure.frame is not None:  # what its turning stores counts for the carrier
+        carrier = f"shafts.{structure.frame}"
+        elements[carrier] = elements.get(carrier, 0.0) + frame_terms(structure, speed)[1]
+    modes = natural_modes(_turning(structure, speed), elements=elements)
     elastic = _reliable(structure, modes.frequency)
     shape = modes.shape[elastic].astype(complex)
     return MachineModes(
@@ -122,7 +150,7 @@ def machine_modes(machine: Machine | MachineStructure, speed: float | None = Non
         frequency=modes.frequency[elastic],
         shape=shape / leading(shape),
         damping_ratio=modes.damping_ratio[elastic],
-        parts=(*structure.elements, *(f"meshes.{name}" for name in names)),
+        parts=(*elements, *(f"meshes.{name}" for name in names)),
         strain_share=modes.strain_share[elastic],
         structure=structure,
     )
@@ -130,9 +158,22 @@ def machine_modes(machine: Machine | MachineStructure, speed: float | None = Non
 
 def machine_frequencies(structure: MachineStructure, speeds: Array) -> list[Array]:
     """Natural frequencies [Hz] at each speed of the input [rad/s], as :func:`machine_modes`."""
-    linear = linear_system(_with_mean_stiffness(structure))
-    turning = [structure.gyroscopic(float(speed)) if speed else None for speed in speeds]
-    return [each[_reliable(structure, each)] for each in frequencies_at(linear, turning)]
+    if structure.frame is None:
+        linear = linear_system(_with_mean_stiffness(structure))
+        turning = [structure.gyroscopic(float(speed)) if speed else None for speed in speeds]
+        rows = frequencies_at(linear, turning)
+    else:  # their stiffness depends on the speed too
+        rows = [natural_modes(_turning(structure, float(speed))).frequency for speed in speeds]
+    return [each[_reliable(structure, each)] for each in rows]
+
+
+def _turning(structure: MachineStructure, speed: float) -> System:
+    """System with the mean stiffness of its meshes at a speed of the input [rad/s]."""
+    return replace(
+        _with_mean_stiffness(structure),
+        stiffness=structure.stiffness + frame_terms(structure, speed)[1],
+        gyroscopic=structure.gyroscopic(speed) if speed else None,
+    )
 
 
 def _reliable(structure: MachineStructure, frequency: Array) -> Mask:

@@ -20,8 +20,9 @@ from tribodyn.machine.housing import AXES
 from tribodyn.machine.machine import Machine
 from tribodyn.machine.mesh import mean_over_phase
 from tribodyn.machine.planetary.centrifugal import centrifugal_force
+from tribodyn.machine.planetary.turning_frame import frame_terms
 from tribodyn.machine.shaft import Shaft
-from tribodyn.machine.shaft_matrices import ShaftMatrices
+from tribodyn.machine.shaft_matrices import ShaftMatrices, diagonal_blocks
 from tribodyn.machine.static.clearance import linear_load
 from tribodyn.types import Array, Mask
 
@@ -79,6 +80,9 @@ class MachineStructure:
         the shaft if that is more.
     reduction : Reduction, optional
         Reduced coordinates; :func:`reduce_structure` supplies them.
+    frame : str, optional
+        Carrier with which all coordinates turn, of a planetary stage whose supports are equal in
+        all directions: its Coriolis and centripetal forces are included.
 
     Raises
     ------
@@ -110,6 +114,7 @@ class MachineStructure:
     damping_ratio: float = 0.02
     element_length: float | None = None
     reduction: Reduction | None = None
+    frame: str | None = None
 
     def __post_init__(self) -> None:
         check_number(self, "damping_ratio", "", 0.0, 2.0)
@@ -166,7 +171,7 @@ class MachineStructure:
     def mass(self) -> Array:
         """Mass matrix, (n, n) [kg, kg*m, kg*m^2]."""
         masses = [shaft.mass for shaft in self.shafts.values()]
-        total = self._projected(_blocks(masses, self._housing("mass")))
+        total = self._projected(diagonal_blocks(masses, self._housing("mass")))
         for _, body, motion in self._bodies():
             across = body.transverse_moment_of_inertia
             inertia = [*3 * [body.mass], body.moment_of_inertia, across, across]
@@ -253,12 +258,12 @@ class MachineStructure:
         speed = self.machine.operation.speed if speed is None else speed
         ratios = {name: float(load.ratio) for name, load in self.machine.kinematics.shafts.items()}
         blocks = [speed * ratios[name] * shaft.gyroscopic for name, shaft in self.shafts.items()]
-        total = self._projected(_blocks(blocks, 0.0 * self._housing("mass")))
+        total = self._projected(diagonal_blocks(blocks, 0.0 * self._housing("mass")))
         for shaft, body, motion in self._bodies():
             momentum = speed * ratios[shaft] * body.moment_of_inertia
             turned = momentum * np.outer(motion[4], motion[5])
             total += turned - turned.T
-        return total
+        return total + frame_terms(self, speed)[0]
 
     def at(self, shaft: str, position: float) -> Array:
         """Displacement at a position of a shaft per coordinate.
@@ -491,10 +496,3 @@ class MachineStructure:
         moving[3] = True
         moving[1:3] |= floats
         return np.asarray(moving, dtype=bool)
-
-
-def _blocks(matrices: list[Array], last: Array) -> Array:
-    """Matrix of blocks along the diagonal."""
-    from scipy.linalg import block_diag
-
-    return np.asarray(block_diag(*matrices, *([last] if len(last) else [])))

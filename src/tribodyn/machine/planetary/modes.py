@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Literal
+from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
@@ -13,6 +13,10 @@ from tribodyn.errors import Argument, InputError
 from tribodyn.machine.planetary.plane_model import CENTRAL
 from tribodyn.record import Record, quantity, record
 from tribodyn.types import Array, ComplexArray
+
+if TYPE_CHECKING:
+    from tribodyn.machine.modes import MachineModes
+    from tribodyn.machine.structure import MachineStructure
 
 ModeType = Literal["rotational", "translational", "planet", "mixed"]
 
@@ -114,14 +118,7 @@ def planetary_modes(system: System) -> PlanetaryModes:
         raise InputError(what, Argument("system"), why, remedy)
     modes = natural_modes(system)
     weight = np.sqrt(np.diag(np.asarray(system.mass)))[:9]
-    shape = _separated(modes.frequency, modes.shape, weight)
-    turns, moves = (np.abs(part).max(axis=1) > _AT_REST for part in _central(shape, weight))
-    types: dict[tuple[bool, bool], ModeType] = {
-        (True, False): "rotational",
-        (False, True): "translational",
-        (False, False): "planet",
-        (True, True): "mixed",
-    }
+    shape, types = _by_type(modes.frequency, modes.shape, weight)
     # The pins couple the rotation of the carrier with the tangential motion of each planet.
     along_x, along_y = np.asarray(system.stiffness)[2, 9:].reshape(-1, 3)[:, :2].T
     angles = np.arctan2(along_x, -along_y) % (2.0 * np.pi)
@@ -129,9 +126,68 @@ def planetary_modes(system: System) -> PlanetaryModes:
         names=modes.names,
         angles=np.where(angles > 2.0 * np.pi - 1e-9, 0.0, angles),
         frequency=modes.frequency,
-        types=tuple(types[bool(t), bool(m)] for t, m in zip(turns, moves, strict=True)),
+        types=types,
         shape=shape,
     )
+
+
+def modes_of_stage(modes: MachineModes, stage: str) -> PlanetaryModes:
+    """Modes of a machine as motions of one of its planetary stages in its plane, with types."""
+    structure = modes.structure
+    rows = plane_rows(structure, stage)
+    mass = structure.mass
+    modal = np.einsum("mi,ij,mj->m", modes.shape.conj(), mass, modes.shape).real
+    shape = (modes.shape / np.sqrt(modal)[:, None]) @ np.vstack(list(rows.values())).T
+    central = np.vstack(list(rows.values()))[:9]
+    mobility = np.einsum("ci,ic->c", central, np.linalg.solve(mass, central.T))
+    weight = 1.0 / np.sqrt(np.where(mobility > 0.0, mobility, np.inf))
+    shape, types = _by_type(modes.frequency, shape, weight)
+    return PlanetaryModes(
+        names=tuple(f"{member}_{axis}" for member in rows for axis in "xyu"),
+        angles=structure.machine.planets[stage].phases(structure.machine.gears).angles,
+        frequency=modes.frequency,
+        types=types,
+        shape=shape,
+    )
+
+
+def plane_rows(structure: MachineStructure, stage: str) -> dict[str, Array]:
+    """Displacements x, y and u of each member of a stage per coordinate, (3, n) each."""
+    machine = structure.machine
+    parts = machine.planets[stage]
+    names = parts.mesh_names(stage)
+    radii: dict[str, float] = {}
+    for mesh in (mesh for kind in names.values() for mesh in kind):
+        radii |= zip(machine.meshes[mesh].gears, machine.directions[mesh].base_radius, strict=True)
+    pin = next(b for n, b in machine.bearings.items() if n == f"{stage}_pin1")
+    place = machine.placement.shafts
+    between = np.subtract(place[pin.shaft], place[parts.carrier])
+    rows = {"carrier": structure.at(parts.carrier, pin.carrier_position)[1:4]}
+    rows |= {role: structure.gear(getattr(parts, role))[1:4] for role in ("ring", "sun")}
+    numbers = range(1, parts.count + 1)
+    planets = {f"planet{i}": f"{stage}_planet{i}" for i in numbers}
+    if parts.planet_type == "meshed":
+        planets |= {f"ring_planet{i}": f"{stage}_ring_planet{i}" for i in numbers}
+    rows |= {member: structure.gear(gear)[1:4] for member, gear in planets.items()}
+    lengths = {role: radii[getattr(parts, role)] for role in ("ring", "sun")}
+    lengths |= {member: radii[gear] for member, gear in planets.items()}
+    lengths["carrier"] = float(np.linalg.norm(between[1:]))
+    return {
+        member: np.vstack([row[:2], abs(lengths[member]) * row[2:]]) for member, row in rows.items()
+    }
+
+
+def _by_type(frequency: Array, shape: Shape, weight: Array) -> tuple[Shape, tuple[ModeType, ...]]:
+    """Shapes, those of one frequency separated by their types, and the types."""
+    shape = _separated(frequency, shape, weight)
+    turns, moves = (np.abs(part).max(axis=1) > _AT_REST for part in _central(shape, weight))
+    types: dict[tuple[bool, bool], ModeType] = {
+        (True, False): "rotational",
+        (False, True): "translational",
+        (False, False): "planet",
+        (True, True): "mixed",
+    }
+    return shape, tuple(types[bool(t), bool(m)] for t, m in zip(turns, moves, strict=True))
 
 
 def _central(shape: Shape, weight: Array) -> tuple[Shape, Shape]:
