@@ -14,6 +14,7 @@ from tribodyn.aliases import RENAMED
 from tribodyn.study import Case
 from tribodyn.study.case.reference import reference_tables, start_toml
 from tribodyn.study.case.section import Table
+from tribodyn.study.faults.kinds import kind_table
 from tribodyn.study.parts_reference import machine_tables
 from tribodyn.study.pipeline.citations import bibliography
 
@@ -39,6 +40,12 @@ def _start(text: str) -> str:
     """A page with the case file that ``tribodyn new`` writes, between its marks."""
     block = f"<!-- start -->\n```toml\n{start_toml()}```\n<!-- end -->"
     return re.sub(r"<!-- start -->\n.*?<!-- end -->", lambda _: block, text, flags=re.DOTALL)
+
+
+def _faults(text: str) -> str:
+    """The page on faults with the table of kinds between its marks."""
+    block = f"<!-- kinds -->\n{kind_table()}\n<!-- end -->"
+    return re.sub(r"<!-- kinds -->\n.*?<!-- end -->", lambda _: block, text, flags=re.DOTALL)
 
 
 def _bibliography(text: str) -> str:
@@ -101,6 +108,7 @@ _DEPRECATED = (
 GENERATED = {
     "README.md": (_start,),
     "docs/case-file.md": (_start, _tables),
+    "docs/faults.md": (_faults,),
     "docs/bibliography.md": (_bibliography,),
     "docs/reference.md": (_reference,),
     "docs/coverage.md": (contents_page,),

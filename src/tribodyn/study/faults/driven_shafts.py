@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from tribodyn.faults import DrivenSystem, drive
-from tribodyn.study.faults.machine_section import OF_SHAFTS, shaft_excitation
+from tribodyn.study.faults.machine_section import shaft_excitation
 from tribodyn.study.pipeline.assembly import geometry
 from tribodyn.types import Array
 
@@ -99,7 +99,7 @@ def _drive(
     torques: Mapping[str, Array],
 ) -> DrivenSystem:
     """Drive shafts, whose turns in the cycles are by name, by torques in their running sense."""
-    excitations = [shaft_excitation(fault) for fault in faults.values() if fault.kind in OF_SHAFTS]
+    excitations = [shaft_excitation(fault) for fault in faults.values() if fault.shaft]
     rotation = np.zeros(system.size)
     if excitations:
         turned = [2.0 * np.pi * float(turns[shaft]) / cycles for shaft in torques]

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from tribodyn.dynamics import Contact, System
-from tribodyn.study.faults.machine_section import name_of
+from tribodyn.study.faults.section import part_of
 from tribodyn.types import Array
 
 if TYPE_CHECKING:
@@ -39,7 +39,7 @@ def loose_seats(
     for fault in case.faults.values():
         if fault.kind != "looseness":
             continue
-        name = name_of(fault.bearing or "", "bearings")
+        name = part_of(fault.bearing)
         load = motion.mean(motion.bearing_force[:, motion.bearing.index(name)])[1:3]
         angle = math.atan2(load[1], load[0]) if fault.press_angle is None else fault.press_angle
         along = np.array([0.0, math.cos(angle), math.sin(angle), 0.0, 0.0, 0.0])

@@ -23,7 +23,7 @@ from tribodyn.study.faults.loose_seat import (
     with_lifted_forces,
     with_loose_seats,
 )
-from tribodyn.study.faults.machine_section import OF_SHAFTS, faults_of_mesh
+from tribodyn.study.faults.machine_section import faults_of_mesh
 from tribodyn.study.faults.motion import SAMPLES, even_samples, signal_lines, turning_system_of
 from tribodyn.study.faults.sensors import MachineSensors, SensorPlace, seat_accelerance
 from tribodyn.study.machine.first_look import warn_of_orders, warn_of_period
@@ -40,8 +40,6 @@ if TYPE_CHECKING:
 _STEPS = (128, 256)
 #: Change of the motion with half the steps, over its size, that is small enough.
 _ACCURATE = 2e-3
-#: Faults that change the motion of equal teeth.
-_OTHERS = (*OF_SHAFTS, "looseness")
 #: Certified error that suffices beside it.
 _CERTIFIED = 1e-4
 
@@ -241,7 +239,9 @@ def machine_turning_motion(
         progress.start("Teeth over whole turns")
         machine = turning_machine(case, sound)
         tacho, seat = machine.operation.input, seat_accelerance(case)
-        of_teeth = all(fault.kind not in _OTHERS for fault in case.faults.values())
+        of_teeth = all(
+            fault.gear or fault.kind == "bearing-defect" for fault in case.faults.values()
+        )
         if of_teeth and machine.meshes == sound.machine.meshes:
             same = sound.structure, sound.motion
             return MachineTurningMotion(sound, *same, seat, tacho, np.zeros_like)

@@ -18,8 +18,8 @@ from tribodyn.interrupt import single_blas_thread
 from tribodyn.machine.planetary.ring_sensor import passing_weights
 from tribodyn.study.faults.driven_shafts import drive_stage
 from tribodyn.study.faults.machine_motion import repeated
-from tribodyn.study.faults.machine_section import OF_SHAFTS, name_of
 from tribodyn.study.faults.motion import SAMPLES, even_samples, signal_lines
+from tribodyn.study.faults.section import part_of
 from tribodyn.study.faults.sensors import (
     check_stage_sensor,
     check_stage_tacho,
@@ -172,9 +172,9 @@ def mesh_waves(case: PlanetaryCase, sound: PlanetaryLoadResult) -> dict[int, lis
     sense = 1.0 if case.sun_drives(sound.load) else -1.0  # of the sun relative to the carrier
     between = sum(pair.gear_pair.operating_pressure_angle for pair in case.pairs.values())
     for fault in case.faults.values():
-        if fault.kind in OF_SHAFTS:
+        if fault.shaft:
             continue
-        gear, order = name_of(fault.gear, "gears"), fault.order or 1
+        gear, order = part_of(fault.gear), fault.order or 1
         teeth = abs(case.gears[gear].teeth)
         if gear == table.planet:
             planet = (fault.planet or 1) - 1

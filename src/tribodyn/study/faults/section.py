@@ -3,15 +3,17 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import replace
-from typing import TYPE_CHECKING, Any, ClassVar, TypeVar
+from typing import TYPE_CHECKING, Any, TypeVar
 
-from tribodyn.errors import Argument, InputError, Problem
+from tribodyn.errors import Argument, InputError, Problem, did_you_mean
 from tribodyn.faults.cracked_tooth import GREATEST_TANGENT, LEAST_TANGENT
-from tribodyn.model import REQUIRED, choice, file_path, integer, number, numbers
+from tribodyn.model import REQUIRED, choice, file_path, integer, number, numbers, text
 from tribodyn.study.case.section import NamedTables, Section, table
+from tribodyn.study.case.values import KeyedProblems
+from tribodyn.study.faults.kinds import KINDS, LACKS, keys_in, kinds_in
 
 if TYPE_CHECKING:
     from tribodyn.faults import BearingDefect, Fault, ShaftExcitation
@@ -22,54 +24,6 @@ T = TypeVar("T")
 _TURN = 2.0 * math.pi
 _GUARD = "guards against a wrong unit"
 _PART = "a share"
-
-#: Kinds, and the keys of each: required, then optional.
-KINDS: dict[str, tuple[tuple[str, ...], tuple[str, ...]]] = {
-    "eccentricity": (("gear", "amplitude"), ("phase",)),
-    "waviness": (("gear", "amplitude", "order"), ("phase", "lead_angle")),
-    "misalignment": (("gear", "amplitude"), ("order", "phase")),
-    "pitch-deviations": (("gear", "accuracy_class"), ("seed",)),
-    "flank-deviations": (("gear",), ("profile_slopes", "helix_slopes", "accuracy_class", "seed")),
-    "flank-topographies": (("gear", "file"), ("other_teeth", "interpolation")),
-    "spall": (("gear", "tooth", "depth", "start", "end"), ("face_share",)),
-    "broken-tooth": (("gear", "tooth"), ("remaining",)),
-    "crack": (
-        ("gear", "tooth", "depth"),
-        ("angle", "root_tangent", "face_share", "face_length", "face_position"),
-    ),
-    "bearing-defect": (
-        (
-            "gear",
-            "place",
-            "rolling_elements",
-            "element_diameter",
-            "pitch_diameter",
-            "acceleration",
-            "resonance",
-        ),
-        ("contact_angle", "damping_ratio", "slip"),
-    ),
-    "torque-ripple": (("gear", "orders", "torques"), ("phases",)),
-    "speed-fluctuation": (("gear", "orders", "fluctuations"), ("phases",)),
-    "random-load": (("gear", "frequencies"), ("torque", "densities", "duration", "seed")),
-}
-#: Two keys of a kind of which one is stated.
-_EITHER = {"random-load": ("torque", "densities")}
-MEANINGS = {
-    "eccentricity": "axis of the toothing beside the axis of rotation",
-    "waviness": "waves that run on from tooth to tooth, a ghost order",
-    "misalignment": "flanks inclined over the face, constant or turning with the shaft",
-    "pitch-deviations": "pitch deviations drawn from an accuracy class",
-    "flank-deviations": "slopes of profile and helix that differ from tooth to tooth",
-    "flank-topographies": "measured flanks or profiles of several teeth",
-    "spall": "material missing on a part of one flank",
-    "broken-tooth": "a tooth whose upper part is gone",
-    "crack": "a crack at the root of one tooth",
-    "bearing-defect": "a local defect of a bearing of the gear's shaft",
-    "torque-ripple": "a torque on the gear's shaft that varies over its angle",
-    "speed-fluctuation": "a speed of the gear's shaft that varies over its angle",
-    "random-load": "a random torque on the gear's shaft",
-}
 
 
 def _length(meaning: str, high: float, example: str) -> Any:
@@ -87,8 +41,9 @@ class FaultTable(Section):
     """A ``[faults.NAME]`` table: kind, gear, place and size."""
 
     needed = ("kind", "gear")
-    kinds: ClassVar = KINDS
-    kind: str = choice(REQUIRED, MEANINGS, meaning="what it is")
+    kind: str = choice(
+        REQUIRED, {name: kind.meaning for name, kind in KINDS.items()}, meaning="what it is"
+    )
     gear: str | None = choice(None, ("pinion", "wheel"), meaning="gear, or shaft of it")
     tooth: int | None = integer(
         None, 1, 1000, "from 1 in the order of contact", meaning="number of the tooth", example="1"
@@ -221,6 +176,35 @@ class FaultTable(Section):
     )  # fmt: skip
 
 
+class PartFaultTable(FaultTable):
+    """A ``[faults.NAME]`` table of a case whose parts have names: a fault of any of them."""
+
+    gear: str | None = text(None, meaning="gear that has it", example='"z1"')  # type: ignore[assignment]
+    planet: int | None = integer(
+        None, 1, 24, "in the order of the angles", example="1",
+        meaning="number of the planet, of a planetary stage",
+    )  # fmt: skip
+    shaft: str | None = text(None, meaning="shaft that is driven or loaded so", example='"input"')
+    bearing: str | None = text(None, meaning="bearing that has it", example='"A"')
+    impact_force: float | None = number(
+        None, 0.0, 1e7, _GUARD, unit="N", example='"200 N"',
+        meaning="greatest force of an impact in a bearing",
+    )  # fmt: skip
+    impact_duration: float | None = number(
+        None, 1e-7, 0.1, _GUARD, unit="s", display_unit="ms", example='"0.1 ms"',
+        meaning="duration of an impact, 0.1 ms by default",
+    )  # fmt: skip
+    stiffness_share: float | None = number(
+        None, 0.0, 1.0, _PART, example="0.3",
+        meaning="radial stiffness of a lifted seat over that of the pressed one",
+    )  # fmt: skip
+    press_angle: float | None = number(
+        None, -_TURN, _TURN, "one turn", unit="rad", display_unit="deg", example='"-90 deg"',
+        meaning="direction from y towards z in which the shaft presses on a loose seat; that of "
+        "its mean load by default",
+    )  # fmt: skip
+
+
 class Faults(NamedTables, inner=table(FaultTable, "a fault")):
     """The ``[faults]`` table."""
 
@@ -233,32 +217,57 @@ def _stated(fault: FaultTable) -> dict[str, Any]:
 
 def fault_problems(
     faults: Faults | Mapping[str, FaultTable] | None,
-) -> list[tuple[str, Problem]]:
-    """Report missing keys, and keys that this kind of fault does not have."""
-    problems = []
-    tables = vars(faults) if isinstance(faults, Faults) else faults or {}
-    for name, fault in tables.items():
-        required, optional = fault.kinds[fault.kind]
-        stated = _stated(fault)
-        for key in required:
-            if key not in stated:
-                option = fault.spec(key)
-                example = option.example if option else ""
-                why = f'A fault of the kind "{fault.kind}" has: {", ".join((*required, *optional))}'
-                remedy = f"Add for example {key} = {example} to [faults.{name}]"
-                problems.append(
-                    (f"faults.{name}.{key}", Problem(f"{key} is missing", "", why, remedy))
-                )
-        either = _EITHER.get(fault.kind, ())
-        if either and (count := sum(key in stated for key in either)) != 1:
-            what = f"{' and '.join(either)} are {'both given' if count else 'missing'}"
-            problem = Problem(what, "", "One of them states the size", "Give one of them")
-            problems.append((f"faults.{name}.{either[0]}", problem))
-        for key in sorted(stated.keys() - {*required, *optional}):
-            why = f'A fault of the kind "{fault.kind}" has: {", ".join((*required, *optional))}'
-            what = f"{key} is given"
-            problems.append((f"faults.{name}.{key}", Problem(what, "", why, "Remove it")))
+    case: str = "pair",
+    parts: Mapping[str, Sequence[str]] | None = None,
+) -> KeyedProblems:
+    """Report kinds that a case lacks, missing and further keys, and names of no part."""
+    problems: KeyedProblems = []
+    for name, fault in (vars(faults) if isinstance(faults, Faults) else faults or {}).items():
+        if why := LACKS[case].get(fault.kind):
+            remedy = f"The kinds of a {case} are {', '.join(kinds_in(case))}"
+            wrong = [("kind", Problem(f'kind = "{fault.kind}"', "", why, remedy))]
+        else:
+            wrong = [*_key_problems(name, fault, case), *_name_problems(fault, parts or {})]
+        problems += [(f"faults.{name}.{key}", problem) for key, problem in wrong]
     return problems
+
+
+def _key_problems(name: str, fault: FaultTable, case: str) -> KeyedProblems:
+    """Report missing keys, and keys that this kind of fault does not have."""
+    (required, optional), stated = keys_in(case, fault.kind), _stated(fault)
+    why = f'A fault of the kind "{fault.kind}" has: {", ".join((*required, *optional))}'
+    problems: KeyedProblems = []
+    for key in required:
+        if key not in stated:
+            example = getattr(fault.spec(key), "example", "")
+            remedy = f"Add for example {key} = {example} to [faults.{name}]"
+            problems.append((key, Problem(f"{key} is missing", "", why, remedy)))
+    either = KINDS[fault.kind].either
+    if either and (count := sum(key in stated for key in either)) != 1:
+        what = f"{' and '.join(either)} are {'both given' if count else 'missing'}"
+        problem = Problem(what, "", "One of them states the size", "Give one of them")
+        problems.append((either[0], problem))
+    for key in sorted(stated.keys() - {*required, *optional}):
+        problems.append((key, Problem(f"{key} is given", "", why, "Remove it")))
+    return problems
+
+
+def _name_problems(fault: FaultTable, parts: Mapping[str, Sequence[str]]) -> KeyedProblems:
+    """Report names of gears, bearings and shafts that a case does not have."""
+    problems: KeyedProblems = []
+    for key, names in parts.items():
+        reference = getattr(fault, key)
+        if reference is not None and part_of(reference) not in names:
+            why = f"Known: {', '.join(names) or 'none'}"
+            remedy = did_you_mean(part_of(reference), list(names), "Correct the name")
+            problems.append((key, Problem(f'there is no {key} "{reference}"', "", why, remedy)))
+    return problems
+
+
+def part_of(reference: str | None) -> str:
+    """Name of a part, which may be written as ``gears.z1``."""
+    group, _, name = (reference or "").partition(".")
+    return name if group in ("gears", "shafts", "bearings") else reference or ""
 
 
 def read_fault(fault: FaultTable, **changes: Any) -> Fault | BearingDefect | ShaftExcitation:
@@ -268,29 +277,19 @@ def read_fault(fault: FaultTable, **changes: Any) -> Fault | BearingDefect | Sha
     values = {**_stated(fault), **changes}
     values.pop("shaft", None)
     if fault.kind == "eccentricity":
-        return faults.Waviness(order=1, **values)
+        values["order"] = 1
     if fault.kind == "bearing-defect":
-        return faults.BearingDefect(**{k: v for k, v in values.items() if k != "gear"})
+        values.pop("gear")
     if fault.kind == "random-load" and "torque" in values:
         return faults.RandomLoad.of_rms(values.pop("torque"), values.pop("frequencies"), **values)
     if fault.kind == "flank-topographies":
         from tribodyn.study.case.profile_map_file import read_tooth_maps
 
         maps = read_tooth_maps(values.pop("file"), values.pop("interpolation", "linear"))
-        return faults.FlankTopographies(teeth=tuple(maps), maps=tuple(maps.values()), **values)
-    kinds: dict[str, Any] = {
-        "waviness": faults.Waviness,
-        "misalignment": faults.InclinedFlanks,
-        "pitch-deviations": faults.PitchDeviations,
-        "flank-deviations": faults.FlankDeviations,
-        "spall": faults.Spall,
-        "broken-tooth": faults.BrokenTooth,
-        "crack": faults.Crack,
-        "torque-ripple": faults.TorqueRipple,
-        "speed-fluctuation": faults.SpeedFluctuation,
-        "random-load": faults.RandomLoad,
-    }
-    result: Fault | ShaftExcitation = kinds[fault.kind](**values)
+        values |= {"teeth": tuple(maps), "maps": tuple(maps.values())}
+    result: Fault | BearingDefect | ShaftExcitation = getattr(faults, KINDS[fault.kind].model)(
+        **values
+    )
     return result
 
 

@@ -28,11 +28,8 @@ from tribodyn.study.case.provenance import Assumption, reason_faults
 from tribodyn.study.case.sections import MaterialData
 from tribodyn.study.case.user_input import Source, unsound, without_spread
 from tribodyn.study.case.values import KeyedProblems, Plain
-from tribodyn.study.faults.machine_section import (
-    MachineFaultTable,
-    impossible_faults,
-    machine_fault_problems,
-)
+from tribodyn.study.faults.machine_section import impossible_faults, machine_fault_problems
+from tribodyn.study.faults.section import PartFaultTable
 from tribodyn.study.machine.housing_files import read_housing
 from tribodyn.study.machine.load_cases import LoadCase, read_loads
 from tribodyn.study.machine.pair_cases import (
@@ -152,11 +149,11 @@ class MachineCase(PartsCase):
         motion = {k: v for k, v in self.data.get("dynamics", {}).items() if k not in MESH_KEYS}
         self.motion = table_of(MotionTable, motion, "dynamics", problems)
         faults = {
-            name: table_of(MachineFaultTable, body, f"faults.{name}", problems)
+            name: table_of(PartFaultTable, body, f"faults.{name}", problems)
             for name, body in groups["faults"].items()
         }
         self.faults = {name: table for name, table in faults.items() if table is not None}
-        problems += machine_fault_problems(self, self.faults)
+        problems += machine_fault_problems(self)
         self.load_cases: tuple[LoadCase, ...] = ()  #: of ``[[load_cases]]``
         if (loads := read_loads(self.data, problems)) is not None:
             self.ends, self.operating_point, self.load_cases = loads

@@ -11,7 +11,7 @@ from tribodyn.model import REQUIRED, choice, file_path, flag, integer, number, n
 from tribodyn.study.case import gears
 from tribodyn.study.case.section import Section
 from tribodyn.study.case.sections import Dynamics, MaterialData
-from tribodyn.study.faults.machine_section import MachineFaultTable
+from tribodyn.study.faults.section import PartFaultTable
 
 _GUARD = "guards against a wrong unit"
 _RPM = math.pi / 30.0
@@ -451,7 +451,7 @@ TABLES: dict[str, type[Section]] = {
     "operation": OperationTable,
     "load_cases": LoadCaseTable,
     "dynamics": MotionTable,
-    "faults": MachineFaultTable,
+    "faults": PartFaultTable,
 }
 
 #: Keys that are read apart from the table of their group.

@@ -23,10 +23,8 @@ from tribodyn.study.case.case import Case
 from tribodyn.study.case.provenance import Assumption, reason_faults
 from tribodyn.study.case.user_input import Source, unsound, without_spread
 from tribodyn.study.case.values import KeyedProblems, Plain
-from tribodyn.study.faults.planetary_section import (
-    PlanetaryFaultTable,
-    planetary_fault_problems,
-)
+from tribodyn.study.faults.machine_section import stage_fault_problems
+from tribodyn.study.faults.section import PartFaultTable
 from tribodyn.study.machine.load_cases import LoadCase, read_loads
 from tribodyn.study.machine.pair_cases import MESH_KEYS, SHARED, mesh_tables, pair_case
 from tribodyn.study.machine.read_parts import (
@@ -118,7 +116,7 @@ class PlanetaryCase(PartsCase):
         motion = {k: v for k, v in dynamics.items() if k not in MESH_KEYS}
         self.motion = table_of(MotionTable, motion, "dynamics", problems)
         faults = {
-            name: table_of(PlanetaryFaultTable, body, f"faults.{name}", problems)
+            name: table_of(PartFaultTable, body, f"faults.{name}", problems)
             for name, body in tables_of(self.data, "faults", problems).items()
         }
         self.faults = {name: table for name, table in faults.items() if table is not None}
@@ -126,7 +124,7 @@ class PlanetaryCase(PartsCase):
         if loads is not None and self.table is not None:
             self.ends, self.operating_point, self.load_cases = loads
             self._check_members(bodies, problems)
-            problems += planetary_fault_problems(self, self.faults)
+            problems += stage_fault_problems(self)
         if problems:
             raise InputError(origin.place(problems))
         try:
