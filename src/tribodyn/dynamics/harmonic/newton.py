@@ -155,18 +155,24 @@ def solve_linear(
     return (weights @ basis[:count]).reshape(right.shape), count
 
 
-def newton(residual: Residual, y: Array, tolerance: float, limit: int = _LIMIT) -> Solution:
-    """Newton's method with a line search that lets the residual rise for a few steps."""
+def newton(
+    residual: Residual, y: Array, tolerance: float, limit: int = _LIMIT, patience: int = _LIMIT
+) -> Solution:
+    """Newton's method with a line search; it ends if the error halves in no ``patience`` steps."""
     state, krylov, error = residual.at(y), 0, np.inf
     norms = [float(np.linalg.norm(state.residual))]
     best: tuple[float, State] = (np.inf, state)
+    halved = 0
     for count in range(limit + 1):
         step, products = residual.correction(state)
         krylov += products
         error = float(np.linalg.norm(step, axis=1).max(initial=0.0)) / state.size
+        if error < 0.5 * best[0]:
+            halved = count
         if error < best[0]:
             best = error, state
-        if error <= tolerance or count == limit or not np.isfinite(error):
+        stuck = count == limit or count - halved >= patience
+        if error <= tolerance or stuck or not np.isfinite(error):
             break
         state = _search(residual, state, step, max(norms[-_MEMORY:]))
         norms.append(float(np.linalg.norm(state.residual)))

@@ -36,6 +36,9 @@ _LIMIT, _WORST = 1e-2, 0.2
 #: Damping added at first where Newton's method does not converge, over the critical damping at
 #: the highest mesh frequency, and the factors by which it is reduced; Newton steps with each.
 _ADDED, _TRIES = (0.3, 0.1, 0.03, 0.01, 0.003), 12
+#: Newton steps in which the error halves if the points suffice, and part of the largest change with
+#: twice the points from which a phase matters.
+_PATIENCE, _MATTER = 5, 0.01
 
 
 @dataclass
@@ -69,7 +72,7 @@ class _Search:
             rest = np.tile(self.still, (residual.grid.size, 1))
             state = residual.at(rest, self.closed)  # linear equations: one step solves them
             y = rest + residual.correction(state)[0]
-        best = newton(residual, y, 0.01 * tolerance)
+        best = newton(residual, y, 0.01 * tolerance, patience=_PATIENCE)
         if best.error <= tolerance:
             return best
         critical = residual.contacts.rows.stiffness.sum(axis=-1).mean(axis=0)
@@ -93,6 +96,28 @@ class _Search:
             if solution.error <= tolerance or not free or max(shape) >= _LAST:
                 return residual, solution
             shape = _doubled(shape, range(len(shape)))
+
+    def finer(
+        self,
+        residual: PhaseResidual,
+        solution: Solution,
+        errors: Array,
+        poor: Index,
+        tolerance: float,
+    ) -> tuple[PhaseResidual, Solution] | None:
+        """Motion with twice the points over the poor phases, or more; None if it is not found."""
+        shape = _doubled(residual.grid.shape, poor)
+        while np.prod(shape) <= _MOST:
+            finer = self.residual(shape)
+            refined = residual.grid.refined(solution.state.y, finer.grid)
+            better = newton(finer, refined, 0.01 * tolerance, patience=_PATIENCE)
+            if better.error <= tolerance:
+                return finer, better
+            # Flanks that part for less than a step need more points over all phases that matter.
+            matter = errors > _MATTER * errors.max()
+            fewer = matter & (np.array(shape) < max(shape))
+            shape = _doubled(shape, np.flatnonzero(fewer if fewer.any() else matter))
+        return None
 
     def changes(self, residual: PhaseResidual, y: Array) -> Array:
         """Change of a motion with twice the points over each phase, over its size."""
@@ -128,14 +153,12 @@ def phase_balance(
         step_error = float(errors.sum())
         limit = _ACCURATE if smooth and residual.grid.size <= _MANY else _ENOUGH
         poor = np.flatnonzero(errors > max(limit / errors.size, _WORST * errors.max()))
-        shape = _doubled(residual.grid.shape, poor)
-        if steps is not None or not poor.size or np.prod(shape) > _MOST:
+        if steps is not None or not poor.size:
             break
-        finer = search.residual(shape)
-        better = search.solve(finer, residual.grid.refined(solution.state.y, finer.grid), tolerance)
-        if not better.error <= tolerance:
+        better = search.finer(residual, solution, errors, poor, tolerance)
+        if better is None:
             break
-        residual, solution = finer, better
+        residual, solution = better
     converged = bool(solution.error <= tolerance)
     if not converged:
         warn(

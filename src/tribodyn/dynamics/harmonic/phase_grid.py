@@ -17,6 +17,7 @@ import numpy as np
 
 from tribodyn.dynamics.harmonic.closed_structure import ClosedStructure
 from tribodyn.dynamics.harmonic.contact_equations import ContactEquations, with_dead_zone
+from tribodyn.dynamics.harmonic.meshwise_inverse import MeshwiseInverse
 from tribodyn.dynamics.harmonic.newton import VECTORS, Residual, State, solve_linear
 from tribodyn.dynamics.harmonic.phase_rows import Mesh, PhaseRows
 from tribodyn.types import Array, ComplexArray, Index, Mask
@@ -220,4 +221,8 @@ class PhaseResidual(Residual):
 
     def _corrected(self, state: State, accuracy: float) -> tuple[Array, int]:
         vectors = int(np.clip(_MEMORY // state.y.nbytes, _FEWEST, VECTORS))
-        return solve_linear(self.derivative(state), -state.residual, accuracy, vectors)
+        product, nearly = self.derivative(state), MeshwiseInverse(self, state)
+        solution, count = solve_linear(
+            lambda x: product(nearly(x)), -state.residual, accuracy, vectors
+        )
+        return nearly(solution), count

@@ -1,0 +1,163 @@
+"""Approximate inverse of the linearized equations over several phases: one mesh phase at a time.
+
+The stiffness of the contacts is a mean, and for each phase the mean over all other phases less
+that. With the part of one phase alone, the equations of the lines that differ in the number of this
+phase only are small and dense; the product of these inverses leaves what couples two phases
+through the structure, so that a few Krylov vectors remain.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from tribodyn.dynamics.harmonic.newton import State
+from tribodyn.types import Array, ComplexArray, Index
+
+if TYPE_CHECKING:
+    from tribodyn.dynamics.harmonic.phase_grid import PhaseResidual
+
+#: Part of the largest variation of a stiffness that is too small to matter.
+_SMALL = 0.02
+#: Bytes of the inverses of one phase; with more, only its lowest lines are coupled.
+_MEMORY = 2**28
+
+
+class MeshwiseInverse:
+    """Product with the approximate inverse of the derivative of a residual at a state."""
+
+    def __init__(self, residual: PhaseResidual, state: State) -> None:
+        self.shape = residual.grid.shape
+        structure, breaks = residual.structure, state.breaks
+        stiffness: Any = structure.contact_stiffness - state.law.stiffness
+        damping: Any = structure.contact_damping - state.law.damping
+        if breaks.step.size:
+            spread = breaks.spread(residual.grid.size)
+            weights = np.asarray(spread.sum(axis=0)).reshape(-1, 1)
+            tangent = breaks.tangent.reshape(len(breaks.tangent), -1)
+            stiffness = stiffness + (spread @ (weights * tangent)).reshape(-1, *stiffness.shape[1:])
+        wide = (residual.grid.size, *stiffness.shape[1:])
+        parts = [
+            np.broadcast_to(part, wide).reshape(*self.shape, *wide[1:])
+            for part in (stiffness, damping)
+        ]
+        axes = range(len(self.shape))
+        self.mean = [part.mean(axis=tuple(axes)) for part in parts]
+        self.phases = []
+        for axis in axes:
+            others = tuple(other for other in axes if other != axis)
+            varying = [
+                part.mean(axis=others) - mean for part, mean in zip(parts, self.mean, strict=True)
+            ]
+            if np.abs(varying).max() > _SMALL * np.abs(stiffness).max(initial=0.0):
+                self.phases.append(_OnePhase(residual, axis, self.mean, varying))
+
+    def __call__(self, right: Array) -> Array:
+        """Product with a right-hand side (p, r)."""
+        y = right
+        for phase in self.phases:
+            y = phase.solved(y, first=phase is self.phases[0])
+        return y
+
+
+class _OnePhase:
+    """Inverse with the stiffness that varies over one phase."""
+
+    def __init__(
+        self, residual: PhaseResidual, axis: int, mean: list[Array], varying: list[Array]
+    ) -> None:
+        grid = residual.grid
+        self.shape, self.axis = grid.shape, axis
+        self.half = (axis - 1) % len(grid.shape) if len(grid.shape) > 1 else None
+        numbers = self._numbers()
+        omega = 2.0 * np.pi * (numbers @ grid.frequency)
+        omega[np.abs(omega) <= 1e-12 * np.abs(omega).max()] = 0.0
+        unpaired = (2 * np.abs(numbers) == np.array(grid.shape)).any(axis=-1)
+        receptances = residual.structure.receptances(omega.reshape(-1))
+        receptances = receptances.reshape(*omega.shape, *receptances.shape[1:])
+        receptances[unpaired] = 0.0
+        rate = np.where(unpaired, 0.0, 1j * omega)
+        still = receptances @ (mean[0] + rate[..., None, None] * mean[1])
+        self.base = np.linalg.inv(np.eye(still.shape[-1]) - still)
+        varying = [varying[0], varying[1] * np.abs(omega).max()]
+        push, along = _bases(varying)
+        self.gain, self.along = self.base @ receptances @ push, along  # (m, n, r, a)
+        count, width = grid.shape[axis], len(along)
+        self.low = _lowest(count, _MEMORY / (16.0 * len(omega) * width**2))
+        self.gain, size = self.gain[:, self.low], len(self.low) * width
+        self.rate = np.repeat(rate[:, self.low] / np.abs(omega).max(), width, axis=1)
+        waves = [_between_lines(push.T @ part @ along.T, self.low) for part in varying]
+        felt = along @ self.gain  # motion felt per force of the same line (m, l, w, a)
+        loop, damped = ((felt @ wave).reshape(-1, size, size) for wave in waves)
+        self.inverse = np.linalg.inv(np.eye(size) - loop - damped * self.rate[:, None])
+        self.spring, self.damper = (wave.reshape(-1, size).T for wave in waves)
+
+    def solved(self, y: Array, *, first: bool) -> Array:
+        """Solution (p, r) for the right-hand side, or for one that the mean has solved already."""
+        lines = self._lines(y)
+        if first:
+            lines = (self.base @ lines[..., None])[..., 0]
+        felt = (lines[:, self.low] @ self.along.T).reshape(len(lines), -1, 1)
+        moved = (self.inverse @ felt)[..., 0]
+        force = moved @ self.spring + (self.rate * moved) @ self.damper
+        force = force.reshape(*self.gain.shape[:2], -1, 1)
+        lines[:, self.low] += (self.gain @ force)[..., 0]
+        return self._values(lines)
+
+    def _axes(self) -> list[int]:
+        """Phases in the order of the transform, the one of the half spectrum at the end."""
+        axes = [axis for axis in range(len(self.shape)) if axis != self.half]
+        return axes if self.half is None else [*axes, self.half]
+
+    def _numbers(self) -> Index:
+        """Whole numbers of the lines (m, n, phases), all of this phase in a row."""
+        parts = [np.rint(np.fft.fftfreq(count) * count) for count in self.shape]
+        if self.half is not None:
+            parts[self.half] = np.arange(self.shape[self.half] // 2 + 1.0)
+        lines = np.stack(np.meshgrid(*parts, indexing="ij"), axis=-1)
+        row = np.moveaxis(lines, self.axis, -2)
+        return row.reshape(-1, *row.shape[-2:]).astype(np.int64)
+
+    def _lines(self, y: Array) -> ComplexArray:
+        """Lines (m, n, r) of values (p, r)."""
+        values = y.reshape(*self.shape, -1)
+        axes = self._axes()
+        lines = (
+            np.fft.fftn(values, axes=axes) if self.half is None else np.fft.rfftn(values, axes=axes)
+        )
+        self._folded = np.moveaxis(lines, self.axis, -2).shape
+        return np.moveaxis(lines, self.axis, -2).reshape(-1, *self._folded[-2:])
+
+    def _values(self, lines: ComplexArray) -> Array:
+        """Values (p, r) of lines (m, n, r)."""
+        table = np.moveaxis(lines.reshape(self._folded), -2, self.axis)
+        axes = self._axes()
+        if self.half is None:
+            values = np.fft.ifftn(table, axes=axes).real
+        else:
+            values = np.fft.irfftn(table, [self.shape[axis] for axis in axes], axes)
+        return np.asarray(values.reshape(-1, lines.shape[-1]))
+
+
+def _bases(varying: list[Array]) -> tuple[Array, Array]:
+    """Orthonormal bases (s, a) and (w, r) of the forces and motions of what varies."""
+    stacked = np.concatenate(varying)  # (2 n, s, r)
+    left, size, _ = np.linalg.svd(np.concatenate(list(stacked), axis=1), full_matrices=False)
+    flat = stacked.reshape(-1, stacked.shape[-1])
+    _, length, right = np.linalg.svd(flat, full_matrices=False)
+    return left[:, size > _SMALL * size[0]], right[length > _SMALL * length[0]]
+
+
+def _between_lines(part: Array, low: Index) -> ComplexArray:
+    """Force of each line per motion of each other one (l, a, l w), of a stiffness (n, a, w)."""
+    count = len(part)
+    waves = np.fft.fft(part, axis=0)[(low[:, None] - low) % count] / count  # (l, l, a, w)
+    return np.asarray(np.moveaxis(waves, 2, 1).reshape(len(low), part.shape[1], -1), dtype=complex)
+
+
+def _lowest(count: int, most: float) -> Index:
+    """Places of the lines of a phase with the lowest numbers, so many that n^2 is at most this."""
+    numbers = np.abs(np.rint(np.fft.fftfreq(count) * count))
+    highest = max(1, (int(np.sqrt(most)) - 1) // 2)
+    return np.flatnonzero(numbers <= highest)
