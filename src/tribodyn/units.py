@@ -10,9 +10,12 @@ author knows whether a factor of 2 pi is meant.
 
 from __future__ import annotations
 
+import contextlib
 import math
 import re
 from collections.abc import Iterable
+from decimal import Context, Decimal
+from fractions import Fraction
 from functools import lru_cache
 from typing import Any
 
@@ -82,37 +85,42 @@ _WORD = re.compile(
     + r")(?![A-Za-z0-9_])"
 )
 
-#: SI unit -> usual unit -> (times, per): SI value = value * times / per. Two integers, so
-#: that 4.5 mm is the float nearest to 0.0045. A test compares every entry with pint.
-_USUAL: dict[str, dict[str, tuple[float, float]]] = {
-    "m": {"mm": (1, 1e3), "um": (1, 1e6), "cm": (1, 1e2), "nm": (1, 1e9)},
-    "m^2/s": {"mm^2/s": (1, 1e6)},
-    "m/s": {"mm/s": (1, 1e3), "um/s": (1, 1e6)},
-    "m/s^2": {"mm/s^2": (1, 1e3)},
-    "kg": {"g": (1, 1e3)},
-    "kg*m^2": {"kg*mm^2": (1, 1e6), "kg*cm^2": (1, 1e4), "g*mm^2": (1, 1e9)},
-    "kg/m^3": {"g/cm^3": (1e3, 1), "kg/dm^3": (1e3, 1), "kg/l": (1e3, 1)},
-    "s": {"ms": (1, 1e3), "us": (1, 1e6), "min": (60, 1)},
-    "Hz": {"kHz": (1e3, 1)},
-    "rad": {"deg": (math.pi, 180)},
-    "rad/s": {"rpm": (math.pi, 30)},
-    "N": {"kN": (1e3, 1)},
-    "N^2": {"kN^2": (1e6, 1)},
-    "W": {"kW": (1e3, 1)},
-    "m/N": {"um/kN": (1, 1e9), "um/N": (1, 1e6)},
-    "N*m": {"kN*m": (1e3, 1), "N*mm": (1, 1e3)},
-    "N/m": {"N/um": (1e6, 1), "N/mm": (1e3, 1), "kN/mm": (1e6, 1), "kN/m": (1e3, 1)},
-    "N/m^2": {"N/(mm*um)": (1e9, 1), "N/mm/um": (1e9, 1)},
-    "N*s/m": {"N*s/mm": (1e3, 1)},
-    "Pa": {"kPa": (1e3, 1), "MPa": (1e6, 1), "GPa": (1e9, 1), "N/mm^2": (1e6, 1), "bar": (1e5, 1)},
-    "Pa*s": {"mPa*s": (1, 1e3)},
-    "1/m^2": {"1/mm^2": (1e6, 1)},
-    "1/Pa": {"1/MPa": (1, 1e6), "1/GPa": (1, 1e9), "GPa^-1": (1, 1e9), "Pa^-1": (1, 1)},
+#: Of pi more digits than a float has, so that 30 deg is the float nearest to pi / 6.
+_PI = Fraction("3.14159265358979323846264338327950288419716939937510")
+#: SI unit -> usual unit -> how many SI units it is, exactly. A test compares every entry with pint.
+_SCALES: dict[str, dict[str, str | int | Fraction]] = {
+    "m": {"mm": "1e-3", "um": "1e-6", "cm": "1e-2", "nm": "1e-9"},
+    "m^2/s": {"mm^2/s": "1e-6"},
+    "m/s": {"mm/s": "1e-3", "um/s": "1e-6"},
+    "m/s^2": {"mm/s^2": "1e-3"},
+    "kg": {"g": "1e-3"},
+    "kg*m^2": {"kg*mm^2": "1e-6", "kg*cm^2": "1e-4", "g*mm^2": "1e-9"},
+    "kg/m^3": {"g/cm^3": 1000, "kg/dm^3": 1000, "kg/l": 1000},
+    "s": {"ms": "1e-3", "us": "1e-6", "min": 60},
+    "Hz": {"kHz": 1000},
+    "rad": {"deg": _PI / 180},
+    "rad/s": {"rpm": _PI / 30},
+    "N": {"kN": 1000},
+    "N^2": {"kN^2": "1e6"},
+    "W": {"kW": 1000},
+    "m/N": {"um/kN": "1e-9", "um/N": "1e-6"},
+    "N*m": {"kN*m": 1000, "N*mm": "1e-3"},
+    "N/m": {"N/um": "1e6", "N/mm": 1000, "kN/mm": "1e6", "kN/m": 1000},
+    "N/m^2": {"N/(mm*um)": "1e9", "N/mm/um": "1e9"},
+    "N*s/m": {"N*s/mm": 1000},
+    "Pa": {"kPa": 1000, "MPa": "1e6", "GPa": "1e9", "N/mm^2": "1e6", "bar": "1e5"},
+    "Pa*s": {"mPa*s": "1e-3"},
+    "1/m^2": {"1/mm^2": "1e6"},
+    "1/Pa": {"1/MPa": "1e-6", "1/GPa": "1e-9", "GPa^-1": "1e-9", "Pa^-1": 1},
+}
+_USUAL = {
+    si: {unit: Fraction(scale) for unit, scale in scales.items()} for si, scales in _SCALES.items()
 }
 #: Multiples of the standard acceleration of gravity, where an acceleration is meant: the same ``g``
 #: is a gram where a mass is meant.
 STANDARD_GRAVITY = 9.80665
-_GRAVITY = {"g": 1.0, "gn": 1.0, "g^0": 1.0, "g_n": 1.0, "g_0": 1.0, "mg": 1e-3}
+_GRAVITY = dict.fromkeys(("g", "gn", "g^0", "g_n", "g_0"), Fraction("9.80665"))
+_GRAVITY["mg"] = Fraction("9.80665e-3")
 #: Zero degrees Celsius [K], and one revolution per minute [rad/s].
 ZERO_CELSIUS, RPM = 273.15, math.pi / 30.0
 
@@ -134,7 +142,9 @@ def quoted(texts: Iterable[str]) -> str:
 def _registry() -> Any:
     import pint
 
-    registry: Any = pint.UnitRegistry(autoconvert_offset_to_baseunit=True, cache_folder=None)
+    registry: Any = pint.UnitRegistry(
+        autoconvert_offset_to_baseunit=True, cache_folder=None, non_int_type=Fraction
+    )
     return registry
 
 
@@ -154,29 +164,34 @@ def _plain(unit: str) -> str:
     return bracketed.group(1) if bracketed else text
 
 
-def _usual(value: float, unit: str, si: str) -> float | None:
-    """Return ``value`` in ``si``, or None when the table does not hold the unit."""
-    if unit == si:
+def _exact(value: Fraction, unit: str, to: str) -> Fraction:
+    """Convert without rounding; both units in plain spelling."""
+    if unit == to:
         return value
-    if si == "K" and unit == "degC":
-        return value + ZERO_CELSIUS
+    if {unit, to} == {"K", "degC"}:
+        return value + Fraction("273.15") * (1 if to == "K" else -1)
+    if (scale := _scale(unit, to)) is not None:
+        return value * scale
+    return _by_pint(value, unit, to) if (scale := _scale(to, unit)) is None else value / scale
+
+
+def _scale(unit: str, si: str) -> Fraction | None:
+    """How many SI units a unit of the table is."""
     if si == "m/s^2" and unit in _GRAVITY:
-        return value * _GRAVITY[unit] * STANDARD_GRAVITY
-    scale = _USUAL.get(si, {}).get(unit)
-    return None if scale is None else value * scale[0] / scale[1]
+        return _GRAVITY[unit]
+    return _USUAL.get(si, {}).get(unit)
 
 
-def _from_si(value: float, si: str, unit: str) -> float | None:
-    """Return an SI ``value`` in ``unit``, or None when the table does not hold the unit."""
-    if si == "K" and unit == "degC":
-        return value - ZERO_CELSIUS
-    if si == "m/s^2" and unit in _GRAVITY:
-        return value / (_GRAVITY[unit] * STANDARD_GRAVITY)
-    scale = _USUAL.get(si, {}).get(unit)
-    return None if scale is None else value * scale[1] / scale[0]
+def _nearest(value: Fraction, unit: str, to: str) -> float:
+    """The float nearest to a value in another unit; both units in plain spelling."""
+    try:
+        return float(_exact(value, unit, to))
+    except OverflowError as error:
+        text = f'"{float(value):g} {unit}" is too large a number in {to}'
+        raise UnitProblemError(text) from error
 
 
-def _by_pint(value: float, unit: str, to: str) -> float:
+def _by_pint(value: Fraction, unit: str, to: str) -> Fraction:
     """Convert with pint; both units in plain spelling."""
     import pint
 
@@ -187,23 +202,23 @@ def _by_pint(value: float, unit: str, to: str) -> float:
         if odd:
             raise ValueError
         quantity = registry.Quantity(value, unit.replace("^", "**"))
-        wanted = registry.Quantity(1.0, to.replace("^", "**"))
+        wanted = registry.Quantity(Fraction(1), to.replace("^", "**"))
     except Exception as error:  # the tokenizer of pint raises errors of many types
         raise UnitProblemError(f'"{unit}" is not a known unit') from error
     message = (
-        f'"{value:g} {unit}" cannot be expressed in {to or "a pure number"}: wrong kind of quantity'
+        f'"{float(value):g} {unit}" cannot be expressed in {to or "a pure number"}: '
+        "wrong kind of quantity"
     )
     try:
         if _angle_power(quantity) != _angle_power(wanted):
             raise UnitProblemError(f"{message} (one is an angle or a rotational speed)")
-        converted = float(quantity.to(wanted.units).magnitude)
+        return Fraction(quantity.to(wanted.units).magnitude)
     except (pint.DimensionalityError, pint.OffsetUnitCalculusError) as error:
         raise UnitProblemError(message) from error
-    except ArithmeticError:
-        converted = math.inf
-    if not math.isfinite(converted):
-        raise UnitProblemError(f'"{value:g} {unit}" is too large a number in {to}')
-    return converted
+    except TypeError as error:  # pint takes no logarithm of a fraction
+        raise UnitProblemError(
+            f'"{unit}" is a logarithmic unit; write {to or "a number"}'
+        ) from error
 
 
 def _angle_power(quantity: Any) -> float:
@@ -274,6 +289,12 @@ def split(text: str) -> tuple[float, str]:
     >>> split("4.5 mm")
     (4.5, 'mm')
     """
+    digits, unit = _split(text)
+    return float(digits), unit
+
+
+def _split(text: str) -> tuple[str, str]:
+    """Number and unit, both as written."""
     if meant := readings(text):
         raise UnitProblemError(f'"{text}": {NUMBERS}; write {quoted(meant)}')
     if len(text) > _LONGEST:
@@ -284,7 +305,7 @@ def split(text: str) -> tuple[float, str]:
     match = _NUMBER.fullmatch(text)
     if match is None:
         raise UnitProblemError(f'"{text}" does not begin with a number')
-    return float(match.group(1)), match.group(2).strip()
+    return match.group(1), match.group(2).strip()
 
 
 @lru_cache(maxsize=1024)
@@ -301,7 +322,7 @@ def parse(text: str, unit: str) -> float:
     Returns
     -------
     float
-        Value in ``unit``.
+        Value in ``unit``: the float nearest to the number as written times the exact scale.
 
     Raises
     ------
@@ -317,16 +338,17 @@ def parse(text: str, unit: str) -> float:
     >>> round(parse("40 °C", "K"), 2)
     313.15
     """
-    number, written = split(text)
+    digits, written = _split(text)
+    number = float(digits)
     if not math.isfinite(number):
         raise UnitProblemError(f'"{text}" is not a finite number')
     if not written:
         if unit:
             raise UnitProblemError(f'"{text}" has no unit; write for example "{number:g} {unit}"')
         return number
-    plain, wanted = _plain(written), _plain(unit)
-    value = _usual(number, plain, wanted)
-    return _by_pint(number, plain, wanted) if value is None else value
+    # the exponent of a zero has no limit
+    exact = Fraction(digits) if number else Fraction(0)
+    return _nearest(exact, _plain(written), _plain(unit))
 
 
 @lru_cache(maxsize=256)
@@ -355,11 +377,9 @@ def convert(value: float, unit: str, to: str) -> float:
     >>> convert(0.0045, "m", "mm")
     4.5
     """
-    plain, wanted = _plain(unit), _plain(to)
-    for converted in (_usual(value, plain, wanted), _from_si(value, plain, wanted)):
-        if converted is not None:
-            return converted
-    return _by_pint(value, plain, wanted)
+    if not math.isfinite(value):
+        return value + _nearest(Fraction(1), _plain(unit), _plain(to))
+    return _nearest(Fraction(value), _plain(unit), _plain(to))
 
 
 def shown_in(value: float, unit: str) -> float:
@@ -402,15 +422,15 @@ _DIGITS = (10, 15, 16, 17)
 
 
 def shortest_quantity(value: float, unit: str, display_unit: str = "") -> str:
-    """Text with a unit in the fewest digits that read back to the same float, within rounding."""
+    """Text with a unit in the fewest digits that read back to the same float."""
     for target in (display_unit or unit, unit):
-        number = convert(float(value), unit, target)
+        number = _exact(Fraction(value), _plain(unit), _plain(target))
         for digits in _DIGITS:
-            text = f"{number:.{digits}g} {target}"
-            # 0.4 um is read as the float next to 4e-7
-            rounding = 2.3e-16 if digits == _DIGITS[0] else 0.0
-            if math.isclose(parse(text, unit), value, rel_tol=rounding):
-                return text
+            quotient = Context(digits).divide(*map(Decimal, number.as_integer_ratio()))
+            text = f"{float(quotient):.{digits}g}" if digits < 17 else f"{quotient:.17g}"
+            with contextlib.suppress(UnitProblemError):  # above the largest float
+                if parse(f"{text} {target}", unit) == value:
+                    return f"{text} {target}"
     return f"{float(value)!r} {unit}"
 
 

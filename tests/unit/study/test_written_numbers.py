@@ -4,18 +4,21 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable
+from decimal import Context, Decimal
 from pathlib import Path
 from typing import Any
 
+import hypothesis
 import numpy as np
 import pint
 import pytest
+from hypothesis import strategies as st
 
 import tribodyn as td
 from tribodyn.exchange import case_from_rexs, machine_from_rexs, read_rexs, write_rexs
 from tribodyn.machine import ROLLING_BEARINGS
 from tribodyn.study import MachineCase
-from tribodyn.units import parse, shortest_quantity
+from tribodyn.units import parse, shortest_quantity, usual_units
 
 Q: Any = pint.UnitRegistry(cache_folder=None).Quantity
 MODELS = Path(__file__).parents[2] / "references" / "rexs"
@@ -101,19 +104,43 @@ def test_rolling_bearings_from_python_are_read_back(kind, tmp_path):
 
 
 def test_decimals_stay_decimals():
-    """0.4 um is read as the float next to 4e-7, which is written as 0.4 um too."""
-    assert parse("0.4 um", "m") != 4e-7
+    """A text is read as the float nearest to it: 0.4 um as 4e-7."""
     for count in range(1, 400):
         text = f"{count / 10:.10g} um"
+        assert parse(text, "m") == float(f"{count}e-7")
         assert shortest_quantity(float(f"{count}e-7"), "m", "um") == text
-        assert shortest_quantity(parse(text, "m"), "m", "um") == text
 
 
-def test_numbers_without_a_short_decimal_are_written_in_full():
-    for value in np.random.default_rng(1).uniform(1e-7, 1e-5, 200).tolist():
-        assert parse(shortest_quantity(value, "m", "um"), "m") == value
-    for value in (343.15, 300.0, 0.1 + 0.2):
-        assert parse(shortest_quantity(value, "K", "degC"), "K") == pytest.approx(value, rel=5e-16)
+UNITS = [(si, unit) for si in ("m", "rad", "rad/s", "Pa", "m/s^2", "K") for unit in usual_units(si)]
+
+
+@hypothesis.given(
+    value=st.floats(allow_nan=False, allow_infinity=False),
+    units=st.sampled_from(
+        [*UNITS, ("m/s^2", "g"), ("m", "inch"), ("K", "degF"), ("N*m", "lbf*ft")]
+    ),
+)
+def test_every_number_is_read_back_from_every_unit(value: float, units: tuple[str, str]):
+    text = shortest_quantity(value, *units)
+    assert parse(text, units[0]) == value
+    if units[0] != "K" and (value == 0.0 or 1e-290 < abs(value) < 1e290):
+        assert text.endswith(f" {units[1]}")
+
+
+@hypothesis.given(number=st.floats(-1e12, 1e12).filter(lambda n: n == 0.0 or abs(n) > 1e-12))
+def test_text_is_read_as_the_nearest_number(number: float):
+    """Compared with decimals of sixty digits."""
+    context = Context(prec=60)
+    for unit, si, scale in (
+        ("um", "m", "1e-6"),
+        ("g", "m/s^2", "9.80665"),
+        ("inch", "m", "0.0254"),
+    ):
+        expected = float(context.multiply(Decimal(repr(number)), Decimal(scale)))
+        assert parse(f"{number!r} {unit}", si) == expected
+    half_turn = Decimal("3.14159265358979323846264338327950288419716939937510")
+    expected = float(context.divide(context.multiply(Decimal(repr(number)), half_turn), 180))
+    assert parse(f"{number!r} deg", "rad") == expected
 
 
 def test_an_import_writes_decimals(tmp_path: Path):
