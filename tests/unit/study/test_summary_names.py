@@ -13,6 +13,7 @@ import tribodyn as td
 from tribodyn.cli import main
 from tribodyn.study import SUMMARY
 from tribodyn.study.machine.read import read_any_case
+from tribodyn.study.machine.summary import peak_over_mean
 from tribodyn.study.pipeline.response_series import measured, mesh_force
 from tribodyn.study.pipeline.summary_figures import figure_of, part_figures
 from tribodyn.study.studies.sweep_result import level_keys
@@ -83,6 +84,14 @@ def test_forces_of_a_stage_leave_load_sharing_to_the_load_factor() -> None:
         same(figures, expected, f"meshes.{mesh}.")
         shared = each["peak_mesh_force"].max() / each["mean_mesh_force"].mean()
         assert figures[f"meshes.{mesh}.dynamic_factor_peak"] < shared
+
+
+def test_idle_meshes_have_no_dynamic_factor() -> None:
+    force = np.array([[4.0, 0.0, 3.0], [2.0, 0.0, 1.0]])
+    assert peak_over_mean(force, force.mean(axis=0)) == 1.5
+    assert peak_over_mean(force[:, 1:2], np.zeros(1)) is None
+    assert peak_over_mean(force[:, 0], 3.0) == 4.0 / 3.0
+    assert peak_over_mean(force[:, 1], 0.0) is None
 
 
 def test_a_name_has_one_meaning() -> None:

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from tribodyn.study.machine.summary import ALTERNATING, table_figures
+from tribodyn.study.machine.summary import ALTERNATING, peak_over_mean, table_figures
 from tribodyn.study.planetary.stage_signals import signals_along
 
 if TYPE_CHECKING:
@@ -69,14 +69,14 @@ def summary_of(case: PlanetaryCase, result: PlanetaryLoadResult) -> dict[str, fl
     forces = {"sun": motion.sun_mesh_force, "ring": motion.ring_mesh_force}
     for number, (mesh, force) in enumerate(forces.items()):
         mean = motion.mean(force)
-        figures = {
+        figures: dict[str, float | None] = {
             "mesh_frequency": stage.mesh_frequency,
             "static_mesh_force": float(result.data["force_per_planet"]),
             "mean_mesh_force": float(mean.mean()),
             **dict.fromkeys(ALTERNATING, float(motion.rms(force).max())),
             "peak_mesh_force": float(force.max()),
             "minimum_mesh_force": float(force.min()),
-            "dynamic_factor_peak": max(force.max(axis=0)[mean > 0.0] / mean[mean > 0.0]),
+            "dynamic_factor_peak": peak_over_mean(force, mean),
             "contact_loss_share": float(motion.mean((force == 0.0).astype(float)).max()),
             "transmission_error_peak_to_peak": float(
                 np.ptp(errors[:, number * count : (number + 1) * count], axis=0).max()
