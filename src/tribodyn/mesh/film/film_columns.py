@@ -163,7 +163,8 @@ def friction_by_law(
             outside = np.broadcast_to(warning.affected, np.shape(load[judge]))
             share = float(load[judge][outside].sum() / load.sum())
             if share >= EXTRAPOLATED_LOAD:
-                text = f"{warning.message} This concerns {share:.0%} of the load."
+                limit = f"less than {EXTRAPOLATED_LOAD:.0%} is not reported"
+                text = f"{warning.message} This concerns {share:.0%} of the load ({limit})."
                 warn(warning.code, text, affected=share)
 
     return warn_of_loaded(lambda: LAWS[law].evaluate(contact, options), of_judged)
