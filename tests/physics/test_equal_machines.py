@@ -1,0 +1,222 @@
+"""Machines that are the same by their physics have the same figures, however they are written."""
+
+from __future__ import annotations
+
+import copy
+import json
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+import tribodyn as td
+
+pytestmark = pytest.mark.filterwarnings("ignore::tribodyn.errors.ModelWarning")
+
+Tables = dict[str, Any]
+#: Accuracy of a motion, of whose residual Newton's method leaves 1e-9.
+_SAME = 3e-8
+#: Teeth of two stages whose meshes repeat together after a few cycles.
+TEETH = [(16, 24, 18, 27), (20, 30, 21, 35), (18, 45, 20, 32), (24, 36, 17, 34)]
+
+
+def drawn(seed: int) -> Tables:
+    """A reducer of two stages on elastic shafts with bearings of given stiffness."""
+    random = np.random.default_rng(seed)
+    teeth = TEETH[seed % len(TEETH)]
+    modules = random.uniform(2.0, 3.0), random.uniform(3.0, 4.0)
+    shafts, bearings, gears = {}, {}, {}
+    for shaft, thick in (("in", 30), ("middle", 45), ("out", 60)):
+        length = random.uniform(150.0, 200.0)
+        shafts[shaft] = {"sections": [[f"{length!r} mm", f"{thick} mm"]]}
+        for end, place in (("left", 10.0), ("right", length - 10.0)):
+            bearings[f"{shaft}_{end}"] = {
+                "shaft": shaft, "position": f"{place!r} mm",
+                "radial_stiffness": f"{random.uniform(150.0, 400.0)!r} N/um",
+                "axial_stiffness": "100 N/um" if end == "left" else "0 N/m",
+            }  # fmt: skip
+    places = {"in": 50.0, "middle": 45.0, "behind": 100.0, "out": 90.0}
+    for name, shaft, place, count, width in zip(
+        "abcd", ("in", "middle", "middle", "out"), places, teeth, (22, 20, 30, 28), strict=True
+    ):
+        gears[name] = {
+            "shaft": shaft, "position": f"{places[place]} mm", "teeth": count,
+            "face_width": f"{width} mm",
+        }  # fmt: skip
+    meshes = {
+        name: {
+            "gears": list(pair),
+            "normal_module": f"{module!r} mm",
+            "angle": f"{random.uniform(-80.0, 80.0)!r} deg",
+        }
+        for name, pair, module in zip(("first", "second"), ("ab", "cd"), modules, strict=True)
+    }
+    if seed % 2:
+        meshes["first"] |= {"helix_angle": "12 deg", "hand": "left"}
+    return {
+        "shafts": shafts, "bearings": bearings, "gears": gears, "meshes": meshes,
+        "stiffness": {"model": "iso6336"},
+        "dynamics": {"backlash": "0.12 mm"},
+        "operation": {
+            "input": "in", "output": "out", "speed": f"{random.uniform(900.0, 2500.0)!r} rpm",
+            "torque": f"{random.uniform(30.0, 60.0)!r} N*m",
+        },
+    }  # fmt: skip
+
+
+def written(tables: Tables) -> str:
+    """Text of a case file."""
+    lines: list[str] = []
+    for name, table in tables.items():
+        parts = table.items() if all(isinstance(v, dict) for v in table.values()) else [("", table)]
+        for part, values in parts:
+            lines.append(f"[{name}.{part}]" if part else f"[{name}]")
+            lines += [f"{key} = {json.dumps(value)}" for key, value in values.items()]
+    return "\n".join(lines) + "\n"
+
+
+def figures(tables: Tables, folder: Path) -> dict[str, float]:
+    """Summary of the run of a case."""
+    path = folder / "case.toml"
+    path.write_text(written(tables), encoding="utf-8")
+    return td.run(td.load_case(path)).summary()
+
+
+def renamed(tables: Tables, new: Callable[[str], str]) -> Tables:
+    """The same with other names of all parts, in the order of the new names."""
+    groups = "shafts", "bearings", "gears", "meshes"
+    named = {name for group in groups for name in tables[group]}
+
+    def value(item: Any) -> Any:
+        if isinstance(item, list):
+            return [value(each) for each in item]
+        return new(item) if isinstance(item, str) and item in named else item
+
+    changed = {}
+    for group, table in tables.items():
+        if group in groups:
+            parts = {new(n): {k: value(v) for k, v in t.items()} for n, t in table.items()}
+            changed[group] = dict(sorted(parts.items()))
+        else:
+            changed[group] = {key: value(v) for key, v in table.items()}
+    return changed
+
+
+def turned(name: str) -> str:
+    """Name with its letters in reverse order, after another letter."""
+    return f"q{name[::-1]}"
+
+
+def assert_same(left: dict[str, float], right: dict[str, float]) -> None:
+    """Equal but for the accuracy of the motion."""
+    assert left.keys() == right.keys()
+    for name, value in left.items():
+        kind = name.rpartition("_")[2]  # force, stiffness, ratio, ...
+        size = max(abs(v) for key, v in left.items() if key.endswith(kind))
+        assert right[name] == pytest.approx(value, rel=_SAME, abs=_SAME * size), name
+
+
+def mirrored(tables: Tables) -> Tables:
+    """The mirror image in the plane of x and z: other senses, hands and angles."""
+    change = copy.deepcopy(tables)
+    for mesh in change["meshes"].values():
+        mesh["angle"] = (
+            mesh["angle"].removeprefix("-") if mesh["angle"][0] == "-" else f"-{mesh['angle']}"
+        )
+        if "hand" in mesh:
+            mesh["hand"] = {"left": "right", "right": "left"}[mesh["hand"]]
+    change["operation"]["speed"] = f"-{change['operation']['speed']}"
+    return change
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_names_and_order_of_parts_change_no_figure(seed: int, tmp_path: Path) -> None:
+    tables = drawn(seed)
+    other = {}
+    for key, value in figures(renamed(tables, turned), tmp_path).items():
+        group, *part, name = key.split(".")
+        other[".".join([group, *(old[1:][::-1] for old in part), name])] = value
+    assert_same(figures(tables, tmp_path), other)
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_a_mirror_image_has_the_same_figures(seed: int, tmp_path: Path) -> None:
+    tables = drawn(seed)
+    first, second = (figures(each, tmp_path) for each in (tables, mirrored(tables)))
+    # Speeds are those about x, against which a mirror image turns.
+    image = {key: -value if key.endswith(".speed") else value for key, value in second.items()}
+    assert_same(first, image)
+
+
+TEETH_OF_PAIR = """
+[{pinion}]
+{shaft_1}
+teeth = 19
+face_width = "22 mm"
+roughness_ra = "0.4 um"
+[{wheel}]
+{shaft_2}
+teeth = 31
+face_width = "20 mm"
+roughness_ra = "0.3 um"
+[{mesh}]
+{gears}
+normal_module = "4 mm"
+normal_pressure_angle = "20 deg"
+center_distance = "{distance} mm"
+helix_angle = "{helix} deg"
+[dynamics]
+{model}
+mesh_law = "force-law"
+[operation]
+{shafts}
+speed = "1400 rpm"
+torque = "90 N*m"
+[lubricant]
+name = "ISO VG 220"
+temperature = "60 degC"
+[stiffness]
+model = "iso6336"
+[film]
+model = "moes"
+[friction]
+law = "xu-2007"
+"""
+AS_PAIR = {
+    "pinion": "gears.pinion", "wheel": "gears.wheel", "mesh": "gears", "gears": 'driver = "pinion"',
+    "shaft_1": "", "shaft_2": "", "model": 'model = "torsional"', "shafts": "",
+}  # fmt: skip
+AS_MACHINE = {
+    "pinion": "gears.p", "wheel": "gears.w", "mesh": "meshes.m", "gears": 'gears = ["p", "w"]',
+    "shaft_1": 'shaft = "one"', "shaft_2": 'shaft = "two"', "model": "",
+    "shafts": 'input = "one"\noutput = "two"',
+}  # fmt: skip
+
+
+@pytest.mark.parametrize(("distance", "helix"), [(100.2, 0), (103.7, 15)])
+def test_a_pair_and_a_machine_of_two_gears_have_one_mesh(
+    distance: float, helix: int, tmp_path: Path
+) -> None:
+    results = []
+    for words in (AS_PAIR, AS_MACHINE):
+        path = tmp_path / "case.toml"
+        path.write_text(TEETH_OF_PAIR.format(distance=distance, helix=helix, **words))
+        results.append(td.run(td.load_case(path)))
+    pair, machine = results
+    table = machine.operation.tables["m"]
+    for name in ("stiffness", "friction_coefficient", "sliding_speed", "hertz_pressure",
+                 "static_transmission_error", "central_film", "load_share"):  # fmt: skip
+        np.testing.assert_allclose(
+            getattr(table, name), getattr(pair.mesh, name), rtol=1e-9, atol=1e-18
+        )
+    alone, joined = pair.summary(), machine.summary()
+    assert joined["meshes.m.static_mesh_force"] == pytest.approx(
+        alone["static_mesh_force"], rel=1e-9
+    )
+    # Their motions have other steps.
+    for name in ("mean_mesh_force", "peak_mesh_force", "minimum_mesh_force"):
+        assert joined[f"meshes.m.{name}"] == pytest.approx(
+            alone[name], abs=3e-3 * alone["mean_mesh_force"]
+        )
