@@ -113,7 +113,7 @@ def test_a_reason_is_said_once_with_all_its_places():
     ]
 
 
-def test_a_long_period_names_its_teeth_and_its_cost():
+def test_a_long_period_names_its_teeth_and_its_cost(monkeypatch):
     teeth = {"z1": 23, "z2": 57, "z3": 22, "z4": 61, "z5": 19, "z6": 71}
     shafts = ("in", "a", "a", "b", "b", "out")
     places = (0.0, 0.0, 0.1, 0.0, 0.1, 0.0)
@@ -137,6 +137,11 @@ def test_a_long_period_names_its_teeth_and_its_cost():
     assert f"{57 * 61} cycles of mesh z1z2" in message
     assert "z3z4 22 : 61" in message
     assert "GB" in message
+    assert "harmonic_balance" in message
+    with monkeypatch.context() as small:
+        small.setattr("tribodyn.study.machine.first_look._memory", lambda: 0.1)
+        with pytest.raises(td.ComputationError, match=r"at least 0\.\d+ GB.* has 0\.1 GB"):
+            td.run(case)
     gears["z3"]["teeth"], gears["z5"]["teeth"] = 19, 61
     with td.errors.collected() as caught:
         warn_of_period(td.study.MachineCase(gears=gears, meshes=meshes, operation=run).machine())

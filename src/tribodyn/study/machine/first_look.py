@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+import math
+import os
 from typing import TYPE_CHECKING
 
-from tribodyn.errors import warn
+from tribodyn.errors import ComputationError, Problem, warn
+from tribodyn.machine import machine_structure
 from tribodyn.study.machine.summary import helix_figures
 
 if TYPE_CHECKING:
@@ -14,6 +17,8 @@ if TYPE_CHECKING:
 #: Mesh cycles of a period above which a warning says what they cost, steps per cycle, and bytes of
 #: a step for each coordinate: three samples of position, velocity and acceleration.
 _LONG_PERIOD, _STEPS, _BYTES = 400, 128, 72
+#: Coordinates that a large structure has at least after its reduction.
+_FEWEST = 60
 
 
 def warn_of_period(machine: Machine) -> None:
@@ -31,8 +36,8 @@ def warn_of_period(machine: Machine) -> None:
     reason, remedy = (
         "the teeth have few common factors",
         (
-            "Numbers of teeth on one shaft with a common factor shorten the period, such as 57 and "
-            "21 in place of 57 and 22"
+            "In Python, harmonic_balance(system(structure, phases=True), machine.phases.frequency) "
+            "finds the motion without a common period"
         ),
     )
     if turning:
@@ -43,6 +48,7 @@ def warn_of_period(machine: Machine) -> None:
         f"the meshes repeat together only after {cycles} cycles of mesh {fastest} "
         f"({1.0 / clock.frequency:.4g} s), because {reason} ({', '.join(pairs)})",
         remedy,
+        machine_structure(machine).size,
     )
 
 
@@ -58,11 +64,24 @@ def warn_of_orders(cycles: int, seconds: float) -> None:
         )
 
 
-def warn_of_steps(cycles: int, period: str, remedy: str) -> None:
-    """Warn of what a long period costs."""
-    gigabytes = 1e-9 * _BYTES * _STEPS * cycles * 100
-    cost = f"{_STEPS * cycles} steps and about {gigabytes:.2g} GB for 100 coordinates"
+def warn_of_steps(cycles: int, period: str, remedy: str, coordinates: int = 100) -> None:
+    """Warn of what a long period costs; refuse what this computer has no memory for."""
+    steps, least = _STEPS * cycles, min(coordinates, _FEWEST)
+    gigabytes = 1e-9 * _BYTES * steps
+    cost = f"{steps} steps and about {gigabytes * coordinates:.2g} GB for {coordinates} coordinates"
+    if gigabytes * least > _memory():
+        what = f"the motion takes {steps} steps and at least {gigabytes * least:.2g} GB"
+        where = f"This computer has {_memory():.3g} GB, and {period}"
+        raise ComputationError(Problem(what, "meshes", where, remedy))
     warn("long-period", f"{period}. Each motion takes {cost}. {remedy}")
+
+
+def _memory() -> float:
+    """Memory of this computer [GB]; endless where the system does not tell."""
+    try:
+        return 1e-9 * os.sysconf("SC_PAGE_SIZE") * os.sysconf("SC_PHYS_PAGES")
+    except (AttributeError, OSError, ValueError):
+        return math.inf
 
 
 def kinematic_figures(case: MachineCase) -> dict[str, float]:
