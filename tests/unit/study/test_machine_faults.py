@@ -17,7 +17,6 @@ from tribodyn.measurement import read, shaft_angle
 from tribodyn.study.faults.impact_transfer import impact_spectrum, pulse
 from tribodyn.study.faults.machine_motion import (
     machine_turning_motion,
-    read_sensor,
     turning_machine,
 )
 from tribodyn.study.faults.machine_section import bearing_impacts, faults_of_mesh
@@ -122,7 +121,7 @@ def test_impacts_reach_the_sensor_through_the_structure() -> None:
     motion = motion_with(outer=DEFECT)
     system, structure = result().operation.system, result().structure
     frequency = np.array([130.0, 640.0, 2100.0])
-    place = read_sensor(motion, "bearings.C.force_z")
+    place = motion.places.place("bearings.C.force_z")
     spectrum = impact_spectrum(motion, "A", place, frequency)
     across = motion.sound.motion.mean(motion.sound.motion.bearing_force[:, 2])[1:3]
     load = -structure.bearing("A").T @ np.array([0.0, *across / np.hypot(*across), 0, 0, 0])
@@ -134,7 +133,7 @@ def test_impacts_reach_the_sensor_through_the_structure() -> None:
         moved = np.linalg.solve(stiffness - omega**2 * system.mass + 1j * omega * damper, load)
         expected = 5e8 * (structure.bearing("C") @ moved)[2]
         assert value == pytest.approx(expected, rel=1e-6)
-    seat = impact_spectrum(motion, "A", read_sensor(motion, "bearings.C.acceleration_z"), frequency)
+    seat = impact_spectrum(motion, "A", motion.places.place("bearings.C.acceleration_z"), frequency)
     ratio = frequency / 2000.0
     np.testing.assert_allclose(
         seat / spectrum, -(ratio**2) / (10.0 * (1 - ratio**2 + 0.1j * ratio)), rtol=1e-9

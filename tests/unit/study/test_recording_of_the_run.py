@@ -14,7 +14,7 @@ import tribodyn
 from tribodyn.cli import call
 from tribodyn.errors import InputError
 from tribodyn.measurement import compare
-from tribodyn.study.faults.motion import even_samples, signal_lines
+from tribodyn.study.faults.turning import even_samples, signal_lines
 
 pytestmark = pytest.mark.filterwarnings("ignore::tribodyn.errors.ModelWarning")
 
@@ -147,7 +147,7 @@ def test_jumps_are_not_aliased_into_the_low_orders() -> None:
         assert lines[0].real == pytest.approx(width, abs=1e-12)
 
 
-@pytest.mark.parametrize("name", ["two-stage-spur", "planetary-stage"])
+@pytest.mark.parametrize("name", ["fzg-roughness", "two-stage-spur", "planetary-stage"])
 def test_a_wrong_sensor_is_refused_before_the_run(
     name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -156,6 +156,7 @@ def test_a_wrong_sensor_is_refused_before_the_run(
 
     monkeypatch.setattr("tribodyn.cases.load.run", no_run)
     monkeypatch.setattr("tribodyn.study.planetary.run.run_parts", no_run)
+    monkeypatch.setattr("tribodyn.study.pipeline.run.prepare_run", no_run)
     out = str(tmp_path / "wave.mat")
     assert call(["recording", name, "--sensor", "bearings.Q.acceleration_y", "--out", out]) == 2
     assert 'no sensor is named "bearings.Q.acceleration_y"' in capsys.readouterr().err
@@ -178,3 +179,20 @@ def test_the_truth_states_torque_and_speed(tmp_path: Path) -> None:
     truth = json.loads(out.with_suffix(".json").read_text(encoding="utf-8"))
     assert truth["operation.torque"] == 90.0
     assert truth["operation.speed"] == pytest.approx(900.0 * np.pi / 30.0)
+
+
+def test_a_tacho_is_on_either_gear_of_a_pair() -> None:
+    result = result_of("fzg-roughness")
+    edges = {
+        gear: np.flatnonzero(
+            np.diff(result.recording("mesh_force", 4.0, tacho=gear, seed=1)["tacho"]) > 0.0
+        )
+        for gear in ("pinion", "wheel")
+    }
+    turns = {gear: np.diff(at).mean() / 25_600.0 for gear, at in edges.items()}
+    assert turns["pinion"] == pytest.approx(1.0 / 15.0, rel=1e-3)
+    assert turns["wheel"] == pytest.approx(1.5 / 15.0, rel=1e-3)
+    with pytest.raises(InputError, match="The shafts are pinion, wheel"):
+        result.recording("mesh_force", 0.1, tacho="input")
+    with pytest.raises(InputError, match="of a sensor on the ring"):
+        result.recording("mesh_force", 0.1, sensor_angle=0.3)

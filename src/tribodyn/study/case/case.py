@@ -47,6 +47,7 @@ from tribodyn.study.case.write import case_rows, case_table, case_toml
 
 if TYPE_CHECKING:
     from tribodyn.model import Option
+    from tribodyn.study.faults.sensors import PairSensors
 
 #: Attributes derived from the tables, which are not pickled.
 _DERIVED = {
@@ -223,6 +224,12 @@ class Case(CaseData, case=True):
             None where the case has no such key.
         """
         return spec_of(self, key)
+
+    @property
+    def _sensors(self) -> PairSensors:
+        from tribodyn.study.faults.sensors import pair_sensors
+
+        return pair_sensors(self)
 
     def to_toml(self) -> str:
         """Write the complete commented case file; it reads back to an equal case.

@@ -13,13 +13,14 @@ from tribodyn.study.faults.kinds import WAVES
 from tribodyn.study.faults.section import (
     PartFaultTable,
     fault_problems,
+    fault_tables,
     located_in,
     part_of,
     read_fault,
 )
 
 if TYPE_CHECKING:
-    from tribodyn.faults import BearingForce, Fault, ShaftExcitation
+    from tribodyn.faults import BearingForce, BearingImpacts, Fault, ShaftExcitation
     from tribodyn.machine import Machine
     from tribodyn.study.machine.case import MachineCase
     from tribodyn.study.planetary.case import PlanetaryCase
@@ -181,13 +182,15 @@ def _force_angle(machine: Machine, mesh: str, gear: str) -> float:
     return math.atan2(sign * normal[2], sign * normal[1])
 
 
-def defects_of(case: MachineCase) -> list[tuple[str, BearingForce]]:
-    """Bearings of a machine that are damaged, and their defects."""
-    return [
-        (part_of(fault.bearing), bearing_impacts(case, fault))
-        for fault in case.faults.values()
-        if fault.kind == "bearing-defect"
-    ]
+def defects_of(case: Any) -> list[tuple[str, BearingImpacts]]:
+    """Damaged bearings, of a pair by the gear of their shaft, and their defects."""
+    defects: list[tuple[str, Any]] = []
+    for fault in fault_tables(case.faults).values():
+        if fault.kind == "bearing-defect" and fault.gear is not None:
+            defects.append((fault.gear, read_fault(fault)))
+        elif isinstance(fault, PartFaultTable) and fault.kind == "bearing-defect":
+            defects.append((part_of(fault.bearing), bearing_impacts(case, fault)))
+    return defects
 
 
 def bearing_impacts(case: MachineCase, fault: PartFaultTable) -> BearingForce:

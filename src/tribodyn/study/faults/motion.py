@@ -2,48 +2,44 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import replace
-from functools import cached_property
-from typing import TYPE_CHECKING, Any, ClassVar
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from tribodyn.errors import collected, warn
 from tribodyn.faults import BearingDefect
 from tribodyn.nomenclature import GEARS
 from tribodyn.progress import SILENT, Progress
 from tribodyn.record import Record, fact, quantity, record
 from tribodyn.study.faults.clock import turning_clock
-from tribodyn.study.faults.recording import unlisted_sensor
+from tribodyn.study.faults.sensors import PairSensors, SensorPlace
+from tribodyn.study.faults.turning import (
+    SAMPLES,
+    Accuracy,
+    PeriodicMotion,
+    even_samples,
+    steady_over_turns,
+)
 from tribodyn.study.pipeline.computed import Computed
-from tribodyn.types import Array, ComplexArray
+from tribodyn.types import Array
 
 if TYPE_CHECKING:
     from tribodyn.dynamics import Response, System
-    from tribodyn.faults import BearingImpacts, DrivenSystem, TurningMesh
+    from tribodyn.faults import BearingImpacts, DrivenSystem, Fault, TurningMesh
     from tribodyn.mesh import MeshTable
     from tribodyn.study.case.case import Case
     from tribodyn.study.pipeline.assembly import Damping
     from tribodyn.study.pipeline.result import Result
     from tribodyn.study.pipeline.run import PreparedRun
 
-#: Signals of a mesh by their names in the data of a result.
-_MESH_SENSORS = {
-    "mesh_force": "mesh_force",
-    "dynamic_transmission_error": "transmission_error",
-}
-#: Steps of the search for each mesh cycle, tried in turn, and even samples of the motion.
-_STEPS, SAMPLES = (128, 256, 512), 512
 #: Mesh order up to which the acceleration is that of the positions; from half of it on in part.
 _SMOOTH = 64
-#: Change of the motion with half the steps, over its size, that is small enough, and the certified
-#: error that suffices beside it.
-_ACCURATE, _CERTIFIED = 2e-3, 1e-6
+_ACCURACY = Accuracy((128, 256, 512), 1e-6)
 
 
 @record
-class TurningMotion(Record):
+class TurningMotion(PeriodicMotion, Record):
     """Motion over whole turns of a period, on evenly spaced samples from tooth 1 on."""
 
     time: Array = quantity("time", unit="s", axis=True)
@@ -62,52 +58,22 @@ class TurningMotion(Record):
     #: Mesh cycles by which the rotation of the drive is ahead of its mean.
     lead: Array = quantity("time", unit="1")
 
-    @cached_property
-    def splines(self) -> dict[Any, Any]:
-        """Signals as smooth functions, by sensor and sampling rate; filled where they are used."""
-        return {}
-
-    tacho: ClassVar = "pinion"  #: gear with the tacho
-
-    @property
-    def period(self) -> float:
-        """Time after which all repeats [s]."""
-        return self.cycles / self.mesh_frequency
-
-    def rotation_frequency(self, gear: str) -> float:
-        """Turns per second of the ``"pinion"`` or the ``"wheel"`` [Hz]."""
-        teeth = self.pinion_teeth if gear == "pinion" else self.wheel_teeth
-        return self.mesh_frequency / teeth
-
-    @property
-    def sensors(self) -> tuple[str, ...]:
-        """Signals of :meth:`signal`."""
-        return tuple(pair_sensors(self.names))
-
-    def signal(self, sensor: str) -> tuple[Array, str]:
-        """Return acceleration of a coordinate, mesh force or transmission error, with its unit."""
-        name = pair_sensor(self.names, sensor)
-        if name in self.names:
-            unit = "rad/s^2" if "_theta" in name else "m/s^2"
-            return self.acceleration[:, self.names.index(name)], unit
-        return getattr(self, name), "N" if name == "mesh_force" else "m"
+    def series(self, place: SensorPlace) -> Array:
+        """Acceleration of a coordinate, mesh force or transmission error."""
+        if place.quantity == "acceleration":
+            return np.asarray(self.acceleration[:, self.names.index(place.part)])
+        return super().series(place)
 
     def impacts(
         self, sensor: str, defect: tuple[str, BearingImpacts], time: Array, seed: int
     ) -> Array | float:
         """Acceleration of the impacts of a bearing of a gear at the sensors of this gear."""
         gear, impacts = defect
-        if (
-            pair_sensor(self.names, sensor).partition("_")[0] != gear
-            or self.signal(sensor)[1] != "m/s^2"
-        ):
+        place = self.places.place(sensor)
+        if place.part.partition("_")[0] != gear or place.unit != "m/s^2":
             return 0.0
         assert isinstance(impacts, BearingDefect)
         return impacts.signal(self.rotation_frequency(gear), time, seed)
-
-    def harmonics(self, sensor: str) -> tuple[Array, ComplexArray]:
-        """Frequencies (k,) [Hz] and complex peak amplitudes (k,) of a signal, from its mean on."""
-        return signal_lines(self.signal(sensor)[0], self.period)
 
     def __repr__(self) -> str:
         """One line."""
@@ -118,72 +84,16 @@ class TurningMotion(Record):
         )
 
 
-def pair_sensors(names: Sequence[str]) -> dict[str, str]:
-    """Coordinates and attributes of the signals of a pair, by their names in its data."""
-    from tribodyn.study.pipeline.response_series import centre_column, directions_of
-
-    by_coordinate = {name: name for name in names}
-    for gear in GEARS:
-        for direction, (axis, _) in directions_of(names).items():
-            column = centre_column(names, gear, axis)
-            if column is not None:
-                by_coordinate[names[column]] = f"acceleration_{direction}_{gear}"
-    return {signal: name for name, signal in by_coordinate.items()} | _MESH_SENSORS
-
-
-def pair_sensor(names: Sequence[str], sensor: str) -> str:
-    """Coordinate or attribute of a signal, whose name is also accepted; refuse another one."""
-    by_name = pair_sensors(names)
-    if sensor in by_name or sensor in by_name.values():
-        return by_name.get(sensor, sensor)
-    alike = [a if a == b else f"{b} or {a}" for a, b in by_name.items()]
-    raise unlisted_sensor(sensor, alike)
-
-
-def even_samples(phase: Array, count: int) -> Callable[[Array], Array]:
-    """Means of periodic values (p, ...) over ``count`` equal intervals about their middles."""
-    # Samples at the middles would alias jumps, which are two values at one phase.
-    order = np.argsort(phase, kind="stable")
-    order = np.concatenate((order[-1:], order, order[:1]))
-    place = phase[order] + np.array([-1.0, *np.zeros(phase.size), 1.0])
-    widths = np.diff(place)
-    edges = (np.arange(count + 1) - 0.5) / count
-    turned = (edges < place[0]).astype(float)
-    edges += turned
-    before = np.clip(np.searchsorted(place, edges, side="right") - 1, 0, widths.size - 1)
-    part = np.divide(
-        edges - place[before], widths[before], out=np.zeros(count + 1), where=widths[before] > 0.0
-    )
-
-    def sampled(values: Array) -> Array:
-        rows = values[order].reshape(order.size, -1)
-        steps = 0.5 * (rows[1:] + rows[:-1]) * widths[:, None]
-        integral = np.concatenate((np.zeros((1, rows.shape[1])), np.cumsum(steps, axis=0)))
-        change = (rows[before + 1] - rows[before]) * part[:, None]
-        reached = (rows[before] + 0.5 * change) * (part * widths[before])[:, None]
-        period = turned[:, None] * integral[-2]  # from the first to the last but one place
-        means = np.diff(integral[before] + reached - period, axis=0) * count
-        return np.asarray(means.reshape(count, *values.shape[1:]))
-
-    return sampled
-
-
-def signal_lines(values: Array, period: float) -> tuple[Array, ComplexArray]:
-    """Frequencies and complex peak amplitudes of :func:`even_samples`, from the mean on."""
-    lines = np.fft.rfft(values) / values.size
-    lines /= np.sinc(np.arange(lines.size) / values.size)  # gain of the means
-    lines[1:] *= 2.0
-    return np.arange(lines.size) / period, lines
-
-
-def turning_mesh_of(case: Case, table: MeshTable | None = None) -> TurningMesh:
-    """Force law of a case with its faults over whole turns; of hypoid pairs from their table."""
+def turning_mesh_of(
+    case: Case, table: MeshTable | None = None, faults: Sequence[Fault] | None = None
+) -> TurningMesh:
+    """Force law over whole turns with the faults of a case, or others; hypoid ones by table."""
     from tribodyn.faults import turning_mesh
     from tribodyn.faults.turning_table import turning_table
     from tribodyn.study.faults.section import bevel_gears, gear_faults
     from tribodyn.study.pipeline.tooth_contact import loaded_settings
 
-    faults = tuple(gear_faults(case).values())
+    faults = tuple(gear_faults(case).values()) if faults is None else tuple(faults)
     if case.gears.kind == "hypoid":
         assert table is not None
         return turning_table(table, bevel_gears(case, table), faults, case.gears.driver)
@@ -239,7 +149,6 @@ def driven_system(
 
 def turning_motion(result: Result | PreparedRun, progress: Progress = SILENT) -> TurningMotion:
     """Compute the steady motion over whole turns; with equal teeth it is that of the result."""
-    from tribodyn.dynamics import harmonic_balance
     from tribodyn.study.case.to_models import locate_errors
     from tribodyn.study.pipeline.response_series import is_steady
 
@@ -254,22 +163,7 @@ def turning_motion(result: Result | PreparedRun, progress: Progress = SILENT) ->
                 return _motion_of_run(sound, mesh)
         driven = driven_system(case, result.mesh, result.damping, mesh)
         frequency = result.mesh.mesh_frequency / driven.cycles
-        response: Response | None = None
-        for steps in _STEPS:
-            with collected() as model_warnings:
-                response = harmonic_balance(
-                    driven.system,
-                    frequency,
-                    steps=steps * driven.cycles // driven.system.cycles,
-                    start=response,
-                    tolerance=_CERTIFIED,
-                    progress=progress,
-                )
-            if not response.step_error > _ACCURATE:
-                break
-        for warning in model_warnings:
-            warn(warning.code, warning.message)
-    assert response is not None
+        response = steady_over_turns(driven, frequency, _ACCURACY, progress=progress)
     return _driven_motion(case, mesh, driven, response, result.mesh.mesh_frequency)
 
 
@@ -370,6 +264,9 @@ def _motion(
         mesh=mesh,
         mesh_frequency=mesh_frequency,
         cycles=cycles,
+        places=PairSensors(response.names),
+        turns={gear: cycles / count for gear, count in teeth.items()},
+        tacho=GEARS[0],
         pinion_teeth=teeth[GEARS[0]],
         wheel_teeth=teeth[GEARS[1]],
         response=response,

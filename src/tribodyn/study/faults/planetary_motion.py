@@ -5,41 +5,39 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from dataclasses import dataclass, replace
-from functools import cached_property
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from tribodyn.dynamics import harmonic_balance
 from tribodyn.dynamics.equations.clock import on_clock
 from tribodyn.dynamics.equations.system import CONTACT_ENTRIES, FRICTION_ENTRIES
-from tribodyn.errors import InputError, collected, warn
 from tribodyn.interrupt import single_blas_thread
 from tribodyn.machine.planetary.ring_sensor import passing_weights
 from tribodyn.study.faults.driven_shafts import drive_stage
-from tribodyn.study.faults.machine_motion import repeated
-from tribodyn.study.faults.motion import SAMPLES, even_samples, signal_lines
 from tribodyn.study.faults.section import part_of
-from tribodyn.study.faults.sensors import (
-    check_stage_sensor,
-    check_stage_tacho,
-    seat_accelerance,
-    stage_sensors,
+from tribodyn.study.faults.sensors import SensorPlace, stage_sensors
+from tribodyn.study.faults.turning import (
+    SAMPLES,
+    Accuracy,
+    PeriodicMotion,
+    even_samples,
+    refuse_long_period,
+    repeated,
+    steady_over_turns,
 )
 from tribodyn.study.machine.first_look import warn_of_orders
-from tribodyn.types import Array, ComplexArray
+from tribodyn.types import Array
 
 if TYPE_CHECKING:
     from tribodyn.dynamics import System
-    from tribodyn.faults import BearingImpacts
     from tribodyn.study.planetary.case import PlanetaryCase
     from tribodyn.study.planetary.motion import PlanetaryMotion
     from tribodyn.study.planetary.result import PlanetaryLoadResult
 
-#: Steps of a mesh cycle, samples of which all signals are made, and the certified error.
-_STEPS, _CERTIFIED = 200, 1e-3
+_ACCURACY = Accuracy((200,), 1e-3)
 #: Most mesh cycles of a motion, and of a signal of the ring.
 _MOST, _MOST_OF_RING = 2000, 20_000
+_SHORTER = "Give faults of one gear only, and orders that repeat after few turns"
 
 
 class RingSensor(NamedTuple):
@@ -50,7 +48,7 @@ class RingSensor(NamedTuple):
 
 
 @dataclass(frozen=True, eq=False)
-class PlanetaryTurningMotion:
+class PlanetaryTurningMotion(PeriodicMotion):
     """Motion of a stage over whole turns of its gears, and what its sensors receive."""
 
     case: PlanetaryCase
@@ -58,90 +56,35 @@ class PlanetaryTurningMotion:
     motion: PlanetaryMotion  #: over the mesh cycles after which the teeth repeat
     repeat: int  #: these mesh cycles
     sensor: RingSensor
-    tacho: str  #: member with the tacho
-    #: Mesh cycles by which the rotation is ahead of its mean, over the cycles of the motion.
-    lead: Callable[[Array], Array]
 
-    @cached_property
-    def splines(self) -> dict[Any, Any]:
-        """Signals as smooth functions, by sensor and sampling rate; filled where they are used."""
-        return {}
-
-    @property
-    def cycles(self) -> int:
-        """Mesh cycles until the planets pass the sensor with the same teeth again."""
-        return math.lcm(self.repeat, self._teeth("ring"))
-
-    @property
-    def mesh_frequency(self) -> float:
-        """Mesh cycles per second [Hz]."""
-        return self.sound.kinematics.mesh_frequency
-
-    @property
-    def period(self) -> float:
-        """Time after which all repeats [s]."""
-        return self.cycles / self.mesh_frequency
-
-    def _teeth(self, role: str) -> int:
-        return abs(self.case.gears[getattr(self.case.table, role)].teeth)
-
-    def rotation_frequency(self, shaft: str) -> float:
-        """Turns of a member per second, or of a planet about its pin [Hz]."""
-        check_stage_tacho(self.case, shaft)
-        members = {name: role for role, name in self.case.members.items()}
-        planet = self.case.table.planet
-        stage = self.sound.kinematics
-        speed = stage.relative_speeds["planet"] if shaft == planet else stage.speeds[members[shaft]]
-        if speed == 0.0:
-            what, why = f"{shaft} stands", "A tacho counts the turns of a member"
-            raise InputError(what, "argument tacho", why, "Name another member")
-        return abs(speed) / (2.0 * math.pi)
-
-    @property
-    def sensors(self) -> tuple[str, ...]:
-        """Signals of :meth:`signal`."""
-        return stage_sensors(self.case)
-
-    def signal(self, sensor: str) -> tuple[Array, str]:
-        """Force or acceleration on even samples of the period, with its unit."""
-        check_stage_sensor(self.case, sensor)
+    def series(self, place: SensorPlace) -> Array:
+        """Force of a mesh, or those of all planets that pass the ring."""
         count, motion = SAMPLES * self.repeat, self.motion
-        rounds = self.cycles // self.repeat
-        if sensor.startswith("planet_"):
-            number, _, name = sensor.removeprefix("planet_").partition(".")
-            columns = getattr(motion, name)[:, int(number) - 1 : int(number)]
-        else:
+        if place.part == "ring":
             columns = motion.ring_mesh_force
+        else:
+            number = int(place.part.removeprefix("planet_"))
+            columns = getattr(motion, place.quantity)[:, number - 1 : number]
         clock = motion.phase / self.repeat
-        even = np.tile(even_samples(clock, count)(columns), (rounds, 1))
-        if not sensor.startswith("planet_"):
+        even = np.tile(even_samples(clock, count)(columns), (self.cycles // self.repeat, 1))
+        if place.part == "ring":
             even = even * self._weights(len(even))
-        values = even.sum(axis=1)
-        seat = seat_accelerance(self.case)
-        if sensor == "ring.acceleration" and seat is not None:
-            lines = np.fft.rfft(values)
-            lines *= seat(np.arange(lines.size, dtype=float) / self.period)
-            return np.fft.irfft(lines, values.size), "m/s^2"
-        return np.asarray(values), "N"
+        return np.asarray(even.sum(axis=1))
+
+    def sensed_from(self, tacho: str | None, angle: float, window: Any) -> PlanetaryTurningMotion:
+        """The motion with its sensor at an angle of the ring, and its tacho on another member."""
+        place = RingSensor(angle, window)
+        return replace(self, sensor=place, tacho=self.tacho if tacho is None else tacho)
 
     def _weights(self, count: int) -> Array:
         """Weight of each planet at the sensor on the samples (count, N)."""
         stage, load = self.sound.kinematics, self.sound
         turn = 1.0 if stage.torques["sun"] > 0.0 else -1.0
         at = np.arange(count) / SAMPLES
-        turns = (at + self.lead(at / self.repeat % 1.0)) / self._teeth("ring")
+        ring = abs(self.case.gears[self.case.table.ring].teeth)
+        turns = (at + self.lead(at / self.repeat % 1.0)) / ring
         carrier = -np.sign(stage.relative_speeds["ring"]) * turns  # relative to the ring
         return passing_weights(turn * load.phases.angles, carrier, *self.sensor)
-
-    def harmonics(self, sensor: str) -> tuple[Array, ComplexArray]:
-        """Frequencies (k,) [Hz] and complex peak amplitudes (k,) of a signal, from its mean on."""
-        return signal_lines(self.signal(sensor)[0], self.period)
-
-    def impacts(
-        self, sensor: str, defect: tuple[str, BearingImpacts], time: Array, seed: int
-    ) -> float:
-        """Nothing: the bearings of a stage have no geometry."""
-        return 0.0
 
     def __repr__(self) -> str:
         """One line."""
@@ -229,25 +172,31 @@ def planetary_turning_motion(
     driven = drive_stage(case, sound, with_waves(sound.system, waves, cycles), cycles)
     cycles = driven.cycles
     ring = abs(case.gears[case.table.ring].teeth)
-    if cycles > _MOST or math.lcm(cycles, ring) > _MOST_OF_RING:
-        what = f"the stage repeats only after {math.lcm(cycles, ring)} mesh cycles"
-        why = f"At most {_MOST} of the motion and {_MOST_OF_RING} of the ring are computed"
-        remedy = "Give faults of one gear only, and orders that repeat after few turns"
-        raise InputError(what, "faults", why, remedy)
+    frequency, passing = sound.kinematics.mesh_frequency, math.lcm(cycles, ring)
+    for count, most in ((cycles, _MOST), (passing, _MOST_OF_RING)):
+        refuse_long_period(count, count / frequency, most, _SHORTER)
     motion = sound.motion
     if driven.lead.lines.any():
-        warn_of_orders(cycles, cycles / sound.kinematics.mesh_frequency)
+        warn_of_orders(cycles, cycles / frequency)
     if case.faults:
-        frequency, system = sound.kinematics.mesh_frequency, driven.system
         start = repeated(sound.response, frequency, frequency / cycles)
-        with single_blas_thread(), collected() as model_warnings:
-            response = harmonic_balance(
-                system, frequency / cycles, steps=math.ceil(_STEPS * cycles / system.cycles),
-                start=start, tolerance=_CERTIFIED,
-            )  # fmt: skip
-        for warning in model_warnings:
-            warn(warning.code, warning.message)
+        with single_blas_thread():
+            response = steady_over_turns(driven, frequency / cycles, _ACCURACY, start)
         motion = planetary_motion(response, sound.data, case.turn(sound.load))
         motion = replace(motion, phase=motion.phase * cycles, mesh_frequency=frequency)
-    sensor, tacho = RingSensor(0.0, None), case.ends[0]
-    return PlanetaryTurningMotion(case, sound, motion, cycles, sensor, tacho, driven.lead)
+    stage, period = sound.kinematics, passing / frequency
+    speeds = {name: stage.speeds[role] for role, name in case.members.items()}
+    speeds[case.table.planet] = stage.relative_speeds["planet"]  # about its pin
+    return PlanetaryTurningMotion(
+        cycles=passing,  # until the planets pass the sensor with the same teeth again
+        mesh_frequency=frequency,
+        places=stage_sensors(case),
+        turns={name: abs(speed) / (2.0 * math.pi) * period for name, speed in speeds.items()},
+        tacho=case.ends[0],
+        lead=driven.lead,
+        case=case,
+        sound=sound,
+        motion=motion,
+        repeat=cycles,
+        sensor=RingSensor(0.0, None),
+    )

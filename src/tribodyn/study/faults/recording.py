@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, Any, NamedTuple, Protocol
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
@@ -14,6 +14,7 @@ from tribodyn.types import Array
 if TYPE_CHECKING:
     from tribodyn.faults import BearingImpacts
     from tribodyn.measurement import Recording
+    from tribodyn.study.faults.turning import PeriodicMotion
 
 #: Most samples of a recording.
 _MOST = 2**26
@@ -30,51 +31,6 @@ class Scatter(NamedTuple):
     speed_fluctuation: float  #: standard deviation of the speed over its mean
     tacho_jitter: float  #: standard deviation of the edges of the tacho over a turn
     seed: int
-
-
-class PeriodicMotion(Protocol):
-    """What a recording needs of a motion."""
-
-    @property
-    def cycles(self) -> int:
-        """Mesh cycles of the period."""
-
-    @property
-    def mesh_frequency(self) -> float:
-        """Mesh cycles per second [Hz]."""
-
-    @property
-    def period(self) -> float:
-        """Time after which all repeats [s]."""
-
-    @property
-    def tacho(self) -> str:
-        """Shaft with the tacho."""
-
-    @property
-    def splines(self) -> dict[Any, Any]:
-        """Signals as smooth functions; filled where they are used."""
-
-    def signal(self, sensor: str) -> tuple[Array, str]:
-        """Means over even intervals of a period about each sample, and their unit."""
-
-    @property
-    def lead(self) -> Any:
-        """Mesh cycles by which the rotation is ahead of its mean: even samples, or a function."""
-
-    def rotation_frequency(self, shaft: str, /) -> float:
-        """Turns of a shaft per second [Hz]."""
-
-    def impacts(
-        self, sensor: str, defect: tuple[str, BearingImpacts], time: Array, seed: int
-    ) -> Array | float:
-        """What a sensor receives of a damaged bearing, the shaft or bearing of which is named."""
-
-
-def unlisted_sensor(sensor: str, sensors: Sequence[str]) -> InputError:
-    """Error of a sensor that a motion does not have."""
-    why, remedy = f"The sensors are {', '.join(sensors)}", "Name one of these"
-    return InputError(f'no sensor is named "{sensor}"', "argument sensor", why, remedy)
 
 
 def recording_of(

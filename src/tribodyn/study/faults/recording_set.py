@@ -9,6 +9,7 @@ import json
 import os
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -18,14 +19,16 @@ from tribodyn.checks import require_whole
 from tribodyn.errors import InputError
 from tribodyn.files import atomic_write
 from tribodyn.progress import SILENT, Progress
+from tribodyn.study.faults.machine_section import defects_of
 from tribodyn.study.faults.motion import turning_motion
 from tribodyn.study.faults.recording import Scatter, recording_of
-from tribodyn.study.faults.section import bearing_defects
+from tribodyn.study.faults.sensors import check_sensors
 from tribodyn.study.studies.study_axes import Axis, read_axes
 
 if TYPE_CHECKING:
     from tribodyn.measurement import Recording
     from tribodyn.study.case.case import Case
+    from tribodyn.study.faults.turning import PeriodicMotion
     from tribodyn.study.machine.user_tables import PartsCase
 
 #: Files of a set: description, labels, and recordings of one variant.
@@ -222,22 +225,16 @@ def _seed(seed: int, variant: int, draw: int) -> int:
 def _recorder(case: Case | PartsCase, sensor: str) -> Callable[[float, float, Scatter], Recording]:
     """Function of duration, rate and scatter that samples the motion of a case."""
     from tribodyn.study.machine.user_tables import PartsCase
-
-    if isinstance(case, PartsCase):
-        from tribodyn.study.faults.sensors import check_sensors
-        from tribodyn.study.planetary.run import run_parts
-
-        check_sensors(case, sensor)
-        result: Any = run_parts(case.replace({"load_cases": None}))
-        return lambda duration, rate, draw: result.recording(
-            sensor, duration, rate, **draw._asdict()
-        )
     from tribodyn.study.pipeline.run import prepare_run
+    from tribodyn.study.planetary.run import run_parts
 
-    motion, defects = turning_motion(prepare_run(case)), tuple(bearing_defects(case).values())
-    return lambda duration, rate, draw: recording_of(
-        motion, defects, [sensor], duration, rate, draw
-    )
+    check_sensors(case._sensors, sensor)
+    motion: PeriodicMotion
+    if isinstance(case, PartsCase):
+        motion = run_parts(case.replace({"load_cases": None})).turning_motion
+    else:
+        motion = turning_motion(prepare_run(case))
+    return partial(recording_of, motion, defects_of(case), sensor)
 
 
 def _write(

@@ -215,6 +215,13 @@ def _stated(fault: FaultTable) -> dict[str, Any]:
     }
 
 
+def fault_tables(
+    faults: Faults | Mapping[str, FaultTable] | None,
+) -> Mapping[str, FaultTable]:
+    """Tables by name."""
+    return vars(faults) if isinstance(faults, Faults) else faults or {}
+
+
 def fault_problems(
     faults: Faults | Mapping[str, FaultTable] | None,
     case: str = "pair",
@@ -222,7 +229,7 @@ def fault_problems(
 ) -> KeyedProblems:
     """Report kinds that a case lacks, missing and further keys, and names of no part."""
     problems: KeyedProblems = []
-    for name, fault in (vars(faults) if isinstance(faults, Faults) else faults or {}).items():
+    for name, fault in fault_tables(faults).items():
         if why := LACKS[case].get(fault.kind):
             remedy = f"The kinds of a {case} are {', '.join(kinds_in(case))}"
             wrong = [("kind", Problem(f'kind = "{fault.kind}"', "", why, remedy))]
@@ -345,8 +352,7 @@ def bevel_gears(case: Any, table: MeshTable) -> dict[str, BevelGear]:
 
 def _faults_of(case: Any, kind: type[T]) -> dict[str, T]:
     """Faults of one class, by name."""
-    tables = vars(case.faults) if case.faults is not None else {}
-    faults = {name: read_fault(fault) for name, fault in tables.items()}
+    faults = {name: read_fault(fault) for name, fault in fault_tables(case.faults).items()}
     return {name: fault for name, fault in faults.items() if isinstance(fault, kind)}
 
 
@@ -362,11 +368,3 @@ def excitations(case: Any) -> dict[str, ShaftExcitation]:
     from tribodyn.faults import ShaftExcitation
 
     return _faults_of(case, ShaftExcitation)
-
-
-def bearing_defects(case: Any) -> dict[str, tuple[str, BearingDefect]]:
-    """Gear of the shaft and defect of the bearings of a case, by name."""
-    from tribodyn.faults import BearingDefect
-
-    defects = _faults_of(case, BearingDefect)
-    return {name: (vars(case.faults)[name].gear, defect) for name, defect in defects.items()}

@@ -1,38 +1,92 @@
-"""Sensors of machines and planetary stages, checked before their motion is computed."""
+"""Sensors of pairs, machines and planetary stages, checked before their motion is computed."""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from functools import cached_property
+from typing import TYPE_CHECKING, Any, NamedTuple, Protocol
 
 import numpy as np
 
 from tribodyn.errors import InputError
-from tribodyn.study.faults.recording import unlisted_sensor
+from tribodyn.nomenclature import GEARS
 from tribodyn.types import Array, ComplexArray
 
 if TYPE_CHECKING:
     from tribodyn.machine import Machine
-    from tribodyn.study.machine.case import MachineCase
-    from tribodyn.study.machine.user_tables import PartsCase
+    from tribodyn.study.case.case import Case
     from tribodyn.study.planetary.case import PlanetaryCase
 
 _AXES = {"x": (1.0, 0.0, 0.0), "y": (0.0, 1.0, 0.0), "z": (0.0, 0.0, 1.0)}
 #: Signals of a mesh.
 _OF_MESH = ("mesh_force", "transmission_error")
+#: Signals of the mesh of a pair by their names in the data of a result.
+_OF_PAIR = {"mesh_force": "mesh_force", "dynamic_transmission_error": "transmission_error"}
+_RIGID = "Give seat_mass and seat_frequency in [dynamics]"
 
 
-@dataclass(frozen=True)
-class SensorPlace:
+class SensorPlace(NamedTuple):
     """Where a sensor is, and what it measures."""
 
     quantity: str  #: ``acceleration``, ``force``, ``mesh_force`` or ``transmission_error``
-    part: str  #: node of the housing, bearing or mesh
-    direction: Array  #: of an acceleration or a force
+    part: str  #: coordinate, node of the housing, bearing, mesh or planet
     unit: str
+    direction: Array = np.zeros(3)  #: of an acceleration or a force
     seat: Callable[[Array], ComplexArray] | None = None  #: between the force and the acceleration
+
+
+class Sensors(Protocol):
+    """Sensors of a case."""
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """Names of all sensors."""
+
+    @property
+    def shafts(self) -> tuple[str, ...]:
+        """Shafts, gears of a pair, or members of a stage, that may have the tacho."""
+
+    def place(self, sensor: str) -> SensorPlace:
+        """Place of a sensor by its name; refuse another name."""
+
+
+@dataclass(frozen=True)
+class PairSensors:
+    """Sensors of a pair with these coordinates."""
+
+    coordinates: tuple[str, ...]
+    shafts: tuple[str, ...] = GEARS
+
+    @cached_property
+    def _by_name(self) -> dict[str, str]:
+        """Coordinates and attributes of the signals by their names in the data of a result."""
+        from tribodyn.study.pipeline.response_series import centre_column, directions_of
+
+        by_coordinate = {name: name for name in self.coordinates}
+        for gear in GEARS:
+            for direction, (axis, _) in directions_of(self.coordinates).items():
+                column = centre_column(self.coordinates, gear, axis)
+                if column is not None:
+                    by_coordinate[self.coordinates[column]] = f"acceleration_{direction}_{gear}"
+        return {signal: name for name, signal in by_coordinate.items()} | _OF_PAIR
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """Names of all sensors; coordinates stand for their accelerations."""
+        return tuple(self._by_name)
+
+    def place(self, sensor: str) -> SensorPlace:
+        """Coordinate or mesh of a signal, whose attribute is also accepted."""
+        by_name = self._by_name
+        if sensor not in by_name and sensor not in by_name.values():
+            alike = [a if a == b else f"{b} or {a}" for a, b in by_name.items()]
+            raise unlisted_sensor(sensor, alike)
+        name = by_name.get(sensor, sensor)
+        if name in self.coordinates:
+            return SensorPlace("acceleration", name, "rad/s^2" if "_theta" in name else "m/s^2")
+        return SensorPlace(name, "mesh", "N" if name == "mesh_force" else "m")
 
 
 @dataclass(frozen=True)
@@ -49,6 +103,11 @@ class MachineSensors:
         return tuple(housing.nodes or ()) if housing is not None else ()
 
     @property
+    def shafts(self) -> tuple[str, ...]:
+        """Names of the shafts."""
+        return tuple(self.machine.clock.turns)
+
+    @property
     def names(self) -> tuple[str, ...]:
         """Names of all sensors; an angle from y towards z may stand for x, y or z."""
         bearings, axes = self.machine.bearings, "xyz"
@@ -60,39 +119,66 @@ class MachineSensors:
             *(f"meshes.{n}.{s}" for n in self.machine.meshes for s in _OF_MESH),
         )
 
-    def check_tacho(self, shaft: str) -> None:
-        """Refuse a shaft that there is not."""
-        shafts = tuple(self.machine.clock.turns)
-        if shaft not in shafts:
-            why = f"The shafts are {', '.join(shafts)}"
-            raise InputError(f'there is no shaft "{shaft}"', "argument tacho", why, "Name one")
-
     def place(self, sensor: str) -> SensorPlace:
         """Place of a sensor by its name."""
         group, _, inside = sensor.partition(".")
         part, _, name = inside.rpartition(".")
         quantity, _, axis = name.rpartition("_")
         if sensor in self.names and group == "meshes":
-            return SensorPlace(name, part, np.zeros(3), "N" if name == "mesh_force" else "m")
+            return SensorPlace(name, part, "N" if name == "mesh_force" else "m")
         direction = _direction(axis)
         bearing = self.machine.bearings.get(part) if group == "bearings" else None
         if direction is not None and bearing is not None and quantity == "force":
-            return SensorPlace("force", part, direction, "N")
+            return SensorPlace("force", part, "N", direction)
         if direction is not None and quantity == "acceleration":
             if group == "housing" and part in self.nodes:
-                return SensorPlace("acceleration", part, direction, "m/s^2")
+                return SensorPlace("acceleration", part, "m/s^2", direction)
             if bearing is not None and bearing.node is not None:
-                return SensorPlace("acceleration", bearing.node, direction, "m/s^2")
+                return SensorPlace("acceleration", bearing.node, "m/s^2", direction)
             if bearing is not None and self.seat is not None:
-                return SensorPlace("force", part, direction, "m/s^2", self.seat)
+                return SensorPlace("force", part, "m/s^2", direction, self.seat)
             if bearing is not None:
                 what = f"the seat of bearing {part} is rigid, so that nothing accelerates"
                 why = "There is no housing, and no seat that moves"
-                remedy = (
-                    'Give seat_mass and seat_frequency in [dynamics], such as "10 kg" and "2 kHz"'
-                )
+                remedy = f'{_RIGID}, such as "10 kg" and "2 kHz"'
                 raise InputError(what, "argument sensor", why, remedy)
         raise unlisted_sensor(sensor, self.names)
+
+
+@dataclass(frozen=True)
+class StageSensors:
+    """Sensors of a planetary stage."""
+
+    planets: int
+    shafts: tuple[str, ...]  #: members, and the planet that turns about its pin
+    seat: Callable[[Array], ComplexArray] | None
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """Names of all sensors."""
+        planets = range(1, self.planets + 1)
+        seat = ("ring.acceleration",) if self.seat else ()
+        forces = (f"planet_{i}.{mesh}_mesh_force" for mesh in ("sun", "ring") for i in planets)
+        return (*seat, "ring.force", *forces)
+
+    def place(self, sensor: str) -> SensorPlace:
+        """Planet and mesh of a sensor, or the ring that all planets pass."""
+        if sensor == "ring.acceleration" and self.seat is None:
+            what, why = "the ring is rigid at its sensor", "Nothing accelerates there"
+            raise InputError(what, "argument sensor", why, _RIGID)
+        if sensor not in self.names:
+            raise unlisted_sensor(sensor, self.names)
+        part, _, quantity = sensor.partition(".")
+        if part == "ring":
+            seat = self.seat if quantity == "acceleration" else None
+            return SensorPlace("passing_force", part, "m/s^2" if seat else "N", seat=seat)
+        return SensorPlace(quantity, part, "N")
+
+
+def unlisted_sensor(sensor: str, sensors: Sequence[str]) -> InputError:
+    """Error of a sensor that a motion does not have."""
+    why, remedy = f"The sensors are {', '.join(sensors)}", "Name one of these"
+    return InputError(f'no sensor is named "{sensor}"', "argument sensor", why, remedy)
 
 
 def _direction(axis: str) -> Array | None:
@@ -108,9 +194,8 @@ def _direction(axis: str) -> Array | None:
     return np.array([0.0, math.cos(angle), math.sin(angle)])
 
 
-def seat_accelerance(case: MachineCase | PlanetaryCase) -> Callable[[Array], ComplexArray] | None:
-    """Accelerance of a seat of one mass on a spring; None where the case has none."""
-    data = case.motion
+def seat_accelerance(data: Any) -> Callable[[Array], ComplexArray] | None:
+    """Accelerance of a seat of one mass on a spring, by its table; None where it has none."""
     if data.seat_mass is None or data.seat_frequency is None:
         return None
     mass, natural, damping = data.seat_mass, data.seat_frequency, data.seat_damping_ratio
@@ -122,50 +207,34 @@ def seat_accelerance(case: MachineCase | PlanetaryCase) -> Callable[[Array], Com
     return accelerance
 
 
-def stage_sensors(case: PlanetaryCase) -> tuple[str, ...]:
-    """Names of the sensors of a planetary stage."""
-    planets = range(1, case.table.count + 1)
-    seat = ("ring.acceleration",) if seat_accelerance(case) else ()
-    forces = (f"planet_{i}.{mesh}_mesh_force" for mesh in ("sun", "ring") for i in planets)
-    return (*seat, "ring.force", *forces)
+def pair_sensors(case: Case) -> PairSensors:
+    """Sensors of a pair, by the coordinates of its structure."""
+    from tribodyn.errors import collected
+    from tribodyn.study.case.to_models import locate_errors
+    from tribodyn.study.pipeline.assembly import whole_system
+    from tribodyn.study.pipeline.tooth_contact import mesh_of
+
+    with locate_errors(case), collected():  # the run raises the warnings
+        mesh = mesh_of(case, rehearsal=True)
+        return PairSensors(tuple(whole_system(case, mesh, rehearsal=True).names))
 
 
-def check_stage_sensor(case: PlanetaryCase, sensor: str) -> None:
-    """Refuse a sensor that a stage does not have."""
-    known = stage_sensors(case)
-    if sensor in known:
-        return
-    if sensor == "ring.acceleration":
-        what, why = "the ring is rigid at its sensor", "Nothing accelerates there"
-        remedy = "Give seat_mass and seat_frequency in [dynamics]"
-        raise InputError(what, "argument sensor", why, remedy)
-    raise unlisted_sensor(sensor, known)
+def stage_sensors(case: PlanetaryCase) -> StageSensors:
+    """Sensors of a planetary stage."""
+    shafts = (*case.members.values(), case.table.planet)
+    return StageSensors(case.table.count, shafts, seat_accelerance(case.motion))
 
 
-def check_stage_tacho(case: PlanetaryCase, member: str) -> None:
-    """Refuse a member that a stage does not have, or that stands."""
-    members = {name: role for role, name in case.members.items()}
-    planet = case.table.planet
-    if member not in (*members, planet):
-        why = f"The members are {', '.join((*members, planet))}"
-        raise InputError(f'there is no member "{member}"', "argument tacho", why, "Name one")
-
-
-def check_sensors(case: PartsCase, sensor: str | Sequence[str], tacho: str | None = None) -> None:
-    """Refuse sensors and tachos that a machine or a stage does not have, before its motion."""
-    from tribodyn.study.machine.case import MachineCase
-    from tribodyn.study.planetary.case import PlanetaryCase
-
-    sensors = [sensor] if isinstance(sensor, str) else sensor
-    if isinstance(case, PlanetaryCase):
-        for name in sensors:
-            check_stage_sensor(case, name)
-        if tacho is not None:
-            check_stage_tacho(case, tacho)
-        return
-    assert isinstance(case, MachineCase)
-    places = MachineSensors(case.machine(), seat_accelerance(case))
-    for name in sensors:
+def check_sensors(places: Sensors, sensor: str | Sequence[str], tacho: str | None = None) -> None:
+    """Refuse sensors and a tacho that a case does not have, before its motion."""
+    for name in [sensor] if isinstance(sensor, str) else sensor:
         places.place(name)
     if tacho is not None:
-        places.check_tacho(tacho)
+        check_tacho(places, tacho)
+
+
+def check_tacho(places: Sensors, shaft: str) -> None:
+    """Refuse a shaft that there is not."""
+    if shaft not in places.shafts:
+        why = f"The shafts are {', '.join(places.shafts)}"
+        raise InputError(f'there is no shaft "{shaft}"', "argument tacho", why, "Name one")

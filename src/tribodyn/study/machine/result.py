@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Mapping
+from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, ClassVar
@@ -25,7 +25,6 @@ if TYPE_CHECKING:
     from tribodyn.gear import Misalignment, MisalignmentStudy
     from tribodyn.machine import Machine, MachineModes, PowerFlow, StaticBalance
     from tribodyn.machine.structure import MachineStructure
-    from tribodyn.measurement import Recording
     from tribodyn.mesh import MeshTable
     from tribodyn.study.faults.machine_motion import MachineTurningMotion
     from tribodyn.study.machine.case import MachineCase
@@ -213,65 +212,6 @@ class MachineResult(PartsResult):
         from tribodyn.study.faults.machine_motion import machine_turning_motion
 
         return machine_turning_motion(self.case, self.operation)
-
-    def recording(
-        self,
-        sensor: str | Sequence[str],
-        duration: float,
-        sample_rate: float = 25_600.0,
-        *,
-        tacho: str | None = None,
-        noise: float = 0.0,
-        speed_fluctuation: float = 0.0,
-        tacho_jitter: float = 0.0,
-        seed: int = 0,
-    ) -> Recording:
-        """Sample what sensors receive over whole turns, as a measuring system would.
-
-        Parameters
-        ----------
-        sensor : str or sequence of str
-            ``"bearings.A.acceleration_y"``, ``"housing.NODE.acceleration_30deg"``,
-            ``"meshes.first.mesh_force"``, ...: names in ``turning_motion.sensors``.
-        duration : float
-            Length of the recording [s].
-        sample_rate : float
-            Samples per second [Hz]. What lies above half of it is filtered off.
-        tacho : str, optional
-            Shaft with the tacho; the input by default.
-        noise : float
-            Standard deviation of white noise, in the unit of the sensor.
-        speed_fluctuation : float
-            Standard deviation of slow changes of the speed, over the speed [1].
-        tacho_jitter : float
-            Standard deviation of the edges of the tacho over a turn [1].
-        seed : int
-            Number of the draw of the start, the noise and all that scatters.
-
-        Returns
-        -------
-        Recording
-            One channel for each sensor, and ``tacho`` with one pulse a turn of its shaft.
-
-        Raises
-        ------
-        InputError
-            If there is no such sensor or shaft, or a value is out of range.
-        """
-        from tribodyn.study.faults.machine_section import defects_of
-        from tribodyn.study.faults.recording import Scatter, recording_of
-        from tribodyn.study.faults.sensors import check_sensors
-
-        check_sensors(self.case, sensor, tacho)
-        motion = self.turning_motion
-        return recording_of(
-            motion if tacho is None else replace(motion, tacho=tacho),
-            defects_of(self.case),
-            sensor,
-            duration,
-            sample_rate,
-            Scatter(noise, speed_fluctuation, tacho_jitter, seed),
-        )
 
     def mounting_study(self, mesh: str) -> MisalignmentStudy:
         """Contact patterns of a hypoid mesh without load: as mounted, and as deflected.

@@ -29,6 +29,7 @@ if TYPE_CHECKING:
     from tribodyn.machine import Gear
     from tribodyn.model import Option
     from tribodyn.study.case.case import Case
+    from tribodyn.study.faults.sensors import Sensors
     from tribodyn.study.machine.case import MachineCase
     from tribodyn.study.machine.load_cases import LoadCase
 
@@ -69,6 +70,11 @@ class PartsCase(ABC):
         tuple of str, Case and (str, str)
             Key of the table of the mesh, its pair of gears as a case, and names of both gears.
         """
+
+    @property
+    @abstractmethod
+    def _sensors(self) -> Sensors:
+        """What there is to sense."""
 
     def values(self) -> Iterator[tuple[str, Any]]:
         """Iterate over the values of the case file.

@@ -3,13 +3,15 @@
 from __future__ import annotations
 
 from functools import cached_property
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, ClassVar
 
 from tribodyn.record import html_table
+from tribodyn.study.pipeline.result import Result
 from tribodyn.study.pipeline.summary_figures import summary_rows
 
 if TYPE_CHECKING:
     from tribodyn.study.case.provenance import Assumption
+    from tribodyn.study.faults.sensors import Sensors
 
 
 class PartsResult:
@@ -18,6 +20,12 @@ class PartsResult:
     case: Any
     operation: Any
     load_cases: tuple[Any, ...]
+    recording: ClassVar[Any] = Result.recording
+
+    @property
+    def _sensors(self) -> Sensors:
+        sensors: Sensors = self.case._sensors
+        return sensors
 
     @property
     def motion(self) -> Any:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 import os
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from functools import cached_property, partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NoReturn
@@ -14,6 +14,7 @@ from tribodyn.errors import collected
 from tribodyn.record import Parts, html_table, record
 from tribodyn.study.case.hypoid import mounting
 from tribodyn.study.case.provenance import Assumption, assumptions
+from tribodyn.study.faults.sensors import PairSensors
 from tribodyn.study.pipeline.computed import Computed
 from tribodyn.study.pipeline.response_series import parts_of, stored, to_csv
 from tribodyn.study.pipeline.save import new_directory
@@ -28,6 +29,7 @@ if TYPE_CHECKING:
     from tribodyn.measurement import Recording
     from tribodyn.mesh import HypoidFriction
     from tribodyn.study.faults.motion import TurningMotion
+    from tribodyn.types import Array
 
 
 _PLOT = "plot_"
@@ -126,12 +128,20 @@ class Result(Computed):
 
         return self.turning_motion if varies_over_turns(self.case) else None
 
+    @property
+    def _sensors(self) -> PairSensors:
+        """What there is to sense."""
+        return PairSensors(self.response.names)
+
     def recording(
         self,
         sensor: str | Sequence[str],
         duration: float,
         sample_rate: float = 25_600.0,
         *,
+        sensor_angle: float = 0.0,
+        window: float | Callable[[Array], Array] | None = None,
+        tacho: str | None = None,
         noise: float = 0.0,
         speed_fluctuation: float = 0.0,
         tacho_jitter: float = 0.0,
@@ -142,14 +152,25 @@ class Result(Computed):
         Parameters
         ----------
         sensor : str or sequence of str
-            A signal in the data of the result, such as ``"acceleration_loa_pinion"``,
-            ``"mesh_force"`` or ``"dynamic_transmission_error"``, or a rotation such as
-            ``"pinion_theta"``, whose acceleration is recorded; several make several channels.
-            ``"pinion_y"`` and ``"transmission_error"`` stand for the same signals.
+            Names in ``turning_motion.sensors``; several make several channels. Of a pair a signal
+            in the data of the result, such as ``"acceleration_loa_pinion"``, ``"mesh_force"`` or
+            ``"dynamic_transmission_error"``, or a rotation such as ``"pinion_theta"``, whose
+            acceleration is recorded; ``"pinion_y"`` and ``"transmission_error"`` stand for the
+            same signals. Of a machine ``"bearings.A.acceleration_y"``,
+            ``"housing.NODE.acceleration_30deg"``, ``"meshes.first.mesh_force"``, ... Of a
+            planetary stage ``"ring.acceleration"``, ``"planet_1.sun_mesh_force"``, ...
         duration : float
             Length of the recording [s].
         sample_rate : float
             Samples per second [Hz]. What lies above half of it is filtered off.
+        sensor_angle : float
+            Angle of a sensor on a ring [rad]; the first planet begins at 0.
+        window : float or function, optional
+            How a sensor on a ring feels a passing planet, as for
+            :func:`tribodyn.machine.ring_sensor_signal`.
+        tacho : str, optional
+            Gear of a pair, shaft of a machine or member of a stage with the tacho, or the planet
+            for its turns about the pin; the pinion or the input by default.
         noise : float
             Standard deviation of white noise, in the unit of the sensor.
         speed_fluctuation : float
@@ -162,13 +183,13 @@ class Result(Computed):
         Returns
         -------
         Recording
-            One channel for each sensor, and ``tacho`` with one pulse a turn of the pinion.
+            One channel for each sensor, and ``tacho`` with one pulse a turn.
 
         Raises
         ------
         InputError
-            If there is no such sensor, a value is out of range, or the gears are no cylindrical
-            pair.
+            If there is no such sensor or shaft, a value is out of range, or the case has gears
+            from a table.
 
         Examples
         --------
@@ -178,20 +199,14 @@ class Result(Computed):
         ...     "faults.crack.tooth": 1, "faults.crack.depth": "1 mm"})
         >>> tribodyn.run(case).recording("acceleration_loa_pinion", 1.0)  # doctest: +SKIP
         """
-        from tribodyn.study.faults.motion import pair_sensor
+        from tribodyn.study.faults.machine_section import defects_of
         from tribodyn.study.faults.recording import Scatter, recording_of
-        from tribodyn.study.faults.section import bearing_defects
+        from tribodyn.study.faults.sensors import check_sensors
 
-        for name in [sensor] if isinstance(sensor, str) else sensor:  # before the longest part
-            pair_sensor(self.response.names, name)
-        return recording_of(
-            self.turning_motion,
-            tuple(bearing_defects(self.case).values()),
-            sensor,
-            duration,
-            sample_rate,
-            Scatter(noise, speed_fluctuation, tacho_jitter, seed),
-        )
+        check_sensors(self._sensors, sensor, tacho)  # before the longest part
+        motion = self.turning_motion.sensed_from(tacho, sensor_angle, window)
+        scatter = Scatter(noise, speed_fluctuation, tacho_jitter, seed)
+        return recording_of(motion, defects_of(self.case), sensor, duration, sample_rate, scatter)
 
     def _parts(self) -> Parts:
         """Parts of the motion, ramps of a force law as one contact, and the summary."""

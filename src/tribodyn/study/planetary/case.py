@@ -25,6 +25,7 @@ from tribodyn.study.case.user_input import Source, unsound, without_spread
 from tribodyn.study.case.values import KeyedProblems, Plain
 from tribodyn.study.faults.machine_section import stage_fault_problems
 from tribodyn.study.faults.section import PartFaultTable
+from tribodyn.study.faults.sensors import StageSensors, stage_sensors
 from tribodyn.study.machine.load_cases import LoadCase, read_loads
 from tribodyn.study.machine.pair_cases import MESH_KEYS, SHARED, mesh_tables, pair_case
 from tribodyn.study.machine.read_parts import (
@@ -132,6 +133,10 @@ class PlanetaryCase(PartsCase):
         except InputError as error:
             raise InputError([self._located(each) for each in error.problems]) from None
         self._check_spreads(origin)
+
+    @property
+    def _sensors(self) -> StageSensors:
+        return stage_sensors(self)
 
     def _read_planets(self, problems: KeyedProblems) -> tuple[str, Any]:
         """Name and values of the only stage."""

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import json
 import os
-from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, ClassVar
@@ -33,7 +33,6 @@ if TYPE_CHECKING:
     from tribodyn.dynamics import Response, System
     from tribodyn.errors import ModelWarning
     from tribodyn.machine import MeshPhases, PlanetaryModes
-    from tribodyn.measurement import Recording
     from tribodyn.mesh import MeshTable
     from tribodyn.study.faults.planetary_motion import PlanetaryTurningMotion
     from tribodyn.study.machine.load_cases import LoadCase
@@ -220,72 +219,6 @@ class PlanetaryResult(PartsResult):
         from tribodyn.study.faults.planetary_motion import planetary_turning_motion
 
         return planetary_turning_motion(self.case, self.operation)
-
-    def recording(
-        self,
-        sensor: str | Sequence[str],
-        duration: float,
-        sample_rate: float = 25_600.0,
-        *,
-        sensor_angle: float = 0.0,
-        window: float | Callable[[Array], Array] | None = None,
-        tacho: str | None = None,
-        noise: float = 0.0,
-        speed_fluctuation: float = 0.0,
-        tacho_jitter: float = 0.0,
-        seed: int = 0,
-    ) -> Recording:
-        """Sample what a sensor on the ring receives of the passing planets.
-
-        Parameters
-        ----------
-        sensor : str or sequence of str
-            ``"ring.acceleration"``, ``"ring.force"``, ``"planet_1.sun_mesh_force"``, ...: names in
-            ``turning_motion.sensors``.
-        duration : float
-            Length of the recording [s].
-        sample_rate : float
-            Samples per second [Hz]. What lies above half of it is filtered off.
-        sensor_angle : float
-            Angle of the sensor [rad]; the first planet begins at 0.
-        window : float or function, optional
-            As for :func:`tribodyn.machine.ring_sensor_signal`.
-        tacho : str, optional
-            Member with the tacho, or the planet for its turns about the pin; the input by default.
-        noise : float
-            Standard deviation of white noise, in the unit of the sensor.
-        speed_fluctuation : float
-            Standard deviation of slow changes of the speed, over the speed [1].
-        tacho_jitter : float
-            Standard deviation of the edges of the tacho over a turn [1].
-        seed : int
-            Number of the draw of the start, the noise and all that scatters.
-
-        Returns
-        -------
-        Recording
-            One channel for each sensor, and ``tacho`` with one pulse a turn of its member.
-
-        Raises
-        ------
-        InputError
-            If there is no such sensor or member, or a value is out of range.
-        """
-        from tribodyn.study.faults.planetary_motion import RingSensor
-        from tribodyn.study.faults.recording import Scatter, recording_of
-        from tribodyn.study.faults.sensors import check_sensors
-
-        check_sensors(self.case, sensor, tacho)
-        place = RingSensor(sensor_angle, window)
-        motion = replace(self.turning_motion, sensor=place, tacho=tacho or self.case.ends[0])
-        return recording_of(
-            motion,
-            (),
-            sensor,
-            duration,
-            sample_rate,
-            Scatter(noise, speed_fluctuation, tacho_jitter, seed),
-        )
 
     def plot(self, figure: str = "planetary_stage") -> Any:
         """Draw a figure: ``planetary_stage``, ``planetary_forces``.

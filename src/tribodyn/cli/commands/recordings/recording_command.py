@@ -129,7 +129,6 @@ def _record(
     from tribodyn.cli.progress_bar import progress_bar
     from tribodyn.measurement.writers import check_ending
     from tribodyn.study.faults.sensors import check_sensors
-    from tribodyn.study.machine.user_tables import PartsCase
 
     file = out if out is not None else Path(f"{Path(case).stem}-recording.mat")
     settings = sampling.settings()
@@ -140,8 +139,7 @@ def _record(
     check_ending(file)
     ready = changed_any_case(case, set_ or [])
     names = [name.strip() for name in sampling.sensor.split(",")]
-    if isinstance(ready, PartsCase):
-        check_sensors(ready, names)
+    check_sensors(ready._sensors, names)
     with progress_bar() as progress:
         result: Any = run(ready, progress)
         recorded: Recording = result.recording(names, settings.pop("duration"), **settings)
