@@ -28,7 +28,11 @@ from tribodyn.dynamics.equations.nodes import (
 )
 from tribodyn.dynamics.equations.system import System
 from tribodyn.dynamics.harmonic.closed_structure import ClosedStructure
-from tribodyn.dynamics.orbits.coordinates import static_start, structure_coordinates
+from tribodyn.dynamics.orbits.coordinates import (
+    OrbitCoordinates,
+    static_start,
+    structure_coordinates,
+)
 from tribodyn.types import Array, Index, Mask
 
 if TYPE_CHECKING:
@@ -261,11 +265,14 @@ def _touch_factor(
 
 
 def close_contacts(
-    compiled: Compiled, extra: Array, still: Array | None = None
+    compiled: Compiled,
+    extra: Array,
+    still: Array | None = None,
+    coordinates: OrbitCoordinates | None = None,
 ) -> tuple[ClosedStructure, Mask]:
     """Structure with closed contacts, and those closed at rest; ``extra`` (m, n) forces act too."""
     system, nodes = compiled.system, compiled.nodes
-    coordinates = structure_coordinates(compiled)
+    coordinates = coordinates or structure_coordinates(compiled)
     inverse = coordinates.inverse
     pushes = [nodes.force_direction, nodes.friction_direction, nodes.force[..., None, :], extra]
     if system.balance is not None:

@@ -30,9 +30,10 @@ from tribodyn.dynamics.harmonic.newton import Residual, Solution, newton, refine
 from tribodyn.dynamics.harmonic.orbit_response import orbit_response, starting_state
 from tribodyn.dynamics.harmonic.phase_balance import phase_balance
 from tribodyn.dynamics.orbits.coordinates import (
-    orbit_coordinates,
     refuse_disconnected,
     static_start,
+    structure_coordinates,
+    warn_of_unbalanced,
 )
 from tribodyn.dynamics.time.response import Response, build_response
 from tribodyn.dynamics.time.simulate import read_start
@@ -97,9 +98,10 @@ def prepare(system: System, frequency: float, steps: int = 0) -> Prepared:
     steps = max(2 * _FIRST, steps, -(-2 * len(system_events(system)) // system.cycles))
     compiled = sample_system(system, steps)
     refuse_disconnected(compiled)
-    orbit_coordinates(compiled, frequency)  # warns of forces that do not balance
+    coordinates = structure_coordinates(compiled)
+    warn_of_unbalanced(compiled, coordinates)
     start = static_start(compiled)[: system.size]
-    structure, closed = close_contacts(compiled, np.zeros((0, system.size)), start)
+    structure, closed = close_contacts(compiled, np.zeros((0, system.size)), start, coordinates)
     prepared = Prepared(system, structure, closed, start, {steps: compiled})
     _cache[:] = [(weakref.ref(system), prepared), *_cache[:3]]
     return prepared
@@ -223,7 +225,6 @@ def _on_clock(
     residual = prepared.residual(samples, frequency)  # every other row of the finer one
     solution = _solve(prepared, residual, _start(prepared, residual, start), tolerance)
     while True:
-        finer = prepared.residual(2 * samples, frequency)
         y = refined(solution.state.y, 2 * samples)
         if not solution.error <= tolerance:
             step_error = float("nan")
@@ -240,6 +241,7 @@ def _on_clock(
         step_error /= 3.0  # the error of second order falls by a factor of four
         if step_error <= _ACCURATE or 4 * samples > _MOST:
             break
+        finer = prepared.residual(2 * samples, frequency)
     progress.finish()
     fine = count if steps is not None else min(samples // (2 * system.cycles), _RECORDED)
     grid = prepared.grid(max(fine, min(prepared.grids)))

@@ -97,7 +97,7 @@ class OrbitCoordinates:
 def orbit_coordinates(compiled: Compiled, mesh_frequency: float) -> OrbitCoordinates:
     """Reduced coordinates of a system at a mesh frequency."""
     shared = structure_coordinates(compiled)
-    _warn_of_unbalanced(compiled, shared.inverse, shared.free)
+    warn_of_unbalanced(compiled, shared)
     return replace(shared, rate=2.0 * np.pi * mesh_frequency)
 
 
@@ -124,9 +124,10 @@ def _coordinates(mass: Array, stiffness: Array, damping: Array, used: Array) -> 
     return OrbitCoordinates(lower, elastic, moving, _complement(moving), 1.0)
 
 
-def _warn_of_unbalanced(compiled: Compiled, inverse: Array, free: Array) -> None:
+def warn_of_unbalanced(compiled: Compiled, coordinates: OrbitCoordinates) -> None:
     """Warn if forces accelerate a free motion of the drive that no torque balances."""
     system, nodes = compiled.system, compiled.nodes
+    inverse, free = coordinates.inverse, coordinates.free
     if system.balance is not None or not 0 < free.shape[1] < system.size:
         return
     force = np.einsum("rs,rsi->i", nodes.weight, nodes.force)
@@ -266,7 +267,9 @@ def _sums(push: Array, weight: Array, along: Array, shift: Array) -> tuple[Array
         return (push[0, 0].T * total) @ along[0, 0], push[0, 0].T @ moved
     if not lead and unrepeated(along, 2).size == along[0, 0].size:
         # Of each contact only the sum of its pushes counts.
-        total, moved = (np.einsum("rsji,rsj->ji", push, w) for w in (weight, weight * shift))
+        flat = push.reshape(-1, *push.shape[2:])
+        pairs = np.stack((weight, weight * shift)).reshape(2, *flat.shape[:2])
+        total, moved = np.stack([pairs[..., j] @ flat[:, j] for j in range(flat.shape[1])], axis=1)
         return total.T @ along[0, 0], moved.sum(axis=0)
     flat = np.swapaxes(push.reshape(*lead, -1, size), -1, -2)
     factors = np.stack((weight, weight * shift), axis=-1).reshape(*lead, -1, 2)
