@@ -206,7 +206,7 @@ def test_step_limit_counts_all_ramps():
     ("change", "part"),
     [
         ({"mesh_force": "linear"}, 'mesh_force = "linear"'),
-        ({"backlash": 3e-6}, "backlash of at least 4 um"),
+        ({"backlash": 3e-6}, "backlash of at least about 4 um"),
     ],
 )
 def test_wrong_input_is_named(change, part):

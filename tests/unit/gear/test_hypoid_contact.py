@@ -116,7 +116,7 @@ def test_conjugate_flanks_have_no_transmission_error():
             assert contact.contact_ratio > 1.0
             # The exact flanks, started near their contact, come to the same rotation.
             lines = ContactLines(flanks.conjugate)
-            rotation = 0.3 * np.array(lines.span())
+            rotation = 0.3 * np.array(lines.span)
             ends, _ = lines.ends(rotation)
             guess = start_values(lines, rotation, ends.mean(axis=1), np.zeros(2))
             guess += [20e-6, 2e-4, -30e-6, 3e-4, 1e-5]
@@ -128,7 +128,7 @@ def test_conjugate_flanks_have_no_transmission_error():
 def test_lines_end_on_the_flanks_and_are_recovered():
     flanks = _eased()
     lines = ContactLines(flanks.conjugate)
-    low, high = lines.span()
+    low, high = lines.span
     rotation = np.linspace(low, high, 30)[1:-1]
     ends, valid = lines.ends(rotation)
     assert valid.all()
@@ -148,7 +148,7 @@ def test_the_shortest_lines_are_computed():
     # At both ends of the contact lines shrink to a point; those of a hundredth of a millimetre too.
     for flanks in (_eased(), _eased(side="coast", hand_pinion="right")):
         lines = ContactLines(flanks.conjugate)
-        low, high = lines.span()
+        low, high = lines.span
         inner = np.array([1e-5, 1e-4, 1e-3]) * (high - low)
         ends, valid = lines.ends(np.concatenate([low + inner, high - inner]))
         assert valid.all()

@@ -55,7 +55,7 @@ def test_published_figures_of_ten_against_43(loaded):
 def test_without_load_the_wheel_lags_as_without_any_contact_force(loaded):
     flanks = loaded.cells.flanks
     free = tooth_contact(flanks, rotations_per_pitch=24, cells=9)
-    start = flanks.conjugate.sense * np.array(ContactLines(flanks.conjugate).span())
+    start = flanks.conjugate.sense * np.array(ContactLines(flanks.conjugate).span)
     phase = (free.rotation - start.min()) / (2.0 * math.pi / flanks.blank.teeth_wheel) % 1.0
     inner = free.leads
     cells = contact_cells(flanks, Misalignment(), phase[inner], 96)

@@ -13,10 +13,13 @@ from tribodyn.dynamics import steady_state
 from tribodyn.errors import InputError, ModelWarning, collected
 from tribodyn.exchange import write_tables
 from tribodyn.gear import tooth_contact
+from tribodyn.gear.hypoid.contact_lines import ContactLines, contact_lines
 from tribodyn.losses import BEARINGS, bearing_moments
 from tribodyn.losses.gearbox import PARTS, turning_bodies
+from tribodyn.mesh.hypoid.cells import contact_cells
 from tribodyn.plot import FIGURES
 from tribodyn.report.figure_blocks import HYPOID_SECTIONS
+from tribodyn.study.case.hypoid import mounting
 from tribodyn.study.case.read import read_case
 from tribodyn.study.pipeline.assembly import geometry, whole_system
 from tribodyn.study.pipeline.citations import cite
@@ -320,3 +323,19 @@ def test_contact_lines_in_elliptical_contacts_are_its_models():
     case = tribodyn.load_case(NAME)
     assert case.spur_pair is None
     assert case.contact_models == ("contact lines", "hamrock-dowson")
+
+
+def test_a_position_leaves_the_flanks_and_their_lines() -> None:
+    """What only the gap depends on is computed once for all mounting errors and loads."""
+    case = tribodyn.load_case(NAME)
+    moved = case.replace({"gears.mounting.offset": "30 um", "operation.torque": "20 N*m"})
+    assert moved.gears != case.gears
+    assert moved.hypoid_flanks is case.hypoid_flanks
+    phase = np.array([0.0, 0.3])
+    nominal, shifted = (
+        contact_cells(each.hypoid_flanks, mounting(each.gears), phase, 8) for each in (case, moved)
+    )
+    assert shifted.length is nominal.length
+    conjugate = case.hypoid_flanks.conjugate
+    assert ContactLines(conjugate).span == contact_lines(conjugate).span
+    assert np.abs(shifted.gap - nominal.gap).max() > 1e-6

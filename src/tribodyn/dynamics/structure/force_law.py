@@ -183,7 +183,7 @@ def refuse_clamped_teeth(first: float, half: float) -> None:
             f"of the backlash is {1e6 * half:.4g} um",
             where="argument backlash",
             why="The teeth would be clamped between both flanks",
-            remedy=f"Give a backlash of at least {-2e6 * first:.4g} um",
+            remedy=f"Give a backlash of at least about {-2e6 * first:.4g} um",
         )
 
 

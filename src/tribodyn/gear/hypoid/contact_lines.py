@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from functools import cached_property
+import math
+from functools import cached_property, lru_cache
 
 import numpy as np
 
@@ -101,6 +102,7 @@ class ContactLines:
         margin = np.min(self.flanks.margins(self.touch(rotation, station)), axis=-1)
         return np.where(np.isfinite(margin), margin, -np.inf)
 
+    @cached_property
     def span(self) -> tuple[float, float]:
         """Rotations of the wheel at which the active flank comes into touch and leaves it."""
         from scipy.optimize import minimize
@@ -132,6 +134,12 @@ class ContactLines:
             )
             ends.append(float(self._at(minimum.x).contact.rotation[0]))
         return ends[0], ends[1]
+
+    @property
+    def contact_ratio(self) -> float:
+        """Rotation over which a pair has contact lines, over the pitch."""
+        low, high = self.span
+        return (high - low) * self.flanks.blank.teeth_wheel / (2.0 * math.pi)
 
     def _at(self, parameters: Array) -> Touch:
         return self.flanks.touch_at(self.flanks.wheel.at(self._unit * parameters[None]))
@@ -189,3 +197,9 @@ class ContactLines:
             if np.nanmax(np.minimum(np.abs(middle_margin), np.abs(outside - inside))) < 1e-13:
                 break
         return np.asarray(inside)
+
+
+@lru_cache(maxsize=8)
+def contact_lines(flanks: ConjugateFlanks) -> ContactLines:
+    """Lines of a flank pair, one object for all its misalignments and loads."""
+    return ContactLines(flanks)

@@ -11,7 +11,7 @@ import numpy as np
 from tribodyn.checks import require_flag, require_number, require_whole
 from tribodyn.errors import ComputationError, require_between, require_positive
 from tribodyn.gear.hypoid.conjugate import ConjugateFlanks, Touch
-from tribodyn.gear.hypoid.contact_lines import ContactLines
+from tribodyn.gear.hypoid.contact_lines import ContactLines, contact_lines
 from tribodyn.gear.hypoid.ease_off import eased_gap
 from tribodyn.gear.hypoid.envelope import turned
 from tribodyn.gear.hypoid.flank import HypoidFlanks
@@ -236,8 +236,7 @@ class ToothContact(Record):
     @property
     def contact_ratio(self) -> float:
         """Rotation over which a pair has contact lines, over the pitch."""
-        low, high = ContactLines(self.flanks.conjugate).span()
-        return (high - low) * self.flanks.blank.teeth_wheel / (2.0 * math.pi)
+        return contact_lines(self.flanks.conjugate).contact_ratio
 
     @property
     def peak_to_peak(self) -> float:
@@ -326,9 +325,9 @@ def _analysis(
     counts: list[int],
 ) -> ToothContact:
     conjugate = flanks.conjugate
-    lines = ContactLines(conjugate)
+    lines = contact_lines(conjugate)
     step = 2.0 * math.pi / flanks.blank.teeth_wheel / counts[0]
-    low, high = lines.span()
+    low, high = lines.span
     rotation: Array = step * np.arange(math.ceil(low / step), math.floor(high / step) + 1.0)
     rotation = rotation if conjugate.sense > 0.0 else rotation[::-1]
     ends, on_flank = lines.ends(rotation)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cached_property, lru_cache
 from typing import NamedTuple
 
 import numpy as np
@@ -12,7 +12,7 @@ import numpy as np
 from tribodyn.errors import ComputationError
 from tribodyn.gear import HypoidFlanks, Misalignment
 from tribodyn.gear.hypoid.conjugate import ConjugateFlanks, Touch
-from tribodyn.gear.hypoid.contact_lines import ContactLines
+from tribodyn.gear.hypoid.contact_lines import contact_lines
 from tribodyn.gear.hypoid.envelope import Curvature, cross
 from tribodyn.gear.hypoid.tooth_contact import gap_of
 from tribodyn.types import Array, Index, Mask
@@ -75,32 +75,47 @@ class CellSprings(NamedTuple):
     lead: Array | float = 0.0  #: gap at which each begins to carry (lines, cells) [m]
 
 
-def contact_cells(
-    flanks: HypoidFlanks, misalignment: Misalignment, phase: Array, count: int
-) -> ContactCells:
-    """Lines of all pairs at mesh phases; phase 0 is where a pair comes into contact."""
-    lines = ContactLines(flanks.conjugate)
-    sense = lines.flanks.sense
-    first, last = sorted(sense * end for end in lines.span())
+class _Lines(NamedTuple):
+    """Lines of all pairs at mesh phases, in cells, whatever the misalignment."""
+
+    in_contact: Mask
+    touch: Touch  #: at the ends and the centres of the cells, in turn
+    length: Array
+
+
+@lru_cache(maxsize=4)
+def _lines(flanks: ConjugateFlanks, phases: tuple[float, ...], count: int) -> _Lines:
+    """Lines in cells; a misalignment or a load only changes their gap."""
+    lines = contact_lines(flanks)
+    phase: Array = np.array(phases)
+    first, last = sorted(flanks.sense * end for end in lines.span)
     pitch = 2.0 * math.pi / flanks.blank.teeth_wheel
     pairs = math.ceil((last - first) / pitch)
-    turn = first + pitch * (phase[:, None] + np.arange(pairs))
+    turn: Array = first + pitch * (phase[:, None] + np.arange(pairs))
     in_contact = turn < last
-    rotation = sense * turn[in_contact]
+    rotation = flanks.sense * turn[in_contact]
     ends, meets = lines.ends(rotation)
     in_contact[in_contact], rotation, ends = meets, rotation[meets], ends[meets]
     # Ends and centres of cells in one line.
     station = ends[:, :1] + np.linspace(0.0, 1.0, 2 * count + 1) * np.ptp(ends, axis=1)[:, None]
     touch = lines.touch(rotation[:, None], station)
     steps = np.linalg.norm(np.diff(touch.contact.wheel.position, axis=1), axis=-1)
-    gap = gap_of(lines.flanks, touch, misalignment)
+    return _Lines(in_contact, touch, steps[:, ::2] + steps[:, 1::2])
+
+
+def contact_cells(
+    flanks: HypoidFlanks, misalignment: Misalignment, phase: Array, count: int
+) -> ContactCells:
+    """Lines of all pairs at mesh phases; phase 0 is where a pair comes into contact."""
+    in_contact, touch, length = _lines(flanks.conjugate, tuple(phase.tolist()), count)
+    gap = gap_of(flanks.conjugate, touch, misalignment)
     return ContactCells(
         flanks,
         misalignment,
         phase,
         in_contact,
         touch.at((slice(None), slice(1, None, 2))),
-        steps[:, ::2] + steps[:, 1::2],
+        length,
         gap[:, 1::2],
         gap[:, ::2],
         touch.lever[:, ::2],

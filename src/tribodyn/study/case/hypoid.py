@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Iterator
 from contextlib import contextmanager
+from copy import copy
 from dataclasses import replace
 from functools import lru_cache
 from typing import TYPE_CHECKING
@@ -60,12 +60,19 @@ def blank_of(data: Section, teeth: tuple[int, int]) -> HypoidBlank:
 
 def hypoid_flanks(gears: Gears) -> HypoidFlanks:
     """Build the flanks of the loaded side; warnings are in :func:`hypoid_warnings`."""
-    return _built(gears)[0]
+    return _built(_unmounted(gears))[0]
 
 
 def hypoid_warnings(gears: Gears) -> tuple[ModelWarning, ...]:
     """Return warnings about blank and flanks."""
-    return _built(gears)[1]
+    return _built(_unmounted(gears))[1]
+
+
+def _unmounted(gears: Gears) -> Gears:
+    """Gears without their position, which does not change their flanks."""
+    bare = copy(gears)
+    vars(bare)["mounting"] = None
+    return bare
 
 
 @lru_cache(maxsize=16)
@@ -83,14 +90,11 @@ def _built(gears: Gears) -> tuple[HypoidFlanks, tuple[ModelWarning, ...]]:
     return flanks, tuple(warnings)
 
 
-@lru_cache(maxsize=16)
 def contact_ratio(gears: Gears) -> float:
     """Return the contact ratio: rotation with contact lines over the pitch angle."""
-    from tribodyn.gear.hypoid.contact_lines import ContactLines
+    from tribodyn.gear.hypoid.contact_lines import contact_lines
 
-    flanks = hypoid_flanks(gears)
-    low, high = ContactLines(flanks.conjugate).span()
-    return (high - low) * flanks.blank.teeth_wheel / (2.0 * math.pi)
+    return contact_lines(hypoid_flanks(gears).conjugate).contact_ratio
 
 
 def mounting(gears: Gears) -> Misalignment:
