@@ -30,6 +30,7 @@ from tribodyn.mesh.loads import (
 )
 from tribodyn.mesh.sharing import (
     FittedLaw,
+    SharedLoad,
     Teeth,
     ToothContact,
     ToothModel,
@@ -174,7 +175,7 @@ class LoadedMesh:
     pairs: PairsInContact
     motion: Kinematics  #: of the pairs in contact
     teeth: Teeth
-    loads: Loads
+    loads: Loads[SharedLoad]
     pinion_speed: float
     pinion_torque: float
     force_law: FittedLaw
@@ -214,7 +215,7 @@ class LoadedMesh:
 def columns_of(
     cycle: MeshCycle,
     motion: Kinematics,
-    loads: Loads,
+    loads: Loads[SharedLoad],
     contact: TribologicalContact,
     reported: Films,
     friction: Array | FrictionParts,

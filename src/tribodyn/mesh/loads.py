@@ -5,11 +5,11 @@ from __future__ import annotations
 from collections.abc import Callable
 from contextlib import suppress
 from dataclasses import dataclass, replace
-from typing import Any
+from typing import Any, Generic
 
 import numpy as np
 
-from tribodyn.contact import Kinematics, hertz_line
+from tribodyn.contact import hertz_line
 from tribodyn.ehl.steady.batch import Films
 from tribodyn.errors import ComputationError, quiet, warn
 from tribodyn.friction import PitchPoint, TribologicalContact
@@ -23,17 +23,23 @@ from tribodyn.mesh.film.film_lookup import (
     look_up_slices,
 )
 from tribodyn.mesh.film.film_refinement import ALL, PRESSURE, QUANTITIES, STIFFNESS
+from tribodyn.mesh.film.loaded_contacts import ContactMotion, FilmSprings, LoadedTeeth, Share
 from tribodyn.mesh.film.path_film import FilmAt, FormulaFilm, PathFilm, film_of
-from tribodyn.mesh.sharing import LEAST_SHARE, FilmSprings, SharedLoad, Teeth, ToothContact
+from tribodyn.mesh.sharing import (
+    LEAST_SHARE,
+    SharedLoad,
+    Teeth,
+    ToothContact,
+)
 from tribodyn.progress import Progress
 from tribodyn.types import Array, Mask
 
 
 @dataclass(frozen=True, eq=False)
-class Loads:
+class Loads(Generic[Share]):
     """Loads, stiffness and film of every tooth pair."""
 
-    shared: SharedLoad  #: how the mesh carries its load, film included where it counts
+    shared: Share  #: how the mesh carries its load, film included where it counts
     load_per_width: Array  #: of the pairs in contact [N/m]
     tribological: Array  #: the same, no less than a film needs [N/m]
     film_at: FilmAt  #: films of the pairs in contact as a function of their loads per width
@@ -47,33 +53,33 @@ def quasi_static_loads(
     settings: ToothContact,
     speed: float,
     progress: Progress,
-) -> Loads:
+) -> Loads[SharedLoad]:
     """Share the load among the pairs and find their films."""
     if (film_of_slices := look_up_slices(settings, cycle, teeth, pairs)) is not None:
-        return under_load(cycle, teeth, settings, film_of_slices)
+        return under_load(teeth, settings, film_of_slices, cycle.named)
     if (tabled := look_up_film(settings, cycle, teeth, pairs)) is not None:
         # What the table cannot settle, films of its own may.
         with suppress(OutsideTableError, ComputationError):
-            return under_load(cycle, teeth, settings, tabled)
+            return under_load(teeth, settings, tabled, cycle.named)
     film = film_of(settings, cycle, teeth, pairs, speed, progress)
-    return under_load(cycle, teeth, settings, film)
+    return under_load(teeth, settings, film, cycle.named)
 
 
 def under_load(
-    cycle: MeshCycle,
-    teeth: Teeth,
+    teeth: LoadedTeeth[Share],
     settings: ToothContact,
     film: FormulaFilm | PathFilm | FilmLookup,
-) -> Loads:
+    where: Callable[[int, int], str],
+) -> Loads[Share]:
     """Share the load among the pairs with some films, in series with the teeth if requested."""
 
     def solve(loads: Array, checked: tuple[int, ...]) -> FilmAt:
         raised = np.maximum(loads, film.least_load)
-        return film.solve(np.where(cycle.in_contact, raised, 0.0), checked)
+        return film.solve(np.where(teeth.in_contact, raised, 0.0), checked)
 
     springs = None
     if settings.film_in_series:
-        shared, film_at = in_series(teeth, solve, cycle.named)
+        shared, film_at = in_series(teeth, solve, where)
         load = np.maximum(teeth.load_per_width * shared.share, teeth.least_load)
         springs = _springs(teeth, load, film_at)
     else:
@@ -81,11 +87,11 @@ def under_load(
         film_at = solve(teeth.load_per_width * shared.share, ALL)
     load = teeth.dry_load
     if springs is not None:
-        load = (teeth.load_per_width * shared.share)[cycle.in_contact]
+        load = (teeth.load_per_width * shared.share)[teeth.in_contact]
     return Loads(shared, load, np.maximum(load, film.least_load), film_at, springs)
 
 
-def reported_films(films: Films, loads: Loads, least_load: Array | float) -> Films:
+def reported_films(films: Films, loads: Loads[Any], least_load: Array | float) -> Films:
     """Leave out pairs that hardly touch, and what is not known well enough."""
     loads.film_at.warn_of_doubt()
     films, certain = loads.film_at.reported(films, loads.tribological)
@@ -111,7 +117,7 @@ def warn_of_rigid_films(film_at: FilmAt) -> None:
 
 
 def tribological_contact(
-    motion: Kinematics,
+    motion: ContactMotion,
     pairs: PairsInContact,
     load_per_width: Array,
     composite_roughness: float,
@@ -173,10 +179,10 @@ _LOST = 1e-9
 
 
 def in_series(
-    teeth: Teeth,
+    teeth: LoadedTeeth[Share],
     solve: SolveFilm,
     where: Callable[[int, int], str],
-) -> tuple[SharedLoad, FilmAt]:
+) -> tuple[Share, FilmAt]:
     """Put the film of each pair in series with its teeth, at the load share that follows."""
     tolerance = _TOLERANCE_TOGETHER if teeth.coupled else _TOLERANCE
     share, stages = teeth.shared_load().share, list(_STAGES)
@@ -205,12 +211,12 @@ def in_series(
 
 
 def _settle(
-    teeth: Teeth,
+    teeth: LoadedTeeth[Share],
     film_at: FilmAt,
     share: Array,
     where: Callable[[int, int], str],
     enough: float,
-) -> SharedLoad:
+) -> Share:
     """Find the fixed point of share and stiffness with the films as a function of their load."""
     if film_at.keeps_distance:
         return _settle_distances(teeth, film_at, share, where)
@@ -236,8 +242,8 @@ def _settle(
 
 
 def _settle_distances(
-    teeth: Teeth, film_at: FilmAt, share: Array, where: Callable[[int, int], str]
-) -> SharedLoad:
+    teeth: LoadedTeeth[Share], film_at: FilmAt, share: Array, where: Callable[[int, int], str]
+) -> Share:
     """The same for films that keep a distance: Newton's method, as each spring is a tangent."""
     least = LEAST_SHARE * teeth.normal_force / teeth.face_width
     for _ in range(_STEPS):
@@ -250,12 +256,12 @@ def _settle_distances(
 
 
 def _settle_together(
-    teeth: Teeth,
+    teeth: LoadedTeeth[Share],
     film_at: FilmAt,
     share: Array,
     where: Callable[[int, int], str],
     enough: float,
-) -> SharedLoad:
+) -> Share:
     """The same for pairs solved together; a share that swings to and fro is slowed down."""
     before, step = share, np.zeros(share.shape)
     slope = np.ones(share.shape)
@@ -285,7 +291,7 @@ def _still_moving(change: Array, where: Callable[[int, int], str]) -> Computatio
     )
 
 
-def _springs(teeth: Teeth, load_per_width: Array, film_at: FilmAt) -> FilmSprings:
+def _springs(teeth: LoadedTeeth[Any], load_per_width: Array, film_at: FilmAt) -> FilmSprings:
     """Films of the pairs under their loads."""
     on_path = teeth.in_contact
     load = load_per_width[on_path]
@@ -297,7 +303,7 @@ def _springs(teeth: Teeth, load_per_width: Array, film_at: FilmAt) -> FilmSpring
     if not film_at.keeps_distance:
         return FilmSprings(stiffness, None)
     # The straight line with this slope through distance and load of the film.
-    force = load * np.broadcast_to(teeth.problem.face_widths, on_path.shape)[on_path]
+    force = load * np.broadcast_to(teeth.face_widths, on_path.shape)[on_path]
     lead[on_path] = np.asarray(film.film_distance) + force / stiffness[on_path]
     return FilmSprings(stiffness, lead)
 

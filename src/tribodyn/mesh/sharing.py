@@ -11,7 +11,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from functools import cached_property
-from typing import Any, Literal, NamedTuple
+from typing import Any, ClassVar, Literal, NamedTuple
 
 import numpy as np
 
@@ -22,6 +22,7 @@ from tribodyn.friction.base import STEEL_BODIES
 from tribodyn.friction.ehl import film_heat
 from tribodyn.gear import Material
 from tribodyn.lubricant import Lubricant
+from tribodyn.mesh.film.loaded_contacts import FilmSprings
 from tribodyn.stiffness import MODELS, ContactProblem, mesh_problem
 from tribodyn.stiffness.loaded.face_problem import slice_stiffness
 from tribodyn.stiffness.loaded.problem import Equilibrium
@@ -113,13 +114,6 @@ _SAME = 1e-9
 _FAINT = 1e-9
 
 
-class FilmSprings(NamedTuple):
-    """Films of the pairs on the path of contact (n, pairs), linear about their loads."""
-
-    stiffness: Array  #: zero where a pair is not in contact [N/m]
-    lead: Array | None  #: distance of the flanks at which each begins to carry [m]
-
-
 class SharedLoad(NamedTuple):
     """How a mesh carries its quasi-static load."""
 
@@ -140,7 +134,7 @@ class Teeth:
     #: Load of all pairs at each phase (n, 1) over ``normal_force``.
     loading: Array | float = field(default=1.0, kw_only=True)
 
-    coupled = True
+    coupled: ClassVar[bool] = True
     #: Part of the load for which film and friction of a pair are found at least.
     least_share = LEAST_SHARE
 
@@ -257,9 +251,14 @@ class Teeth:
         return np.reshape(self.force, (1, -1))
 
     @property
+    def face_widths(self) -> Array:
+        """Face width of each pair [m]."""
+        return self.problem.face_widths
+
+    @property
     def load_per_width(self) -> Array | float:
         """That force per face width of each pair, as far as it touches [N/m]."""
-        widths = self.problem.face_widths
+        widths = self.face_widths
         return self.force / np.where(widths > 0.0, widths, np.inf)
 
     @property

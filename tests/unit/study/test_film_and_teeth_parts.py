@@ -9,7 +9,8 @@ import pytest
 
 import tribodyn as td
 from tribodyn.mesh.build import _cycle
-from tribodyn.mesh.sharing import FilmSprings, ToothModel, teeth_of
+from tribodyn.mesh.film.loaded_contacts import FilmSprings
+from tribodyn.mesh.sharing import ToothModel, teeth_of
 from tribodyn.study.pipeline.tooth_contact import mesh_of
 
 THICK, YIELDING = 1.0e-6, 2.0e10

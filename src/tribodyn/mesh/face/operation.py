@@ -40,7 +40,7 @@ def films_over_flank(
             film = look_up_slices(settings, cycle, teeth, pairs) or film_of(
                 settings, cycle, teeth, pairs, speed, progress
             )
-            shared = under_load(cycle, teeth, dry, film)
+            shared = under_load(teeth, dry, film, cycle.named)
             solved = reported_films(shared.film_at(shared.tribological), shared, teeth.least_load)
             columns = as_columns(solved, settings.composite_roughness)
             films[-1].append({name: column[order] for name, column in columns.items()})

@@ -35,6 +35,7 @@ from tribodyn.mesh.film.film_refinement import (
 )
 from tribodyn.mesh.film.film_table import FilmTable
 from tribodyn.mesh.film.fitted_table import FittedTable
+from tribodyn.mesh.film.loaded_contacts import ContactMotion
 from tribodyn.mesh.film.path_film import LoadedFilms, cold_film
 from tribodyn.mesh.film.sheared_film import ShearedFilms, place_from_pitch
 from tribodyn.mesh.sharing import Teeth, ToothContact
@@ -289,7 +290,7 @@ class FilmsFromTable(LoadedFilms):
         warn_coarse(self.values[_ERROR], self.path.settings.film["nodes"])
 
     def friction(
-        self, contact: TribologicalContact, motion: Any, settings: ToothContact
+        self, contact: TribologicalContact, motion: ContactMotion, settings: ToothContact
     ) -> Array | FrictionParts:
         """Evaluate the friction law; one that shears the film has a table of its own."""
         if not LAWS[settings.friction_law].needs_film:

@@ -16,7 +16,7 @@ from typing import Any, Protocol
 
 import numpy as np
 
-from tribodyn.contact import Kinematics, hertz_line
+from tribodyn.contact import hertz_line
 from tribodyn.ehl import FILM_MODELS
 from tribodyn.ehl.steady.batch import Films
 from tribodyn.ehl.traction.film_state import FilmState
@@ -52,6 +52,7 @@ from tribodyn.mesh.film.film_refinement import (
     joined_over_age,
     places_of,
 )
+from tribodyn.mesh.film.loaded_contacts import ContactMotion
 from tribodyn.mesh.grid import PhaseFunction, PhaseGrid
 from tribodyn.mesh.sharing import Teeth, ToothContact
 from tribodyn.progress import Progress
@@ -102,7 +103,7 @@ class FilmAt(Protocol):
         """Films as they are reported under these loads, and a mask of their certain quantities."""
 
     def friction(
-        self, contact: TribologicalContact, motion: Kinematics, settings: ToothContact
+        self, contact: TribologicalContact, motion: ContactMotion, settings: ToothContact
     ) -> Friction:
         """Friction of every pair in contact by the law of the settings, with its parts if any."""
 
@@ -142,7 +143,7 @@ class FormulaFilm:
         return films, np.ones((len(QUANTITIES), *(1,) * load.ndim), dtype=bool)
 
     def friction(
-        self, contact: TribologicalContact, motion: Kinematics, settings: ToothContact
+        self, contact: TribologicalContact, motion: ContactMotion, settings: ToothContact
     ) -> Friction:
         """Evaluate the friction law."""
         return friction_by_law(settings.friction_law, contact, settings.friction_options)
@@ -337,7 +338,7 @@ class SolvedPath(LoadedFilms):
         )
 
     def friction(
-        self, contact: TribologicalContact, motion: Kinematics, settings: ToothContact
+        self, contact: TribologicalContact, motion: ContactMotion, settings: ToothContact
     ) -> Friction:
         """Friction of every pair; a law that shears the film is evaluated at the solved places."""
         if LAWS[settings.friction_law].needs_film:
@@ -387,7 +388,7 @@ def film_of(
     )
 
 
-def film_friction(solved: SolvedPath, motion: Kinematics, settings: ToothContact) -> Friction:
+def film_friction(solved: SolvedPath, motion: ContactMotion, settings: ToothContact) -> Friction:
     """Friction of the sheared film, from its values at the solved places over the sliding speed.
 
     A contact between two places uses its actual sliding speed, so that the steep reversal at the

@@ -8,8 +8,7 @@ takes each line as one elliptical contact.
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from types import SimpleNamespace
-from typing import Any, cast
+from typing import Any, ClassVar, NamedTuple, cast
 
 import numpy as np
 
@@ -28,6 +27,7 @@ from tribodyn.mesh.film.film_lookup import (
     table_for,
 )
 from tribodyn.mesh.film.film_table import FilmTable
+from tribodyn.mesh.film.loaded_contacts import FilmSprings
 from tribodyn.mesh.film.path_film import FormulaFilm
 from tribodyn.mesh.film.sheared_film import place_from_pitch
 from tribodyn.mesh.hypoid.cells import CellSprings
@@ -39,7 +39,7 @@ from tribodyn.mesh.loads import (
     under_load,
     warn_of_rigid_films,
 )
-from tribodyn.mesh.sharing import LEAST_SHARE, FilmSprings, ToothContact
+from tribodyn.mesh.sharing import LEAST_SHARE, ToothContact
 from tribodyn.types import Array, Index, Mask
 
 #: Film model of each line as an elliptical contact; the other models are for line contacts.
@@ -87,10 +87,16 @@ class _EllipseFilm(FormulaFilm):
         return Films(None, films, None, None)
 
 
+class _CellShare(NamedTuple):
+    """Part of the torque on each cell."""
+
+    share: Array
+
+
 class _CellTeeth:
     """Cells as tooth pairs of the load sharing: columns are the cells of all pairs."""
 
-    coupled, least_share = True, LEAST_SHARE
+    coupled: ClassVar[bool] = True
 
     def __init__(self, loaded: HypoidLoadedContact, active: Mask, least: float) -> None:
         cells = loaded.cells
@@ -101,7 +107,7 @@ class _CellTeeth:
         ]
         arm = cells.touch.lever
         self.load_per_width = self._spread(self._torque / (arm * cells.length))
-        self.problem = SimpleNamespace(face_widths=self._spread(cells.length))
+        self.face_widths = self._spread(cells.length)
         self.normal_force, self.face_width = least / LEAST_SHARE, 1.0
         self.least_load = least
         self.loaded = loaded
@@ -119,7 +125,7 @@ class _CellTeeth:
         """Load per length of the cells without films."""
         return np.asarray((self._dry.line_force / self._cells.length)[self._active])
 
-    def shared_load(self, film: FilmSprings | None = None) -> Any:
+    def shared_load(self, film: FilmSprings | None = None) -> _CellShare:
         """Share of each cell in the torque, with its film in series."""
         cells, teeth = self._cells, self._dry.springs.stiffness
         self.loaded = self._dry
@@ -128,7 +134,7 @@ class _CellTeeth:
             soft = cells.length / self._of_lines(film.stiffness)
             self.loaded = self._dry.with_film(CellSprings(1.0 / (1.0 / teeth + soft), lead))
         share = self.loaded.line_force * cells.touch.lever / self._torque
-        return SimpleNamespace(share=self._spread(share))
+        return _CellShare(self._spread(share))
 
     def named(self, row: int, column: int) -> str:
         """Name a cell."""
@@ -166,11 +172,11 @@ def cell_films(
     loads = _loads(teeth, settings, pairs, active)
     loaded = teeth.loaded
     films = loads.film_at(loads.tribological)
-    flat = SimpleNamespace(**{name: column[active] for name, column in motion._asdict().items()})
+    flat = CellMotion(*(column[active] for column in motion))
     contact = tribological_contact(
-        cast(Any, flat), pairs, loads.tribological, settings.composite_roughness, None, films
+        flat, pairs, loads.tribological, settings.composite_roughness, None, films
     )
-    parts = _parts(loads.film_at.friction(contact, cast(Any, flat), settings))
+    parts = _parts(loads.film_at.friction(contact, flat, settings))
     reported = reported_films(films, loads, teeth.least_load)
     return _carrying(loaded, active, reported, contact, parts)
 
@@ -182,7 +188,9 @@ def _signed_sliding(motion: CellMotion) -> Array:
     return np.asarray(faster * motion.sliding_speed)
 
 
-def _loads(teeth: _CellTeeth, settings: ToothContact, pairs: PairsInContact, active: Mask) -> Loads:
+def _loads(
+    teeth: _CellTeeth, settings: ToothContact, pairs: PairsInContact, active: Mask
+) -> Loads[_CellShare]:
     """Loads of the cells and their films."""
     film: FormulaFilm | FilmLookup
     cells, line = teeth.loaded.cells, np.asarray(np.nonzero(active)[0])
@@ -206,7 +214,7 @@ def _loads(teeth: _CellTeeth, settings: ToothContact, pairs: PairsInContact, act
                 settings, table, pairs, teeth.in_contact, teeth.least_load, no_pitch, place
             )
         try:
-            loads = under_load(cast(Any, teeth), cast(Any, teeth), settings, film)
+            loads = under_load(teeth, settings, film, teeth.named)
         except OutsideTableError:
             raise ComputationError(
                 f"the films of the {pairs.age.size} cells cannot be tabulated",
