@@ -10,6 +10,7 @@ import pytest
 
 import tribodyn as td
 from tribodyn.app.machine_form import MachineForm
+from tribodyn.errors import InputError
 from tribodyn.gear import Misalignment
 from tribodyn.study import MachineCase
 from tribodyn.study.pipeline.tooth_contact import mesh_of
@@ -166,3 +167,29 @@ def test_engine_and_load_are_coupled_in_the_case_file() -> None:
 def test_impossible_values_name_the_key(changes: dict[str, Any], message: str) -> None:
     with pytest.raises(td.InputError, match=message):
         axle().replace(changes)
+
+
+@pytest.mark.slow
+def test_faults_of_hypoid_gears_are_those_of_the_pair() -> None:
+    """At low speed an eccentricity is a line of its size, beside the lines of the sound mesh."""
+    from tribodyn.study.faults.machine_motion import machine_turning_motion
+
+    case = axle(operation__speed="60 rpm")
+    sound = td.run(case).operation
+
+    def lines(**fault: Any) -> np.ndarray:
+        stated = {f"faults.f.{key}": value for key, value in {"gear": "z1", **fault}.items()}
+        motion = machine_turning_motion(case.replace(stated), sound)
+        assert motion.cycles == 10
+        return np.abs(motion.harmonics("meshes.axle.transmission_error")[1])
+
+    none = lines(kind="eccentricity", amplitude="0 um")
+    wave = lines(kind="waviness", order=3, amplitude="10 um")
+    assert none[1:10].max() < 1e-10
+    assert wave[3] == pytest.approx(10e-6, rel=5e-3)
+    assert wave[[10, 20]] == pytest.approx(none[[10, 20]], rel=5e-3)
+    assert wave[[1, 2, 4, 5, 6]].max() < 1e-8
+    pitch = lines(kind="pitch-deviations", accuracy_class=6)
+    assert pitch[1:10].max() > 1e-6
+    with pytest.raises(InputError, match=r"faults\.f\.kind.*hypoid pair"):
+        lines(kind="broken-tooth", tooth=1)

@@ -8,13 +8,14 @@ from functools import partial
 from typing import TYPE_CHECKING, Any
 
 from tribodyn.errors import Argument, InputError, Problem
+from tribodyn.nomenclature import GEARS
 from tribodyn.study.case.values import KeyedProblems
 from tribodyn.study.faults.kinds import WAVES
 from tribodyn.study.faults.section import (
     PartFaultTable,
+    check_fault,
     fault_problems,
     fault_tables,
-    located_in,
     part_of,
     read_fault,
 )
@@ -71,21 +72,15 @@ def impossible_faults(case: MachineCase) -> KeyedProblems:
         elif fault.shaft:
             speed = case.machine().kinematics.shafts[part_of(fault.shaft)].speed
             checks = [partial(check_shaft, fault, speed)]
-        located = (list(_located(f"faults.{name}", check, fault)) for check in checks)
+        located = (list(_located(f"faults.{name}", check)) for check in checks)
         problems += next((each for each in located if each), [])
     return problems
 
 
-def _located(
-    key: str, check: Callable[[], object], fault: PartFaultTable | None = None
-) -> Iterator[tuple[str, Problem]]:
+def _located(key: str, check: Callable[[], object]) -> Iterator[tuple[str, Problem]]:
     """Problems of a check at the keys of a table."""
     try:
-        if fault is None:
-            check()
-        else:
-            with located_in(fault):
-                check()
+        check()
     except InputError as error:
         for problem in error.problems:
             where = problem.where
@@ -116,29 +111,21 @@ def shaft_excitation(fault: Any) -> ShaftExcitation:
 
 def _check_gear_fault(case: MachineCase, fault: PartFaultTable, mesh: str) -> None:
     if mesh in case.meshes_with_teeth:
-        pair = case.pair(mesh, case.operating_point)
-        if pair.spur_pair is None:
-            what = f"mesh {mesh} is a {pair.gears.kind} pair"
-            why = "Faults act on cylindrical pairs, whose teeth are computed one by one"
-            raise InputError(what, Argument("gear"), why, "Name another gear")
-        gear_fault = _on_mesh(case, fault, mesh)
-        gear_fault._check(pair.spur_pair)
-        gear_fault._check_model(pair.spur_pair, pair.stiffness.model)
+        check_fault(case.pair(mesh, case.operating_point), fault, gear=_role(case, fault, mesh))
     elif fault.kind not in WAVES or fault.lead_angle:
         what = f"mesh {mesh} has a constant stiffness, and the fault is of the kind {fault.kind}"
         why = "Of a constant stiffness the teeth are not computed one by one"
         raise InputError(what, Argument("kind"), why, "Remove stiffness from the mesh")
 
 
-def _on_mesh(case: MachineCase, fault: PartFaultTable, mesh: str, **changes: Any) -> Fault:
-    role = case._pinion_and_wheel(mesh).index(part_of(fault.gear))
-    gear = ("pinion", "wheel")[role]
-    return read_fault(fault, gear=gear, **changes)  # type: ignore[return-value]
+def _role(case: MachineCase, fault: PartFaultTable, mesh: str) -> str:
+    """The gear with a fault as the pair of a mesh names it."""
+    return GEARS[case._pinion_and_wheel(mesh).index(part_of(fault.gear))]
 
 
 def faults_of_mesh(case: MachineCase, machine: Machine, mesh: str) -> list[Fault]:
     """Faults of both gears of a mesh, with the teeth counted as they come into contact there."""
-    faults = []
+    faults: list[Any] = []
     for fault in case.faults.values():
         gear = part_of(fault.gear)
         if gear not in machine.meshes[mesh].gears:
@@ -146,7 +133,7 @@ def faults_of_mesh(case: MachineCase, machine: Machine, mesh: str) -> list[Fault
         first = next(name for name, each in machine.meshes.items() if gear in each.gears)
         changes = _changes(machine, fault, gear, (first, mesh))
         if changes is not None:
-            faults.append(_on_mesh(case, fault, mesh, **changes))
+            faults.append(read_fault(fault, gear=_role(case, fault, mesh), **changes))
     return faults
 
 

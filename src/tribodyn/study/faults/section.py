@@ -311,14 +311,14 @@ def located_in(fault: FaultTable) -> Iterator[None]:
         raise InputError([replace(p, where=Argument("file")) for p in error.problems]) from None
 
 
-def check_fault(case: Any, fault: FaultTable) -> None:
+def check_fault(case: Any, fault: FaultTable, **changes: Any) -> None:
     """Raise InputError if the pair of a case cannot have a fault."""
     from tribodyn.faults import Fault
     from tribodyn.faults.turning_table import check_hypoid_fault
 
     require_teeth(case)
     with located_in(fault):
-        stated = read_fault(fault)
+        stated = read_fault(fault, **changes)
         if isinstance(stated, Fault) and case.gears.kind == "hypoid":
             check_hypoid_fault(stated)
         elif isinstance(stated, Fault):
