@@ -12,8 +12,9 @@ import pytest
 
 import tribodyn
 from tribodyn.cli import call
-from tribodyn.cli.app import ANY, COMMANDS, PAIR
+from tribodyn.cli.app import COMMANDS
 from tribodyn.study import Case, MachineCase
+from tribodyn.study.studies.needs import KINDS, PARTS, STUDIES, kind_of, mesh_names, takes
 
 pytestmark = pytest.mark.filterwarnings("ignore::tribodyn.errors.ModelWarning")
 
@@ -105,6 +106,10 @@ def _gear(name: str) -> list[str]:
     return [] if isinstance(case, Case) else ["--gear", next(iter(case.gears))]
 
 
+def _mesh(name: str) -> list[str]:
+    return ["--mesh", mesh_names(tribodyn.load_case(name))[0]]
+
+
 def _sensor(name: str) -> str:
     case = tribodyn.load_case(name)
     if isinstance(case, MachineCase):
@@ -130,10 +135,12 @@ _ARGUMENTS: dict[str, Callable[[_Place, str], list[str]]] = {
     "new": lambda p, n: ["my.toml", "--from", n],
     "cite": lambda p, n: [p.result(n)],
     "export": lambda p, n: [p.file(n), "--rexs", "my.rexs"],
-    "harris": lambda p, n: [p.file(n), _torque(n)],
-    "relief": lambda p, n: [p.file(n), _torque(n)],
-    "losses": lambda p, n: [p.file(n), "--torque", _torque(n), "--speed", f"{_speed(n)} rpm"],
-    "friction-from-loss": lambda p, n: ["fzg-wheel-driven", "--case", p.file(n)],
+    "harris": lambda p, n: [p.file(n), _torque(n), *_mesh(n)],
+    "relief": lambda p, n: [p.file(n), _torque(n), *_mesh(n)],
+    "losses": lambda p, n: [
+        p.file(n), "--torque", _torque(n), "--speed", f"{_speed(n)} rpm", *_mesh(n)
+    ],
+    "friction-from-loss": lambda p, n: ["fzg-wheel-driven", "--case", p.file(n), *_mesh(n)],
     "bifurcation": lambda p, n: [
         p.file(n), f"operation.speed={_range(n)}:3", "--cycles", "8", "--transient", "8"
     ],
@@ -149,7 +156,7 @@ _ARGUMENTS: dict[str, Callable[[_Place, str], list[str]]] = {
 
 
 def test_every_command_with_a_case_is_tried() -> None:
-    taking = {each.name for each in COMMANDS if each.takes}
+    taking = {each.name for each in COMMANDS if each.takes_case}
     assert set(_ARGUMENTS) | _APART == taking
 
 
@@ -179,9 +186,9 @@ def test_it_computes_or_refuses(
         problems = json.loads(output.out)["error"]["problems"]
         assert code in (1, 2)
         assert all(each["what"] and each["remedy"] for each in problems), problems
-    kinds = {each.name: each.takes for each in COMMANDS}
-    is_pair = isinstance(tribodyn.load_case(name), Case)
-    if kinds[command] == ANY:
-        assert code == 0 or _EXCUSES.get(command, "\0") in output.err, output.err
-    elif kinds[command] == PAIR and not is_pair:
+    case = tribodyn.load_case(name)
+    if kind_of(case) in PARTS and not takes(command, case):
         assert code == 2
+        assert f"{command} does not take one" in output.out
+    elif STUDIES.get(command, STUDIES["run"]).kinds == KINDS:
+        assert code == 0 or _EXCUSES.get(command, "\0") in output.err, output.err

@@ -17,6 +17,7 @@ from tribodyn.study.case.section import Table
 from tribodyn.study.faults.kinds import kind_table
 from tribodyn.study.parts_reference import machine_tables
 from tribodyn.study.pipeline.citations import bibliography
+from tribodyn.study.studies.needs import needs_table
 
 
 def _tables(text: str) -> str:
@@ -46,6 +47,12 @@ def _faults(text: str) -> str:
     """The page on faults with the table of kinds between its marks."""
     block = f"<!-- kinds -->\n{kind_table()}\n<!-- end -->"
     return re.sub(r"<!-- kinds -->\n.*?<!-- end -->", lambda _: block, text, flags=re.DOTALL)
+
+
+def _needs(text: str) -> str:
+    """The page on the command line with the table of studies between its marks."""
+    block = f"<!-- needs -->\n{needs_table()}\n<!-- end -->"
+    return re.sub(r"<!-- needs -->\n.*?<!-- end -->", lambda _: block, text, flags=re.DOTALL)
 
 
 def _bibliography(text: str) -> str:
@@ -107,6 +114,7 @@ _DEPRECATED = (
 #: What writes a page, or a part of it, anew.
 GENERATED = {
     "README.md": (_start,),
+    "docs/command-line.md": (_needs,),
     "docs/case-file.md": (_start, _tables),
     "docs/faults.md": (_faults,),
     "docs/bibliography.md": (_bibliography,),

@@ -12,7 +12,7 @@ from pages import ROOT, blocks
 
 import tribodyn as td
 from tribodyn.cli import call
-from tribodyn.cli.app import COMMANDS, PAIR
+from tribodyn.cli.app import COMMANDS
 from tribodyn.ehl import FILM_MODELS
 from tribodyn.friction import LAWS
 from tribodyn.stiffness import MODELS
@@ -82,10 +82,3 @@ def test_every_command_is_on_its_page() -> None:
     page = (_DOCS / "command-line.md").read_text(encoding="utf-8")
     for command in COMMANDS:
         assert f"`tribodyn {command.name}" in page
-
-
-def test_commands_of_pairs_alone_are_listed() -> None:
-    page = (_DOCS / "command-line.md").read_text(encoding="utf-8")
-    sentence = page.partition("all commands but")[2].partition(". `tribodyn")[0]
-    named = [name.split()[0] for name in re.findall(r"`([^`]+)`", sentence)]
-    assert named == [each.name for each in COMMANDS if each.takes == PAIR]

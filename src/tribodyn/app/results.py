@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 from dash import dcc, html
 
 from tribodyn.app.session import RUNS, TabSession
-from tribodyn.app.studies import STUDIES
+from tribodyn.app.studies import STUDIES, offered
 from tribodyn.errors import InputError, TribodynError, collected
 from tribodyn.report.figure_blocks import block_of_figure, topic_of
 from tribodyn.study.machine.case import MachineCase
@@ -370,7 +370,7 @@ def studies(desk: TabSession) -> list[Any]:
             ]
         )
         for kind, study in STUDIES.items()
-        if study.takes(desk.case)
+        if offered(kind, desk.case)
     ]
     parts: list[Any] = [html.Section([html.H3("Studies"), html.Ul(kinds)], className="block kinds")]
     if desk.study:

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 from tribodyn.app.case_form import CaseForm, key_label
 from tribodyn.app.jobs import Job, Jobs
 from tribodyn.app.machine_form import MachineForm
-from tribodyn.app.studies import STUDIES, first_values, form_of, numeric_keys
+from tribodyn.app.studies import STUDIES, first_values, form_of, numeric_keys, offered
 from tribodyn.app.workspace import Workspace
 from tribodyn.cases.catalogue import cases
 from tribodyn.cases.load import load_case
@@ -60,7 +60,7 @@ class TabSession:
         """Replace the case and clear the form."""
         self.case: AnyCase = case
         self.name = name
-        if self.study and not STUDIES[self.study].takes(case):
+        if self.study and not offered(self.study, case):
             self.study = ""
         self.typed: dict[str, str] = {}
         self.units: dict[str, str] = {}
@@ -119,7 +119,7 @@ class TabSession:
 
     def choose_study(self, kind: str) -> None:
         """Select a kind of study."""
-        if kind in STUDIES and STUDIES[kind].takes(self.case):
+        if kind in STUDIES and offered(kind, self.case):
             self.study = kind
             self.values.setdefault(kind, first_values(kind, self.case))
 

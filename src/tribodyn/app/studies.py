@@ -12,7 +12,8 @@ from tribodyn.errors import InputError
 from tribodyn.model import REQUIRED, Option, choice, integer, number, text
 from tribodyn.nomenclature import GEARS
 from tribodyn.study.case.values import FaultError, Plain, read_value
-from tribodyn.study.machine.user_tables import PartsCase
+from tribodyn.study.studies.needs import STUDIES as NEEDS
+from tribodyn.study.studies.needs import kind_of
 from tribodyn.study.studies.range_syntax import (
     UnreadError,
     read_list,
@@ -24,6 +25,7 @@ from tribodyn.study.studies.range_syntax import (
 if TYPE_CHECKING:
     from tribodyn.progress import Progress
     from tribodyn.study.case.case import Case
+    from tribodyn.study.machine.user_tables import PartsCase
 
 #: Values of a study by name: numbers and choices checked, others as text; None or empty: default.
 Values = Mapping[str, Any]
@@ -51,11 +53,6 @@ class Study:
     meaning: str
     options: Mapping[str, Option]
     function: Callable[[Any, Values, Progress, Path], Shown]
-    machines: bool = False  #: whether it takes machines too
-
-    def takes(self, case: Case | PartsCase) -> bool:
-        """Whether it can be computed for a case."""
-        return self.machines or not isinstance(case, PartsCase)
 
     def compute(
         self, case: Case | PartsCase, texts: Mapping[str, str], progress: Progress, target: Path
@@ -186,7 +183,7 @@ def _relief(case: Case, values: Values, progress: Progress, target: Path) -> Sho
     content = _of(answer, "relief", case, target)
     gears = list(GEARS) if values["gears"] == "both" else [values["gears"]]
     reliefs = [f"gears.{g}.modification.tip_relief{part}" for g in gears for part in _RELIEF]
-    changes = answer.best.user_input if answer.best is not None else {}
+    changes = getattr(answer.best, "user_input", {})
     return {**content, "relief": {key: changes[key] for key in reliefs if key in changes}}
 
 
@@ -264,6 +261,12 @@ _LIST = _text(None, "torques", "60 N*m, 120 N*m")
 _KEY = "operation.speed"
 _GUARD = "guards against a slip of the keyboard"
 
+
+def offered(kind: str, case: Case | PartsCase) -> bool:
+    """Whether the page offers a study for a case."""
+    return kind_of(case) in NEEDS[kind].kinds
+
+
 STUDIES: dict[str, Study] = {
     "sweep": Study(
         "Sweep",
@@ -275,7 +278,6 @@ STUDIES: dict[str, Study] = {
             "second_values": _text(None, "its values", _RANGE),
         },
         _sweep,
-        machines=True,
     ),
     "losses": Study(
         "Operating map",
@@ -349,7 +351,6 @@ STUDIES: dict[str, Study] = {
             "size": integer(32, 2, 4096, _GUARD, meaning="size of the sample, a power of two"),
         },
         _sobol,
-        machines=True,
     ),
     "relief": Study(
         "Tip relief",
@@ -368,7 +369,6 @@ STUDIES: dict[str, Study] = {
         "Natural frequencies and critical speeds; no motion is computed.",
         {"speeds": _text(None, "speeds of the Campbell diagram", _ENDS)},
         _modes,
-        machines=True,
     ),
     "run-up": Study(
         "Run-up",
@@ -378,7 +378,6 @@ STUDIES: dict[str, Study] = {
             "duration": number(10.0, 0.1, 1e4, _GUARD, meaning="length of the rise in seconds"),
         },
         _run_up,
-        machines=True,
     ),
 }
 

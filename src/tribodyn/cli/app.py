@@ -7,6 +7,7 @@ from typing import Annotated, Any, NamedTuple
 from cyclopts import App, Parameter
 
 import tribodyn
+from tribodyn.study.studies.needs import help_line
 
 WELCOME = """\
 tribodyn: from gear and lubricant data to tooth contact, friction and vibration.
@@ -18,10 +19,6 @@ tribodyn: from gear and lubricant data to tooth contact, friction and vibration.
 tribodyn --help shows all commands."""
 
 
-#: Kinds of cases.
-ANY, PAIR = "any", "pair"
-
-
 class Command(NamedTuple):
     """A command: its function within ``commands``, and what it takes."""
 
@@ -29,11 +26,11 @@ class Command(NamedTuple):
     place: str
     help: str  #: one line
     example: str = ""  #: what to write after it
-    takes: str = ANY  #: kind of its case; empty without one
+    takes_case: bool = True
 
 
 COMMANDS = (
-    Command("cases", "case_commands:cases", "List the built-in cases.", takes=""),
+    Command("cases", "case_commands:cases", "List the built-in cases.", takes_case=False),
     Command(
         "app", "app_command:app", "Serve a page in the browser for the whole job.", "fzg-roughness"
     ),
@@ -55,28 +52,24 @@ COMMANDS = (
         "nonlinear_commands:bifurcation",
         "Follow the motion of a case over one value.",
         'fzg-roughness "operation.speed=400..3500 rpm:300"',
-        takes=PAIR,
     ),
     Command(
         "continuation",
         "nonlinear_commands:continuation",
         "Follow the periodic motion of a case over one value, stable or not.",
         'fzg-roughness "operation.speed=400..3500 rpm"',
-        takes=PAIR,
     ),
     Command(
         "basins",
         "nonlinear_commands:basins",
         "Find which motion of a case a disturbed start comes to.",
         "fzg-roughness",
-        takes=PAIR,
     ),
     Command(
         "lyapunov",
         "nonlinear_commands:lyapunov",
         "Find the Lyapunov exponents of a case: whether it is chaos.",
         "fzg-roughness",
-        takes=PAIR,
     ),
     Command(
         "sobol",
@@ -101,14 +94,12 @@ COMMANDS = (
         "study_commands:harris",
         "Find the static transmission error over the torque.",
         "fzg-roughness",
-        takes=PAIR,
     ),
     Command(
         "relief",
         "study_commands:relief",
         "Find the best tip relief of a case.",
         "fzg-roughness",
-        takes=PAIR,
     ),
     Command(
         "run-up",
@@ -121,34 +112,29 @@ COMMANDS = (
         "losses_commands:losses",
         "Find losses and efficiency of a case over torque and speed.",
         "fzg-roughness",
-        takes=PAIR,
     ),
     Command(
         "friction-from-loss",
         "losses_commands:friction_from_loss",
         "Find friction coefficients from measured torque losses.",
         "losses.csv --case fzg-roughness",
-        takes=PAIR,
     ),
     Command(
         "experiment",
         "experiment_command:experiment",
         "Judge published claims on one gear pair: friction.",
         "friction",
-        takes=PAIR,
     ),
     Command(
         "surrogate",
         "surrogate_command:surrogate",
         "Learn the steady response of a case, and predict it at once.",
         "train fzg-roughness",
-        takes=PAIR,
     ),
     Command(
         "paper",
         "experiment_command:paper",
         "Compare the printed tables of a source with computed figures.",
-        takes=PAIR,
     ),
     Command(
         "compare",
@@ -174,30 +160,31 @@ COMMANDS = (
         "exchange_commands:import_",
         "List a gearbox model of another program (REXS), and make a case of it.",
         "gearbox.rexs --out my.toml",
-        takes="",
+        takes_case=False,
     ),
     Command(
         "export",
         "exchange_commands:export",
         "Write a case for other gear programs (REXS), or the tables of a result.",
         "fzg-roughness --rexs gearbox.rexs",
-        takes=PAIR,
     ),
     Command("new", "case_commands:new", "Write a commented case file to start from.", "my.toml"),
     Command(
         "cookbook",
         "explain_commands:cookbook",
         "Print a short script for a common task, or list all of them.",
-        takes="",
+        takes_case=False,
     ),
     Command(
         "explain",
         "explain_commands:explain",
         "Explain a symbol, key, model or warning.",
         "epsilon_alpha",
-        takes="",
+        takes_case=False,
     ),
-    Command("units", "explain_commands:units", "List the units and their spellings.", takes=""),
+    Command(
+        "units", "explain_commands:units", "List the units and their spellings.", takes_case=False
+    ),
     Command(
         "warm-up",
         "run_command:warm_up",
@@ -251,11 +238,6 @@ class _Help:
         DefaultFormatter().render_description(console, options, description)
 
 
-def names_of_commands(takes: str) -> str:
-    """Names of the commands whose case is of a kind."""
-    return ", ".join(each.name for each in COMMANDS if each.takes == takes)
-
-
 def make_app() -> App:
     """Build the command line; nothing heavy is imported."""
     app = App(
@@ -273,5 +255,6 @@ def make_app() -> App:
         help="Let the shell complete commands and options: bash, zsh or fish."
     )
     for each in COMMANDS:
-        app.command(f"tribodyn.cli.commands.{each.place}", name=each.name, help=each.help)
+        text = each.help + help_line(each.name)
+        app.command(f"tribodyn.cli.commands.{each.place}", name=each.name, help=text)
     return app

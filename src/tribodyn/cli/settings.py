@@ -25,8 +25,9 @@ Words = Annotated[list[str] | None, Parameter(name="--set", negative="")]
 CaseName = Annotated[
     str, Parameter(help="Built-in case, or path of a case file or of a REXS model.")
 ]
-PairName = Annotated[
-    str, Parameter(help="Built-in gear pair, or path of the case file of one; no machine.")
+Mesh = Annotated[
+    str | None,
+    Parameter(help="Mesh of a machine or a stage; torques and speeds are those of its pinion."),
 ]
 Force = Annotated[bool, Parameter(negative="", help="Replace an earlier result in that directory.")]
 Settings = Annotated[
@@ -87,19 +88,13 @@ def read_changes(settings: Sequence[str]) -> dict[str, Any]:
     return changes
 
 
-def changed_case(name_or_path: str, settings: Sequence[str]) -> Case:
-    """Load the case of a gear pair and change values."""
-    from tribodyn.study.case.case import Case
+def changed_case(name_or_path: str, settings: Sequence[str], study: str) -> Any:
+    """Load the case of a study, which has what the study needs, and change values."""
+    from tribodyn.study.studies.needs import require
 
     case = changed_any_case(name_or_path, settings)
-    if isinstance(case, Case):
-        return case
-    from tribodyn.cli.app import ANY, names_of_commands
-
-    kind = "machine" if hasattr(case, "machine") else "planetary stage"
-    why = f"Commands for machines and planetary stages: {names_of_commands(ANY)}"
-    remedy = "Name a case of one pair of gears (tribodyn cases), or use one of these commands"
-    raise InputError(f"this is a {kind}, not a gear pair", name_or_path, why, remedy)
+    require(study, case, name_or_path)
+    return case
 
 
 def changed_any_case(name_or_path: str, settings: Sequence[str]) -> Case | PartsCase:

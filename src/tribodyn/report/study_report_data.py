@@ -41,7 +41,7 @@ class StudyReportData(NamedTuple):
     head: Sequence[str]
     rows: Sequence[Sequence[str]]
     facts: dict[str, Any]  #: in SI
-    best: Case | None = None  #: resulting case, such as the optimum
+    best: Case | PartsCase | None = None  #: resulting case, such as the optimum
 
 
 def figure_with_caption(figure: Drawing, result: Any) -> Picture:
@@ -126,11 +126,13 @@ def modes_report_data(case: Case, ends: Any, progress: Progress = SILENT) -> Stu
     return StudyReportData(modes, figures, statements, HEAD, [cells(row) for row in rows], facts)
 
 
-def harris_report_data(case: Case, torque: Sequence[Any] | None) -> StudyReportData:
+def harris_report_data(
+    case: Case | PartsCase, torque: Sequence[Any] | None, mesh: str | None = None
+) -> StudyReportData:
     """Static transmission error over the torque."""
     from tribodyn.study.studies.static import harris_map
 
-    study = harris_map(case, torque)
+    study = harris_map(case, torque, mesh=mesh)
     columns = {
         "torque": study.torque,
         "mean_transmission_error": study.mean_transmission_error,
@@ -147,11 +149,13 @@ def harris_report_data(case: Case, torque: Sequence[Any] | None) -> StudyReportD
     return StudyReportData(study, [figure], [f"{_title(figure)}."], head, rows, facts)
 
 
-def relief_report_data(case: Case, torque: Sequence[Any] | None, gears: str) -> StudyReportData:
+def relief_report_data(
+    case: Case | PartsCase, torque: Sequence[Any] | None, gears: str, mesh: str | None = None
+) -> StudyReportData:
     """Tip relief with the least transmission error, and the case with it."""
     from tribodyn.study.studies.static import optimize_tip_relief
 
-    optimum = optimize_tip_relief(case, torque, gears=gears)
+    optimum = optimize_tip_relief(case, torque, gears=gears, mesh=mesh)
     before, after = optimum.peak_to_peak_before, optimum.peak_to_peak_after
     rows = [
         [f"{t:.4g}", f"{b * 1e6:.4g}", f"{a * 1e6:.4g}"]
@@ -238,13 +242,17 @@ def _levels_report_data(run: MachineLevels) -> StudyReportData:
 
 
 def losses_report_data(
-    case: Case, torque: Any = None, speed: Any = None, progress: Progress = SILENT
+    case: Case | PartsCase,
+    torque: Any = None,
+    speed: Any = None,
+    progress: Progress = SILENT,
+    mesh: str | None = None,
 ) -> StudyReportData:
     """Losses and efficiency over torque and speed."""
     from tribodyn.losses.gearbox import PARTS
     from tribodyn.study.studies.losses import loss_map
 
-    gearbox = loss_map(case, torque=torque, speed=speed, progress=progress)
+    gearbox = loss_map(case, torque=torque, speed=speed, mesh=mesh, progress=progress)
     figure = figure_with_caption(plot.losses, gearbox)
     counted = [label for part, label in PARTS.items() if getattr(gearbox, part).any()]
     scope = _ALONE if counted == ["teeth"] else f"Included losses: {', '.join(counted)}."

@@ -9,11 +9,11 @@ import pytest
 import tribodyn as td
 from tribodyn import plot
 from tribodyn.cli import main
-from tribodyn.cli.app import ANY, COMMANDS
 from tribodyn.machine import machine_modes
 from tribodyn.study.machine.modes import axial_notes, mode_rows, structure_at_rest
 from tribodyn.study.machine.read import read_any_case
 from tribodyn.study.pipeline.summary_figures import figure_of, is_figure
+from tribodyn.study.studies.needs import STUDIES, takes
 
 #: The geared shafts whose natural frequencies are printed, with a spur mesh of constant stiffness.
 GEARED = """
@@ -167,12 +167,12 @@ def test_every_key_of_the_summary_has_a_meaning_and_a_unit(result):
 
 
 def test_commands_for_pairs_name_those_for_machines(capsys):
-    assert command("harris", "two-stage-spur") == 2
+    assert command("experiment", "friction", "two-stage-spur") == 2
     message = capsys.readouterr().err
-    assert "this is a machine, not a gear pair" in message
-    listed = message.partition("planetary stages: ")[2].partition(". ")[0].split(", ")
-    assert listed == [each.name for each in COMMANDS if each.takes == ANY]
-    assert {"run", "check", "study", "recording", "signal", "cite"} <= set(listed)
+    assert "this is a machine, and experiment does not take one" in message
+    listed = message.partition("Studies of a machine: ")[2].rstrip(".\n").split(", ")
+    assert listed == [name for name in STUDIES if takes(name, td.load_case("two-stage-spur"))]
+    assert {"run", "study", "harris", "losses", "relief", "recording"} <= set(listed)
 
 
 def test_check_shows_speeds_and_torques(capsys):

@@ -6,7 +6,7 @@ from typing import Literal
 
 import numpy as np
 
-from tribodyn.cli.commands.study_commands import finish, prepare_any_study
+from tribodyn.cli.commands.study_commands import finish, prepare_study
 from tribodyn.cli.settings import CaseName, Flag, Force, Output, Words
 
 #: Share of the variants between the reported ends.
@@ -58,7 +58,7 @@ def ensemble(
     from tribodyn.study.pipeline.summary_figures import figure_of
     from tribodyn.uncertainty import bootstrap_band
 
-    ready, target = prepare_any_study("ensemble", case, out, set_, force)
+    ready, target = prepare_study("ensemble", case, out, set_, force)
     if not ready.uncertain:
         remedy = 'Give a value its spread, as in --set "operation.torque=90 N*m +- 2 %"'
         raise InputError(
@@ -128,7 +128,7 @@ def sobol(
     from tribodyn.errors import InputError
     from tribodyn.report.nonlinear_report_data import sobol_report_data
 
-    ready, target = prepare_any_study("sobol", case, out, set_, force)
+    ready, target = prepare_study("sobol", case, out, set_, force)
     if not ready.uncertain:
         remedy = 'Give values their tolerances, as in --set "operation.torque=90 N*m +- 5 %"'
         why = "Shares of a variance need keys with tolerances"

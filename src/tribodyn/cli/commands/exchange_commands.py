@@ -119,7 +119,7 @@ def export(
     if rexs is not None:
         from tribodyn.exchange import write_rexs
 
-        write_rexs(changed_case(case, set_ or []), rexs, force=force)
+        write_rexs(changed_case(case, set_ or [], "export"), rexs, force=force)
     elif tables is not None:
         from tribodyn.cases.stored_result import load_result
         from tribodyn.exchange import write_tables

@@ -9,7 +9,7 @@ from cyclopts import Parameter
 
 from tribodyn.cli.commands.sweep_command import INTERRUPTED, report_exit_code, run_checkpointed
 from tribodyn.cli.console import say, say_json, table, tell
-from tribodyn.cli.settings import Flag, Force, PairName, Settings, changed_case, read_ranges
+from tribodyn.cli.settings import CaseName, Flag, Force, Settings, changed_case, read_ranges
 from tribodyn.errors import InputError
 
 if TYPE_CHECKING:
@@ -21,7 +21,7 @@ _EXPERIMENTS = ("friction",)
 
 def experiment(
     kind: str,
-    case: PairName = "fzg-roughness",
+    case: CaseName = "fzg-roughness",
     /,
     *,
     roughness: str = "",
@@ -50,7 +50,7 @@ def experiment(
         remedy = f"Write: tribodyn experiment {_EXPERIMENTS[0]}"
         raise InputError(f'there is no experiment "{kind}"', "", "", remedy)
     target = out if out is not None else Path(f"{Path(case).stem}-{kind}")
-    ready, options = changed_case(case, set_ or []), _options(roughness, laws)
+    ready, options = changed_case(case, set_ or [], "experiment"), _options(roughness, laws)
 
     def compute(**checkpointing: Any) -> FrictionExperiment:
         from tribodyn.study.studies.friction_experiment import friction_experiment

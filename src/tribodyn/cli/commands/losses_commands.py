@@ -4,17 +4,20 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Annotated, Any
+
+from cyclopts import Parameter
 
 from tribodyn.cli.commands.study_commands import finish, prepare_study
 from tribodyn.cli.console import say, say_json, show_warnings, table, tell
 from tribodyn.cli.settings import (
+    CaseName,
     Flag,
     Force,
+    Mesh,
     Output,
-    PairName,
     Words,
     changed_case,
     check_place,
@@ -25,6 +28,7 @@ from tribodyn.errors import InputError, Problem, collected, did_you_mean
 from tribodyn.model import Option, number
 from tribodyn.nomenclature import GEARS
 from tribodyn.study.case.values import FaultError, read_value
+from tribodyn.study.studies.needs import mesh_pair, require
 
 if TYPE_CHECKING:
     from tribodyn.losses import FrictionFromLoss, PowerLossTable, RigPowerFlow
@@ -34,13 +38,35 @@ Text = str | None
 _EXAMPLES = {"torque": "50,150,300 N*m", "speed": "400..3500 rpm:8"}
 
 
+@dataclass(frozen=True)
+class _Points:
+    """Torques and speeds of a map."""
+
+    torque: Annotated[
+        Text,
+        Parameter(
+            help='"50,150,300 N*m" or "50..300 N*m:6"; by default 8 up to twice that of the case.'
+        ),
+    ] = None
+    speed: Annotated[
+        Text,
+        Parameter(
+            help='"400,1400 rpm" or "400..3500 rpm:8"; by default 8 up to twice that of the case.'
+        ),
+    ] = None
+
+
+#: Points at the torque and the speed of the case and about them.
+_USUAL = _Points()
+
+
 def losses(
-    case: PairName,
+    case: CaseName,
     /,
     *,
-    torque: Text = None,
-    speed: Text = None,
+    points: Annotated[_Points, Parameter(name="*")] = _USUAL,
     rig: Text = None,
+    mesh: Mesh = None,
     out: Output = None,
     set_: Words = None,
     force: Force = False,
@@ -50,10 +76,8 @@ def losses(
 
     Parameters
     ----------
-    torque : str
-        "50,150,300 N*m" or "50..300 N*m:6"; by default 8 up to twice that of the case.
-    speed : str
-        "400,1400 rpm" or "400..3500 rpm:8"; by default 8 up to twice that of the case.
+    points : _Points
+        Torques and speeds.
     rig : str
         Bearings of the slave gearbox of a back-to-back rig, such as "QJ 308": the power flow of the
         rig is drawn too, at the torque and speed of the case and with its gears in both gearboxes.
@@ -70,12 +94,10 @@ def losses(
 
     ready, target = prepare_study("losses", case, out, set_, force)
     slave = _slave(ready, rig)
-    points = {
-        name: _values(ready, name, text) for name, text in (("torque", torque), ("speed", speed))
-    }
+    values = {name: _values(ready, name, text) for name, text in vars(points).items()}
     with collected() as warnings:
         with progress_bar() as progress:
-            answer = losses_report_data(ready, **points, progress=progress)
+            answer = losses_report_data(ready, **values, progress=progress, mesh=mesh)
         if slave is not None:
             rig_figure = figure_with_caption(plot.power_flow, _rig(ready, slave, answer.facts))
             statements = [*answer.statements, f"{rig_figure[1].layout.title.text}."]
@@ -103,6 +125,7 @@ def _values(case: Case, name: str, text: Text) -> list[float] | None:
 def _slave(case: Case, rig: Text) -> Case | None:
     if rig is None:
         return None
+    require("losses --rig", case, "--rig")
     bearings = {f"losses.{gear}.bearing": rig for gear in GEARS}
     return case.replace(bearings, by="--rig")
 
@@ -147,6 +170,7 @@ def friction_from_loss(
     /,
     *,
     case: Text = None,
+    mesh: Mesh = None,
     set_: Words = None,
     out: Output = None,
     force: Force = False,
@@ -180,7 +204,7 @@ def friction_from_loss(
     target = out if out is not None else Path(f"{Path(file).stem}-friction")
     check_place(target, force)
     with collected() as warnings:
-        loss_table = _measured(file, case, _options(set_ or []))
+        loss_table = _measured(file, case, mesh, _options(set_ or []))
         friction = friction_from_power_loss(loss_table)
     head, rows = _friction_rows(friction)
     figure = figure_with_caption(plot.friction_from_loss, friction)
@@ -228,7 +252,7 @@ def _options(settings: Sequence[str]) -> dict[str, Any]:
     return options
 
 
-def _measured(file: str, case: Text, options: dict[str, Any]) -> PowerLossTable:
+def _measured(file: str, case: Text, mesh: Text, options: dict[str, Any]) -> PowerLossTable:
     """Return the table of the file, or the built-in table with this name."""
     from tribodyn.losses import gear_loss_factor, power_loss_table, read_power_loss_table
     from tribodyn.losses.loss_table import TABLES
@@ -238,7 +262,8 @@ def _measured(file: str, case: Text, options: dict[str, Any]) -> PowerLossTable:
         what = f"gear_loss_factor = {factor:g} and --case {case} are both given"
         raise InputError(what, "--set", "The gears of the case have their own", "Keep one of them")
     if case is not None:
-        factor = gear_loss_factor(changed_case(case, []).gear_pair)
+        ready = changed_case(case, [], "friction-from-loss")
+        factor = gear_loss_factor(mesh_pair("friction-from-loss", ready, mesh).pair.gear_pair)
     if file in TABLES and not Path(file).exists():
         changes: dict[str, Any] = {} if factor is None else {"gear_loss_factor": factor}
         return replace(power_loss_table(file), **changes, **options)

@@ -12,10 +12,10 @@ from tribodyn.cli.commands.sweep_command import INTERRUPTED
 from tribodyn.cli.console import say, say_json, show_resumed, tell
 from tribodyn.cli.settings import (
     RANGE,
+    CaseName,
     Flag,
     Force,
     Output,
-    PairName,
     Settings,
     read_ends,
     read_ranges,
@@ -27,7 +27,7 @@ _Signed = Annotated[str | None, Parameter(allow_leading_hyphen=True)]
 
 
 def bifurcation(
-    case: PairName,
+    case: CaseName,
     /,
     *over: str,
     sweep: Literal["up", "down", "both", "independent"] = "up",
@@ -105,7 +105,7 @@ def bifurcation(
 
 
 def continuation(
-    case: PairName,
+    case: CaseName,
     over: str,
     /,
     *,
@@ -145,7 +145,7 @@ def continuation(
 
 
 def basins(
-    case: PairName,
+    case: CaseName,
     /,
     *,
     transmission_error: _Signed = None,
@@ -186,7 +186,7 @@ def basins(
 
 
 def lyapunov(
-    case: PairName,
+    case: CaseName,
     /,
     *,
     cycles: int = 1000,

@@ -4,18 +4,17 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from tribodyn.cli.console import say, say_json, table, tell
 from tribodyn.cli.settings import (
     CaseName,
     Flag,
     Force,
+    Mesh,
     Output,
-    PairName,
     Settings,
     Words,
-    changed_any_case,
     changed_case,
     check_place,
     read_ends,
@@ -29,22 +28,12 @@ if TYPE_CHECKING:
 
 def prepare_study(
     kind: str, case: str, out: Output, settings: Words, force: bool
-) -> tuple[Case, Path]:
-    """The pair of gears of a study with its changes, and the directory to write."""
-    return changed_case(case, settings or []), _target(kind, case, out, force)
-
-
-def prepare_any_study(
-    kind: str, case: str, out: Output, settings: Words, force: bool
-) -> tuple[Case | PartsCase, Path]:
-    """The case of a study of any kind with its changes, and the directory to write."""
-    return changed_any_case(case, settings or []), _target(kind, case, out, force)
-
-
-def _target(kind: str, case: str, out: Output, force: bool) -> Path:
+) -> tuple[Any, Path]:
+    """The case of a study with its changes, and the directory to write."""
+    ready = changed_case(case, settings or [], kind)
     target = out if out is not None else Path(f"{Path(case).stem}-{kind}")
     check_place(target, force)
-    return target
+    return ready, target
 
 
 def stripped(texts: Sequence[str]) -> list[str]:
@@ -95,7 +84,7 @@ def modes(
     from tribodyn.cli.progress_bar import progress_bar
     from tribodyn.report.modes_report_data import any_modes_report_data
 
-    ready, target = prepare_any_study("modes", case, out, set_, force)
+    ready, target = prepare_study("modes", case, out, set_, force)
     ends = None if between is None else read_ends(between)
     with progress_bar() as progress:
         answer = any_modes_report_data(ready, ends, progress)
@@ -103,9 +92,10 @@ def modes(
 
 
 def harris(
-    case: PairName,
+    case: CaseName,
     /,
     *torque: str,
+    mesh: Mesh = None,
     out: Output = None,
     set_: Words = None,
     force: Force = False,
@@ -127,15 +117,16 @@ def harris(
     from tribodyn.report.study_report_data import harris_report_data
 
     ready, target = prepare_study("harris", case, out, set_, force)
-    answer = harris_report_data(ready, stripped(torque) or None)
+    answer = harris_report_data(ready, stripped(torque) or None, mesh)
     finish("harris", ready, target, answer, force, json)
 
 
 def relief(
-    case: PairName,
+    case: CaseName,
     /,
     *torque: str,
     gears: str = "both",
+    mesh: Mesh = None,
     out: Output = None,
     set_: Words = None,
     force: Force = False,
@@ -159,7 +150,7 @@ def relief(
     from tribodyn.report.study_report_data import relief_report_data
 
     ready, target = prepare_study("relief", case, out, set_, force)
-    answer = relief_report_data(ready, stripped(torque) or None, gears)
+    answer = relief_report_data(ready, stripped(torque) or None, gears, mesh)
     finish("relief", ready, target, answer, force, json)
 
 
@@ -193,7 +184,7 @@ def run_up(
     from tribodyn.cli.progress_bar import progress_bar
     from tribodyn.report.study_report_data import run_up_report_data
 
-    ready, target = prepare_any_study("run-up", case, out, set_, force)
+    ready, target = prepare_study("run-up", case, out, set_, force)
     with progress_bar() as progress:
         answer = run_up_report_data(ready, read_ends(between), duration, down, progress)
     finish("run-up", ready, target, answer, force, json)

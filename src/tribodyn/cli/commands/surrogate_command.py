@@ -72,7 +72,7 @@ def _train(
     place = out if out is not None else Path(f"{Path(source).stem}-surrogate.nc")
     path = check_new(place, "--out")
     over = {key: str(value) for key, value in read_changes(values).items()} or None
-    case = changed_case(source, settings)
+    case = changed_case(source, settings, "surrogate")
     with collected() as warnings, progress_bar() as progress:
         data = operating_data(case, over, size, seed=seed, progress=progress)
         inputs = [name for name in data.columns if name not in RESPONSE]

@@ -16,6 +16,7 @@ from tribodyn.study.case.provenance import spec_of
 from tribodyn.study.case.to_models import locate_errors
 from tribodyn.study.first_use import compile_in_parallel
 from tribodyn.study.studies.case_grid import contact_without_speed, identity, varied
+from tribodyn.study.studies.needs import require
 from tribodyn.study.studies.structure import study_steps
 from tribodyn.study.studies.study_axes import Axis, ends_of
 from tribodyn.types import Array
@@ -90,6 +91,7 @@ def bifurcation(
     """
     from tribodyn.analysis import bifurcation as compute
 
+    require("bifurcation", case)
     values = _values(case, over, between, points, by)
     study = identity("bifurcation", case, [over, values.tolist()], steps=steps, **options)
     checkpoints = (Checkpoints() if checkpoints is None else checkpoints).begin(study)

@@ -27,6 +27,7 @@ from tribodyn.study.studies.friction_claims import (
     FrictionExperiment,
     Rubbing,
 )
+from tribodyn.study.studies.needs import require
 from tribodyn.study.studies.study_axes import Axis, ends_of
 from tribodyn.study.studies.sweep import compute_points
 
@@ -104,6 +105,7 @@ def friction_experiment(
     >>> bool(experiment.change("rms_mesh_force")[0, 0, -1] < 0.0)
     True
     """
+    require("experiment", case)
     heights = _roughnesses(case, ROUGHNESSES if roughness is None else roughness)
     named = _laws(laws)
     base = _with_film(case, named)

@@ -12,29 +12,39 @@ from tribodyn.progress import SILENT, Progress
 from tribodyn.study.case.to_models import locate_errors
 from tribodyn.study.pipeline.preview import gearbox_losses_of
 from tribodyn.study.pipeline.tooth_contact import mesh_of
+from tribodyn.study.studies.needs import mesh_pair, require
 from tribodyn.study.studies.study_axes import read_speeds, read_torques
 
 if TYPE_CHECKING:
     from tribodyn.losses import GearboxLosses, RigPowerFlow
     from tribodyn.study.case.case import Case
+    from tribodyn.study.machine.user_tables import PartsCase
 
 #: Torques and speeds of a map relative to those of the case, which is one of the points.
 STEPS = np.linspace(0.25, 2.0, 8)
 
 
 def loss_map(
-    case: Case, *, torque: Any = None, speed: Any = None, progress: Progress = SILENT
+    case: Case | PartsCase,
+    *,
+    torque: Any = None,
+    speed: Any = None,
+    mesh: str | None = None,
+    progress: Progress = SILENT,
 ) -> GearboxLosses:
     """Find the losses and the efficiency of a case for every torque at every speed.
 
     Parameters
     ----------
-    case : Case
+    case : Case, MachineCase or PlanetaryCase
         From :func:`tribodyn.load_case`. Teeth lose by its ``[friction]``, shafts and oil by its
         ``[losses]``; without that table the teeth alone are counted.
     torque, speed : float, str or list, optional
         Torques [N*m] and speeds [rad/s] of the gear named by ``operation.speed_of``, or text with
         a unit. By default 8 of each up to twice those of the case.
+    mesh : str, optional
+        Mesh of a machine or a stage, whose pair of gears is studied as its shafts are deflected at
+        the operating point; torques and speeds are then those of its pinion.
     progress : Progress
         Receives the number of computed points; silent by default.
 
@@ -63,6 +73,7 @@ def loss_map(
     >>> losses.gear_efficiency.round(4).tolist()
     [[0.9889], [0.9841]]
     """
+    case = mesh_pair("losses", case, mesh).pair
     torques, speeds = read_torques(case, torque), read_speeds(case, speed)
     torques = torques if torque is not None else list(STEPS * torques[0])
     speeds = speeds if speed is not None else list(STEPS * speeds[0])
@@ -119,6 +130,7 @@ def rig_power_flow(case: Case, slave: Case | None = None) -> RigPowerFlow:
     """
     from tribodyn.losses import rig_power_flow as compute
 
+    require("losses --rig", case)
     gearboxes = []
     for gearbox_case in (case, case if slave is None else slave):
         with locate_errors(gearbox_case), collected() as model_warnings:

@@ -12,6 +12,7 @@ from tribodyn.progress import SILENT, Progress
 from tribodyn.study.case.to_models import locate_errors
 from tribodyn.study.first_use import compile_in_parallel
 from tribodyn.study.studies.case_grid import built, contact_without_speed
+from tribodyn.study.studies.needs import require
 from tribodyn.study.studies.structure import build_system, study_steps
 from tribodyn.study.studies.study_axes import ends_of
 
@@ -73,6 +74,7 @@ def lyapunov_exponents(
     """
     from tribodyn.analysis import lyapunov_exponents as compute
 
+    require("lyapunov", case)
     system, frequency = build_system(case, progress=progress)
     with locate_errors(case), compile_in_parallel(case, "bifurcation"):
         return compute(
@@ -138,6 +140,7 @@ def basins(
     from tribodyn.analysis import basins as compute
     from tribodyn.nonlinear.start_plane import MESH_PLANE
 
+    require("basins", case)
     counts = (points, points) if isinstance(points, int) else tuple(points)
     ends = [
         None if ends_of_range is None else _read_ends(name, ends_of_range, unit)
@@ -252,6 +255,7 @@ def continuation(
     """
     from tribodyn.dynamics import continuation as compute
 
+    require("continuation", case)
     if between is None or len(between) != 2:
         remedy = 'Write, for example, between=("400 rpm", "3500 rpm")'
         why = "A branch goes from one value to another"

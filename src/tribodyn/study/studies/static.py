@@ -9,6 +9,7 @@ import numpy as np
 
 from tribodyn.checks import require_whole
 from tribodyn.errors import Argument, InputError, require_between, shortened
+from tribodyn.nomenclature import GEARS
 from tribodyn.progress import SILENT, Progress
 from tribodyn.record import record
 from tribodyn.stiffness import TipReliefOptimum
@@ -20,6 +21,7 @@ from tribodyn.study.pipeline.tooth_contact import (
     loaded_settings,
     model_settings,
 )
+from tribodyn.study.studies.needs import mesh_pair
 from tribodyn.study.studies.study_axes import read_speeds, read_torques
 from tribodyn.units import format_quantity
 
@@ -27,6 +29,7 @@ if TYPE_CHECKING:
     from tribodyn.mesh import ComprehensiveStiffness, FilmOverOperation
     from tribodyn.stiffness import HarrisMap
     from tribodyn.study.case.case import Case
+    from tribodyn.study.machine.user_tables import PartsCase
 
 
 #: Torques of a map over those of the case.
@@ -43,29 +46,37 @@ class CaseTipReliefOptimum(TipReliefOptimum):
     """Best tip relief of a case: ``case`` is the case with it."""
 
     studied: Any = None
+    tables: tuple[str, str] = ("gears.pinion", "gears.wheel")
 
     @property
-    def case(self) -> Case:
+    def case(self) -> Case | PartsCase:
         """The case that was studied, with the relief that was found."""
-        gears = ("pinion", "wheel") if self.gears == "both" else (self.gears,)
+        tables = dict(zip(GEARS, self.tables, strict=True))
+        relieved = tables.values() if self.gears == "both" else (tables[self.gears],)
         # As text in the units of the case file, which then shows these digits.
         values = {
             "tip_relief": format_quantity(self.amount, "m", "um"),
             "tip_relief_length": format_quantity(self.length, "m", "mm"),
             "tip_relief_shape": self.shape,
         }
-        changed: Case = self.studied.replace(
-            {f"gears.{gear}.modification.{n}": v for gear in gears for n, v in values.items()}
+        changed: Case | PartsCase = self.studied.replace(
+            {f"{gear}.modification.{n}": v for gear in relieved for n, v in values.items()}
         )
         return changed
 
 
-def harris_map(case: Case, torque: Any = None, *, phases: int | None = None) -> HarrisMap:
+def harris_map(
+    case: Case | PartsCase,
+    torque: Any = None,
+    *,
+    phases: int | None = None,
+    mesh: str | None = None,
+) -> HarrisMap:
     """Find the static transmission error of a case over phase and torque (Harris map).
 
     Parameters
     ----------
-    case : Case
+    case : Case, MachineCase or PlanetaryCase
         From :func:`tribodyn.load_case`; its ``[stiffness]`` sets the compliance of the teeth,
         ``gears.line_stiffness`` that of hypoid gears.
     torque : list of float or str, optional
@@ -74,6 +85,9 @@ def harris_map(case: Case, torque: Any = None, *, phases: int | None = None) -> 
     phases : int, optional
         Evenly spaced phases of a mesh cycle; 256 by default, or 64 where flanks vary over the face
         width or from tooth to tooth, and 100 of hypoid gears.
+    mesh : str, optional
+        Mesh of a machine or a stage, whose pair of gears is studied as its shafts are deflected at
+        the operating point; torques and speeds are then those of its pinion.
 
     Returns
     -------
@@ -97,6 +111,7 @@ def harris_map(case: Case, torque: Any = None, *, phases: int | None = None) -> 
     """
     from tribodyn.stiffness import transmission_error_over_torque
 
+    case = mesh_pair("harris", case, mesh).pair
     torques = read_torques(case, torque)
     if torque is None:
         torques = list(np.linspace(*_RANGE, _TORQUES) * torques[0])
@@ -119,19 +134,28 @@ def _hypoid_map(case: Case, torques: list[float], phases: int | None) -> HarrisM
 
 
 def optimize_tip_relief(
-    case: Case, torque: Any = None, *, amount: Any = None, length: Any = None, **options: Any
+    case: Case | PartsCase,
+    torque: Any = None,
+    *,
+    amount: Any = None,
+    length: Any = None,
+    mesh: str | None = None,
+    **options: Any,
 ) -> CaseTipReliefOptimum:
     """Find the tip relief of a case that leaves least transmission error over a torque range.
 
     Parameters
     ----------
-    case : Case
+    case : Case, MachineCase or PlanetaryCase
         From :func:`tribodyn.load_case`.
     torque : tuple or list, optional
         Two ends of a range, or more torques, on the gear named by ``operation.speed_of``: floats
         in N*m, or text with a unit. By default from half the torque of the case to all of it.
     amount, length : tuple, optional
         Least and greatest amount and roll length: floats in m, or text with a unit.
+    mesh : str, optional
+        Mesh of a machine or a stage, whose pair of gears is studied as its shafts are deflected at
+        the operating point; torques and speeds are then those of its pinion.
     **options : object
         ``gears``, ``shape``, ``objective``, ``weight``, ``grid``, ``phases`` and ``digits`` of
         :func:`tribodyn.stiffness.optimize_tip_relief`; amount and length have four significant
@@ -159,18 +183,19 @@ def optimize_tip_relief(
     """
     from tribodyn.stiffness import optimize_tip_relief as compute
 
-    torques = read_torques(case, torque)
+    pair, tables = mesh_pair("relief", case, mesh)
+    torques = read_torques(pair, torque)
     if torque is None:
         torques = [0.5 * torques[0], torques[0]]
-    with locate_errors(case):
+    with locate_errors(pair):
         optimum = compute(
-            case.gear_pair,
+            pair.gear_pair,
             torques,
             amount=_lengths("amount", amount),
             length=_lengths("length", length),
-            **{**loaded_settings(case), "digits": _DIGITS, **options},
+            **{**loaded_settings(pair), "digits": _DIGITS, **options},
         )
-    return CaseTipReliefOptimum(**vars(optimum), studied=case)
+    return CaseTipReliefOptimum(**vars(optimum), studied=case, tables=tables)
 
 
 def _lengths(name: str, ends: Any) -> tuple[float, float] | None:
@@ -189,19 +214,20 @@ def _lengths(name: str, ends: Any) -> tuple[float, float] | None:
 
 
 def comprehensive_stiffness(
-    case: Case,
+    case: Case | PartsCase,
     *,
     torque: Any = None,
     speed: Any = None,
     kind: str | None = None,
     steps: int = 128,
+    mesh: str | None = None,
     progress: Progress = SILENT,
 ) -> ComprehensiveStiffness:
     """Find the stiffness of oil film and teeth of a case over torques and speeds.
 
     Parameters
     ----------
-    case : Case
+    case : Case, MachineCase or PlanetaryCase
         From :func:`tribodyn.load_case`; its ``[film]`` says how the film is found.
     torque : float, str or list, optional
         Torques on the gear named by ``operation.speed_of``: floats in N*m, or text with a unit.
@@ -213,6 +239,9 @@ def comprehensive_stiffness(
         the case. Where that is ``"none"``, the first of these that the film model has.
     steps : int
         Phase intervals of a mesh cycle.
+    mesh : str, optional
+        Mesh of a machine or a stage, whose pair of gears is studied as its shafts are deflected at
+        the operating point; torques and speeds are then those of its pinion.
     progress : Progress
         Receives the number of solved films; silent by default.
 
@@ -239,6 +268,7 @@ def comprehensive_stiffness(
     from tribodyn.ehl import FILM_MODELS
     from tribodyn.mesh import comprehensive_stiffness as compute
 
+    case = mesh_pair("film", case, mesh).pair
     settings = model_settings(case)
     settings.pop("composite_roughness")
     kinds = [case.film.stiffness, *FILM_MODELS[case.film.model].stiffness_kinds]
@@ -255,15 +285,20 @@ def comprehensive_stiffness(
 
 
 def film_over_operation(
-    case: Case, *, torque: Any = None, speed: Any = None, progress: Progress = SILENT
+    case: Case | PartsCase,
+    *,
+    torque: Any = None,
+    speed: Any = None,
+    mesh: str | None = None,
+    progress: Progress = SILENT,
 ) -> FilmOverOperation:
     """Find the films of a case along the path of contact, for every torque at every speed.
 
     Parameters
     ----------
-    case : Case
+    case : Case, MachineCase or PlanetaryCase
         From :func:`tribodyn.load_case`; its ``[film]`` says how the film is found.
-    torque, speed, progress
+    torque, speed, mesh, progress
         As :func:`comprehensive_stiffness` takes them.
 
     Returns
@@ -288,6 +323,7 @@ def film_over_operation(
     """
     from tribodyn.mesh import film_over_operation as compute
 
+    case = mesh_pair("film", case, mesh).pair
     if case.film.model == "none":
         remedy = 'Choose one: case.replace({"film.model": "newton"})'
         raise InputError('film.model = "none"', "argument case", "No film", remedy)

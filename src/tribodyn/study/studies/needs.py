@@ -1,0 +1,164 @@
+"""What each study needs of a case, and the pair of gears of a study about one mesh.
+
+Kinds of cases are refused here alone: messages, help and the table of the documentation follow
+from :data:`STUDIES`.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+from tribodyn.errors import Argument, InputError, did_you_mean
+
+if TYPE_CHECKING:
+    from tribodyn.study.case.case import Case
+    from tribodyn.study.machine.user_tables import PartsCase
+
+#: Kinds of cases: pairs of gears, and cases of parts with names.
+PAIRS = ("cylindrical pair", "hypoid pair", "mesh table")
+PARTS = ("machine", "planetary stage")
+KINDS = (*PAIRS, *PARTS)
+_CYLINDRICAL, _TOOTHED = PAIRS[:1], PAIRS[:2]
+#: Name of the mesh of a pair of gears.
+PAIR_MESH = "mesh"
+
+
+class Need(NamedTuple):
+    """What a study needs of a case."""
+
+    what: str
+    kinds: tuple[str, ...] = KINDS  #: that have it; of a study about one mesh those of its pair
+    why: str = ""  #: reason why the other kinds do not do
+    of_mesh: bool = False  #: whether the study is about one mesh, which --mesh names
+
+
+_ANY = Need("a case")
+_TEETH = Need("a pair of gears with computed teeth", _TOOTHED, "", True)
+_PLANE = Need("a pair of cylindrical gears with computed teeth", _CYLINDRICAL, "", True)
+_PAIR = "the case of one pair of gears"
+_IN_TIME = Need(_PAIR, PAIRS, "Its motions are integrated in time, many at once")
+
+#: What the studies need, by the names of their commands.
+STUDIES: dict[str, Need] = {
+    **dict.fromkeys(("run", "sweep", "ensemble", "sobol", "study", "modes", "run-up"), _ANY),
+    **dict.fromkeys(("bifurcation", "continuation", "basins", "lyapunov"), _IN_TIME),
+    **dict.fromkeys(("harris", "losses", "film"), _TEETH),
+    "relief": _PLANE._replace(why="Flanks of hypoid gears are relieved by their cutter"),
+    "experiment": Need(_PAIR, _CYLINDRICAL, "Its claims are about spur gears on their supports"),
+    "friction-from-loss": _PLANE._replace(why="Its loss factor is that of plane teeth"),
+    "losses --rig": Need(_PAIR, _TOOTHED, "A rig tests the gears of one pair"),
+    "surrogate": Need(_PAIR, PAIRS, "It learns from mesh cycles that are computed at once"),
+    "export": Need(_PAIR, _CYLINDRICAL, "Models of other programs are written of one spur stage"),
+    **dict.fromkeys(("recording", "compare"), _ANY),
+}
+
+
+def kind_of(case: Case | PartsCase) -> str:
+    """Kind of a case, of :data:`KINDS`."""
+    from tribodyn.study.case.case import Case
+
+    if isinstance(case, Case):
+        return dict(zip(("spur", "hypoid", "table"), PAIRS, strict=True))[case.gears.kind]
+    return PARTS[not hasattr(case, "machine")]
+
+
+def takes(study: str, case: Case | PartsCase) -> bool:
+    """Whether a case, or one of its meshes, has what a study needs."""
+    kind, need = kind_of(case), STUDIES[study]
+    return kind in need.kinds or (need.of_mesh and kind in PARTS)
+
+
+def require(study: str, case: Case | PartsCase, where: Any = None) -> None:
+    """Refuse a case that lacks what a study needs."""
+    if takes(study, case):
+        return
+    kind, need = kind_of(case), STUDIES[study]
+    others = [name for name in STUDIES if takes(name, case)]
+    remedy = f"Take such a case (tribodyn cases). Studies of a {kind}: {', '.join(others)}"
+    why = f"It needs {need.what}. {need.why}" if need.why else f"It needs {need.what}"
+    what = f"this is a {kind}, and {study} does not take one"
+    raise InputError(what, where or Argument("case"), why, remedy)
+
+
+class MeshPair(NamedTuple):
+    """A mesh of a case: its pair of gears, and the tables of both gears in the case."""
+
+    pair: Case
+    gears: tuple[str, str]  #: tables of pinion and wheel, such as ``gears.z1``
+
+
+def mesh_names(case: Case | PartsCase) -> tuple[str, ...]:
+    """Names of the meshes with computed teeth; of equal planets the first of each kind."""
+    parts: Any = case
+    if kind_of(case) in PAIRS:
+        return (PAIR_MESH,)
+    if kind_of(case) == PARTS[1]:
+        return tuple(parts.pairs)
+    groups = {parts.tooth_group(name): name for name in reversed(parts.meshes_with_teeth)}
+    return tuple(reversed(groups.values()))
+
+
+def mesh_pair(study: str, case: Case | PartsCase, mesh: str | None = None) -> MeshPair:
+    """Pair of gears of the mesh that a study is about, misaligned as its shafts deflect."""
+    require(study, case)
+    parts: Any = case
+    names = mesh_names(case)
+    known = ", ".join(names)
+    if not names:
+        why, remedy = "The stiffness of all meshes is given", "Remove the stiffness of a mesh"
+        raise InputError("no mesh has computed teeth", Argument("case"), why, remedy)
+    if mesh is None and len(names) > 1:
+        remedy = f'Name it: mesh = "{names[0]}", of a command --mesh {names[0]}'
+        why = f"Meshes with computed teeth: {known}"
+        raise InputError(f"{study} is about one mesh", Argument("mesh"), why, remedy)
+    if mesh not in (None, *names, *getattr(parts, "meshes_with_teeth", ())):
+        remedy = did_you_mean(str(mesh), names, "Name one of these")
+        what = f'there is no mesh "{mesh}" with computed teeth'
+        raise InputError(what, Argument("mesh"), f"Meshes with computed teeth: {known}", remedy)
+    name = mesh or names[0]
+    if kind_of(case) in PAIRS:
+        return MeshPair(parts, ("gears.pinion", "gears.wheel"))
+    meshes = parts.meshes_with_teeth if hasattr(parts, "machine") else parts.pairs
+    listed = {m: MeshPair(p, g) for m, (_, p, g) in zip(meshes, parts.mesh_pairs(), strict=True)}
+    pair, gears = listed[name]
+    kind, need = kind_of(pair), STUDIES[study]
+    if kind not in need.kinds:
+        what, remedy = f"mesh {name} is a {kind}", "Name a mesh of another kind"
+        raise InputError(what, Argument("mesh"), f"It needs {need.what}. {need.why}", remedy)
+    return MeshPair(_deflected(parts, name, pair), (f"gears.{gears[0]}", f"gears.{gears[1]}"))
+
+
+def _deflected(case: Any, mesh: str, pair: Case) -> Case:
+    """Pair of a mesh with the misalignment by the shafts of its machine."""
+    from tribodyn.study.machine.run import balanced_machine
+
+    if not hasattr(case, "machine"):
+        return pair
+    load = case.operating_point
+    balanced = balanced_machine(case, load, rehearsal=True)
+    deflected: Case = case.pair(mesh, load, balanced.misalignment[mesh])
+    return deflected
+
+
+def help_line(study: str) -> str:
+    """What a study that does not take every case needs, for its help."""
+    need = STUDIES.get(study, _ANY)
+    if need.of_mesh:
+        return " Of a machine or a stage: one mesh."
+    return "" if need == _ANY else " Takes one pair of gears."
+
+
+def needs_table() -> str:
+    """Format the studies and what they take as a Markdown table."""
+    heads = ("study", "it needs", *(f"{kind}s" for kind in KINDS))
+    lines = [heads, ("---",) * len(heads)]
+    for study, need in STUDIES.items():
+        what = f"{need.what}. {need.why}" if need.why else need.what
+        lines.append((f"`{study}`", what, *(_cell(need, kind) for kind in KINDS)))
+    return "\n".join(f"| {' | '.join(line)} |" for line in lines)
+
+
+def _cell(need: Need, kind: str) -> str:
+    if need.of_mesh and kind in PARTS:
+        return "`--mesh NAME`"
+    return "yes" if kind in need.kinds else "no"
