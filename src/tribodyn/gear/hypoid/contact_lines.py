@@ -119,15 +119,20 @@ class ContactLines:
                 why="No point of the wheel's flank meets the pinion between its tip and its ends",
                 remedy="Check the depth and the face width of the blank",
             )
+
+        @lru_cache(maxsize=8)
+        def at(parameters: bytes) -> Touch:  # objective and margins at the same places
+            return self._at(np.frombuffer(parameters))
+
         ends = []
         for sense in (-1.0, 1.0):
             best = np.argmax(np.where(inside, sense * touch.contact.rotation, -np.inf))
             minimum = minimize(
-                lambda x, sense=sense: -sense * float(self._at(x).contact.rotation[0]),
+                lambda x, sense=sense: -sense * float(at(x.tobytes()).contact.rotation[0]),
                 parameters[np.unravel_index(best, inside.shape)] / self._unit,
                 constraints={
                     "type": "ineq",
-                    "fun": lambda x: 1e3 * self.flanks.margins(self._at(x))[0],
+                    "fun": lambda x: 1e3 * self.flanks.margins(at(x.tobytes()))[0],
                 },
                 method="SLSQP",
                 options={"ftol": 1e-13},
