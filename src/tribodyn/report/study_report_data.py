@@ -20,8 +20,8 @@ if TYPE_CHECKING:
     from tribodyn.nonlinear.bifurcation import Bifurcation
     from tribodyn.study.case.case import Case
     from tribodyn.study.machine.user_tables import PartsCase
-    from tribodyn.study.machine_studies.levels import MachineLevels
     from tribodyn.study.studies.bifurcation import Findings
+    from tribodyn.study.studies.levels import MachineLevels
 
 #: Rows of the table of a run-up.
 _ROWS = 40
@@ -104,8 +104,8 @@ def modes_report_data(case: Case, ends: Any, progress: Progress = SILENT) -> Stu
     """Natural frequencies and critical speeds; ``ends`` limits the speeds [rad/s]."""
     from tribodyn.dynamics import natural_modes
     from tribodyn.report.numbers import HEAD, cells
+    from tribodyn.study.studies.case_grid import build_system
     from tribodyn.study.studies.modes import ORDERS, diagram_of, mode_rows
-    from tribodyn.study.studies.structure import build_system
     from tribodyn.study.studies.study_axes import operation_values
 
     speeds = None if ends is None else operation_values("speed", ends, case)
@@ -191,7 +191,7 @@ def run_up_report_data(
 ) -> StudyReportData:
     """Vibration levels over the speed of a run-up."""
     from tribodyn.analysis import overall_level
-    from tribodyn.study.machine_studies.levels import MachineLevels
+    from tribodyn.study.studies.levels import MachineLevels
     from tribodyn.study.studies.run_up import run_up
     from tribodyn.units import convert
 

@@ -19,8 +19,6 @@ if TYPE_CHECKING:
     from tribodyn.study.machine.motion import MachineMotion
     from tribodyn.study.machine.result import LoadResult, MachineResult
     from tribodyn.study.machine.user_tables import PartsCase
-    from tribodyn.study.machine_studies.ensemble import MachineEnsemble
-    from tribodyn.study.machine_studies.levels import MachineLevels
     from tribodyn.study.pipeline.result import Result
     from tribodyn.study.pipeline.run import run
     from tribodyn.study.pipeline.summary import SUMMARY, summary_figure
@@ -31,7 +29,9 @@ if TYPE_CHECKING:
     from tribodyn.study.planetary.tolerances import LoadShareStatistics, load_share_statistics
     from tribodyn.study.result_comparison import ResultComparison, compare_results
     from tribodyn.study.studies.bifurcation import bifurcation
+    from tribodyn.study.studies.case_grid import build_system
     from tribodyn.study.studies.friction_experiment import friction_experiment
+    from tribodyn.study.studies.levels import MachineLevels
     from tribodyn.study.studies.losses import loss_map, rig_power_flow
     from tribodyn.study.studies.modes import campbell, natural_modes
     from tribodyn.study.studies.nonlinear import basins, continuation, lyapunov_exponents
@@ -42,11 +42,11 @@ if TYPE_CHECKING:
         harris_map,
         optimize_tip_relief,
     )
-    from tribodyn.study.studies.structure import build_system
     from tribodyn.study.studies.sweep import sweep
     from tribodyn.study.studies.sweep_result import Sweep
     from tribodyn.study.uncertain.data_set import DataSet, load_data
     from tribodyn.study.uncertain.ensemble import CaseEnsemble, ensemble
+    from tribodyn.study.uncertain.machine_ensemble import MachineEnsemble
     from tribodyn.study.uncertain.operating_data import operating_data
     from tribodyn.study.uncertain.sensitivity import CaseSensitivity, sobol_indices
     from tribodyn.study.uncertain.vibration_data import vibration_data
@@ -123,8 +123,8 @@ _NAMES = {
     "machine.motion": "MachineMotion",
     "machine.result": "LoadResult MachineResult",
     "machine.user_tables": "PartsCase",
-    "machine_studies.ensemble": "MachineEnsemble",
-    "machine_studies.levels": "MachineLevels",
+    "uncertain.machine_ensemble": "MachineEnsemble",
+    "studies.levels": "MachineLevels",
     "pipeline.result": "Result",
     "pipeline.run": "run",
     "pipeline.summary": "SUMMARY summary_figure",
@@ -141,7 +141,7 @@ _NAMES = {
     "studies.nonlinear": "basins continuation lyapunov_exponents",
     "studies.run_up": "run_up speed_sweep",
     "studies.static": "comprehensive_stiffness film_over_operation harris_map optimize_tip_relief",
-    "studies.structure": "build_system",
+    "studies.case_grid": "build_system",
     "studies.sweep": "sweep",
     "studies.sweep_result": "Sweep",
     "uncertain.data_set": "DataSet load_data",

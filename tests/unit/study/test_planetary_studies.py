@@ -14,7 +14,7 @@ from tribodyn.machine import load_shares
 from tribodyn.mesh import sharing
 from tribodyn.study.machine import pair_cases
 from tribodyn.study.machine.read import read_any_case
-from tribodyn.study.machine_studies.points import results_under
+from tribodyn.study.studies.case_grid import results_under
 
 #: Constant stiffness of a pair of teeth, so that the tooth contact takes no time.
 FAST = QUICK | {"film.model": "none", "stiffness.model": "rectangular",

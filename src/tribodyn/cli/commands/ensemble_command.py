@@ -54,8 +54,8 @@ def ensemble(
     from tribodyn.report.figure_blocks import sections_of
     from tribodyn.report.study_report_data import StudyReportData, figure_with_caption
     from tribodyn.study import ensemble as compute
-    from tribodyn.study.machine_studies.ensemble import MachineEnsemble
     from tribodyn.study.pipeline.summary_figures import figure_of
+    from tribodyn.study.uncertain.machine_ensemble import MachineEnsemble
     from tribodyn.uncertainty import bootstrap_band
 
     ready, target = prepare_study("ensemble", case, out, set_, force)

@@ -18,10 +18,10 @@ from tribodyn.study.pipeline.summary_labels import in_words
 from tribodyn.study.studies.sweep_result import OF_PARTS, level_keys
 
 if TYPE_CHECKING:
-    from tribodyn.study.machine_studies.ensemble import MachineEnsemble
-    from tribodyn.study.machine_studies.levels import MachineLevels, Resonance
     from tribodyn.study.result_comparison import ResultComparison
+    from tribodyn.study.studies.levels import MachineLevels, Resonance
     from tribodyn.study.studies.sweep_result import Sweep
+    from tribodyn.study.uncertain.machine_ensemble import MachineEnsemble
     from tribodyn.types import Array
 
 #: Quantity and label of each panel.
@@ -178,8 +178,8 @@ def machine_sweep(study: Sweep) -> Any:
 def _met(study: Sweep) -> list[Resonance]:
     """Resonances within the speeds of a sweep, with the teeth at the operating point."""
     from tribodyn.errors import TribodynError, quiet
-    from tribodyn.study.machine_studies.levels import resonances
-    from tribodyn.study.machine_studies.modes import modes_at_rest
+    from tribodyn.study.studies.levels import resonances
+    from tribodyn.study.studies.modes import modes_at_rest
 
     speeds = [abs(float(value)) for value in study.axes[0].values]
     try:

@@ -20,8 +20,8 @@ if TYPE_CHECKING:
     from tribodyn.gear import CylindricalGear
     from tribodyn.machine import RingSensorSignal
     from tribodyn.study import PlanetaryCase, PlanetaryMotion, PlanetaryResult
-    from tribodyn.study.machine_studies.ensemble import MachineEnsemble
     from tribodyn.study.planetary.tolerances import LoadShareStatistics
+    from tribodyn.study.uncertain.machine_ensemble import MachineEnsemble
 
 #: Points of a tooth, those of them that are drawn, and pictures of the movement.
 _POINTS, _DRAWN, _FRAMES = 40, [0, 5, 9, 13, 17, 21, 25, 29, 33], 24

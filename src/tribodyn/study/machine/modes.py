@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
@@ -23,6 +23,15 @@ _LEAST_SHARE = 0.05
 #: Motion of a shaft along its axis over that of all shafts across, from which it is axial.
 _ALONG = 5.0
 MODES_HEAD = ("Mode", "Frequency [Hz]", "Damping [%]", "Energy in", "Nearest excitation")
+
+
+class MeshOrder(NamedTuple):
+    """A mesh harmonic: waves in a turn of the input, and what it strains of each mode."""
+
+    mesh: str
+    harmonic: int
+    order: float
+    share: Array  #: of the strain energy of each mode (m,)
 
 
 @record
@@ -165,6 +174,18 @@ def mode_rows(modes: MachineModes) -> list[list[str]]:
             ]
         )
     return rows
+
+
+def mesh_orders(modes: MachineModes) -> tuple[MeshOrder, ...]:
+    """Mesh harmonics of a machine with the shares of the meshes in its modes."""
+    machine = modes.structure.machine
+    turning = abs(machine.operation.speed) / (2.0 * np.pi)
+    return tuple(
+        MeshOrder(mesh, harmonic, harmonic * load.mesh_frequency / turning, share)
+        for mesh, load in machine.kinematics.meshes.items()
+        for share in [modes.strain_share[:, modes.parts.index(f"meshes.{mesh}")]]
+        for harmonic in range(1, _HARMONICS + 1)
+    )
 
 
 def structure_at_rest(case: MachineCase, progress: Progress = SILENT) -> MachineStructure:

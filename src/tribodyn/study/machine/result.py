@@ -13,9 +13,9 @@ from tribodyn.drawing import draw, write_report_of
 from tribodyn.errors import Argument, InputError
 from tribodyn.interrupt import single_blas_thread
 from tribodyn.machine.static.clearance import clearance_supports, without_clearance_supports
+from tribodyn.study.machine.modes import MeshOrder, mesh_orders
 from tribodyn.study.machine.motion import MachineMotion, machine_motion
 from tribodyn.study.machine.summary import summary_of
-from tribodyn.study.machine_studies.levels import MeshOrder, mesh_orders
 from tribodyn.study.pipeline.parts_result import PartsResult
 from tribodyn.study.pipeline.save import new_directory
 

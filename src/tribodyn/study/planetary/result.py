@@ -36,9 +36,8 @@ if TYPE_CHECKING:
     from tribodyn.mesh import MeshTable
     from tribodyn.study.faults.planetary_motion import PlanetaryTurningMotion
     from tribodyn.study.machine.load_cases import LoadCase
-    from tribodyn.study.machine.modes import MachineCampbell
+    from tribodyn.study.machine.modes import MachineCampbell, MeshOrder
     from tribodyn.study.machine.motion import MachineMotion
-    from tribodyn.study.machine_studies.levels import MeshOrder
     from tribodyn.study.planetary.case import PlanetaryCase
     from tribodyn.study.planetary.motion import PlanetaryMotion
 

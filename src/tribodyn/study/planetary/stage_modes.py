@@ -10,9 +10,8 @@ import numpy as np
 from tribodyn.dynamics import natural_modes
 from tribodyn.machine import planetary_modes, planetary_plane_model
 from tribodyn.progress import SILENT, Progress
-from tribodyn.study.machine.modes import MachineCampbell
+from tribodyn.study.machine.modes import MachineCampbell, MeshOrder
 from tribodyn.study.machine.run import warn_of_meshes
-from tribodyn.study.machine_studies.levels import MeshOrder
 from tribodyn.study.planetary.stage import stage_data, stage_teeth
 from tribodyn.types import Array
 

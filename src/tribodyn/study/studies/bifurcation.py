@@ -15,9 +15,8 @@ from tribodyn.progress import SILENT, Progress
 from tribodyn.study.case.provenance import spec_of
 from tribodyn.study.case.to_models import locate_errors
 from tribodyn.study.first_use import compile_in_parallel
-from tribodyn.study.studies.case_grid import contact_without_speed, identity, varied
+from tribodyn.study.studies.case_grid import contact_without_speed, identity, study_steps, varied
 from tribodyn.study.studies.needs import require
-from tribodyn.study.studies.structure import study_steps
 from tribodyn.study.studies.study_axes import Axis, ends_of
 from tribodyn.types import Array
 

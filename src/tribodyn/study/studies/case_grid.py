@@ -1,4 +1,4 @@
-"""Loop over the cases of a study, which are built or computed in parallel threads."""
+"""Cases of a study: their systems, their results, and the loop over them in threads."""
 
 from __future__ import annotations
 
@@ -6,20 +6,35 @@ import hashlib
 import json
 import os
 import threading
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import suppress
 from typing import TYPE_CHECKING, Any, NamedTuple, TypeVar
 
 from tribodyn.checkpoints import Checkpoints
-from tribodyn.errors import InputError
-from tribodyn.interrupt import in_threads
+from tribodyn.errors import ComputationError, InputError, collected
+from tribodyn.interrupt import (
+    STOPPED,
+    in_threads,
+    refuse_stopped,
+    single_blas_thread,
+    stop_flag,
+)
 from tribodyn.mesh import MeshTable
-from tribodyn.progress import SILENT, Progress
+from tribodyn.progress import SILENT, Progress, StageProgress
+from tribodyn.study.case.to_models import locate_errors
+from tribodyn.study.machine.case import MachineCase
+from tribodyn.study.machine.result import LoadResult
+from tribodyn.study.machine.run import MeshWarning, run_load
 from tribodyn.study.pipeline.assembly import whole_system
+from tribodyn.study.pipeline.motion import steps_of
 from tribodyn.study.pipeline.tooth_contact import mesh_of
+from tribodyn.study.planetary.case import PlanetaryCase
+from tribodyn.study.planetary.result import PlanetaryLoadResult
+from tribodyn.study.planetary.run import run_load as run_stage
+from tribodyn.study.studies.sweep_result import SweepPoint
 
 if TYPE_CHECKING:
-    from tribodyn.dynamics import System
+    from tribodyn.dynamics import Response, System
     from tribodyn.study.case.case import Case
     from tribodyn.study.machine.user_tables import PartsCase
 
@@ -112,3 +127,102 @@ def finished(done: Mapping[int, Value]) -> list[Value]:
     """Return the finished values up to the first one that is missing."""
     count = next(index for index in range(len(done) + 1) if index not in done)
     return [done[index] for index in range(count)]
+
+
+#: Result of a machine or of a planetary stage under one load.
+AnyLoadResult = LoadResult | PlanetaryLoadResult
+
+
+def result_under(
+    case: PartsCase,
+    progress: Progress,
+    of_meshes: list[MeshWarning],
+    start: Response | None = None,
+) -> AnyLoadResult:
+    """Compute a machine or a stage at its operating point, from a similar motion if any."""
+    load = case.operating_point
+    if isinstance(case, PlanetaryCase):
+        return run_stage(case, load, progress, of_meshes, start)
+    assert isinstance(case, MachineCase)
+    return run_load(case, load, progress, of_meshes, start)
+
+
+def results_under(
+    case: PartsCase, changes: Sequence[Mapping[str, Any]], progress: Progress = SILENT
+) -> Iterator[tuple[AnyLoadResult | InputError | ComputationError, tuple[str, ...]]]:
+    """Results of a case at its operating point for changes of its keys, and warning codes."""
+    start, stages = None, StageProgress(progress)
+    for change in changes:
+        refuse_stopped(STOPPED * int(stop_flag()[0]))
+        of_meshes: list[MeshWarning] = []
+        with collected() as caught, single_blas_thread():
+            try:
+                changed = case.replace(change)
+                result = result_under(changed, stages, of_meshes, start)
+            except (InputError, ComputationError) as error:
+                yield error, ()
+                continue
+        start = result.response  # the next motion is similar
+        yield result, tuple(w.code for w in (*caught, *(each.warning for each in of_meshes)))
+
+
+def points_of_parts(
+    case: PartsCase,
+    keys: Sequence[str],
+    places: Sequence[tuple[Any, ...]],
+    progress: Progress = SILENT,
+) -> list[SweepPoint]:
+    """Points of a sweep; a failed one holds its reason."""
+    changes = [dict(zip(keys, values, strict=True)) for values in places]
+    results = results_under(case, changes, progress)
+    return [
+        SweepPoint.of_failure(values, result)
+        if isinstance(result, InputError | ComputationError)
+        else SweepPoint(values, result.figures, "", codes)
+        for values, (result, codes) in zip(places, results, strict=True)
+    ]
+
+
+#: Factor by which a study takes fewer steps than a single motion (accurate to about 1e-6), and the
+#: smallest number of steps.
+_COARSER, _FEWEST = 4, 512
+
+
+def build_system(case: Case, *, progress: Progress = SILENT) -> tuple[System, float]:
+    """Build the structure of a case with its tooth contact, ready for every nonlinear method.
+
+    Parameters
+    ----------
+    case : Case
+        From :func:`tribodyn.load_case`.
+    progress : Progress
+        Receives the progress of the tooth contact; silent by default.
+
+    Returns
+    -------
+    tuple of System and float
+        The structure under the load of the case, and its mesh frequency [Hz].
+
+    Raises
+    ------
+    InputError
+        If a value of the case is missing or invalid.
+
+    Examples
+    --------
+    >>> import tribodyn
+    >>> system, mesh_frequency = build_system(tribodyn.load_case("fzg-roughness"))
+    >>> system.size, round(mesh_frequency, 1)
+    (6, 240.0)
+    """
+    with locate_errors(case), collected():
+        progress.start("Tooth contact")
+        member = built(case)
+        progress.finish()
+    return member.system, member.mesh.mesh_frequency
+
+
+def study_steps(case: Case, system: System, mesh_frequency: float) -> int:
+    """Steps per mesh cycle of a study of many motions: those of the case, or a coarse default."""
+    accurate = steps_of(case, system, mesh_frequency)
+    return case.solver.steps_per_mesh_cycle or max(_FEWEST, accurate // _COARSER)

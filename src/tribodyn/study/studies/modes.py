@@ -3,23 +3,32 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
+from tribodyn.machine import MachineModes, PlanetaryModes, machine_modes
 from tribodyn.progress import SILENT, Progress
+from tribodyn.study.machine.case import MachineCase
+from tribodyn.study.machine.modes import (
+    MachineCampbell,
+    MeshOrder,
+    campbell_of,
+    mesh_orders,
+    structure_at_rest,
+)
 from tribodyn.study.machine.user_tables import PartsCase
-from tribodyn.study.machine_studies.modes import modes_at_rest, parts_campbell
-from tribodyn.study.studies.structure import build_system
+from tribodyn.study.planetary.case import PlanetaryCase
+from tribodyn.study.planetary.stage_modes import stage_modes
+from tribodyn.study.studies.case_grid import build_system
 from tribodyn.study.studies.study_axes import ends_of, operation_values
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
 
     from tribodyn.dynamics import Campbell, NaturalModes, System
-    from tribodyn.machine import MachineModes, PlanetaryModes
     from tribodyn.study.case.case import Case
-    from tribodyn.study.machine.modes import MachineCampbell
+    from tribodyn.types import Array
 
 #: Mesh harmonics whose critical speeds are reported.
 ORDERS = (1, 2, 3, 4, 5)
@@ -171,3 +180,30 @@ def mode_rows(modes: NaturalModes, case: Case, mesh_frequency: float) -> list[Mo
 def _describe_shares(shares: dict[str, float]) -> str:
     largest = sorted(shares.items(), key=lambda item: -item[1])
     return ", ".join(f"{name} {100 * share:.0f} %" for name, share in largest if share >= _LEAST)
+
+
+class ModesOfParts(NamedTuple):
+    """Natural modes, and what the harmonics of the meshes strain of each of them."""
+
+    modes: MachineModes | PlanetaryModes
+    orders: tuple[MeshOrder, ...]
+
+
+def modes_at_rest(case: PartsCase, progress: Progress = SILENT) -> ModesOfParts:
+    """Natural modes of a machine or a stage with the teeth at its operating point."""
+    if isinstance(case, PlanetaryCase):
+        stage = stage_modes(case, progress)
+        return ModesOfParts(stage.modes, stage.orders)
+    assert isinstance(case, MachineCase)
+    modes = machine_modes(structure_at_rest(case, progress))
+    return ModesOfParts(modes, mesh_orders(modes))
+
+
+def parts_campbell(
+    case: PartsCase, speeds: Array | None = None, progress: Progress = SILENT
+) -> MachineCampbell:
+    """Campbell diagram of a machine or a stage over the speed of its input [rad/s]."""
+    if isinstance(case, PlanetaryCase):
+        return stage_modes(case, progress).campbell(speeds)
+    assert isinstance(case, MachineCase)
+    return campbell_of(structure_at_rest(case, progress), speeds)

@@ -11,9 +11,8 @@ from tribodyn.errors import InputError, collected
 from tribodyn.progress import SILENT, Progress
 from tribodyn.study.case.to_models import locate_errors
 from tribodyn.study.first_use import compile_in_parallel
-from tribodyn.study.studies.case_grid import built, contact_without_speed
+from tribodyn.study.studies.case_grid import build_system, built, contact_without_speed, study_steps
 from tribodyn.study.studies.needs import require
-from tribodyn.study.studies.structure import build_system, study_steps
 from tribodyn.study.studies.study_axes import ends_of
 
 if TYPE_CHECKING:

@@ -21,7 +21,6 @@ from tribodyn.model import known_elsewhere
 from tribodyn.progress import SILENT, Progress
 from tribodyn.study.first_use import compile_in_parallel
 from tribodyn.study.machine.user_tables import PartsCase
-from tribodyn.study.machine_studies.points import points_of_parts
 from tribodyn.study.pipeline.run import (
     PendingRun,
     PreparedRun,
@@ -30,7 +29,7 @@ from tribodyn.study.pipeline.run import (
     with_tables,
 )
 from tribodyn.study.processes import helpers
-from tribodyn.study.studies.case_grid import finished, identity
+from tribodyn.study.studies.case_grid import finished, identity, points_of_parts
 from tribodyn.study.studies.study_axes import Axis, read_axes
 from tribodyn.study.studies.sweep_result import Sweep, SweepPoint
 

@@ -15,10 +15,10 @@ from tribodyn.errors import Argument, InputError, quiet, require_one_of
 from tribodyn.progress import SILENT, Progress
 from tribodyn.record import Record, fact, quantity, record
 from tribodyn.study.machine.user_tables import PartsCase
-from tribodyn.study.machine_studies.ensemble import MachineEnsemble, ensemble_of
 from tribodyn.study.studies.sweep import points_under
 from tribodyn.study.uncertain.cycles import SIGNALS, steady_cycles
 from tribodyn.study.uncertain.lanes import check_spread_key, draw, lanes_of
+from tribodyn.study.uncertain.machine_ensemble import MachineEnsemble, ensemble_of
 from tribodyn.types import Array
 from tribodyn.uncertainty import Band, bootstrap_band
 

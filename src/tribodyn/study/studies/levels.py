@@ -10,26 +10,18 @@ import numpy as np
 
 from tribodyn.errors import ComputationError
 from tribodyn.record import Record, quantity, record
+from tribodyn.study.machine.modes import MeshOrder
 from tribodyn.types import Array
 
 if TYPE_CHECKING:
     from tribodyn.machine import MachineModes, PlanetaryModes
     from tribodyn.study.machine.motion import MachineMotion
 
-#: Harmonics of each mesh that are followed over the speed, and of those that meet modes.
-_HARMONICS, _MET = 4, 3
+#: Harmonics of each mesh that are followed over the speed.
+_HARMONICS = 4
 #: Most resonances that are named, their least weight over that of the strongest, and least share
 #: of a mesh in the strain energy of a mode.
 _MOST, _LEAST, _STRAINED = 8, 0.08, 1e-3
-
-
-class MeshOrder(NamedTuple):
-    """A mesh harmonic: waves in a turn of the input, and what it strains of each mode."""
-
-    mesh: str
-    harmonic: int
-    order: float
-    share: Array  #: of the strain energy of each mode (m,)
 
 
 class Resonance(NamedTuple):
@@ -137,18 +129,6 @@ class MachineLevels(Record):
             f"{rpm * self.speed.max():.6g} rpm, meshes {', '.join(self.mesh)}"
             f"{f', {lost} failed' if lost else ''})"
         )
-
-
-def mesh_orders(modes: MachineModes) -> tuple[MeshOrder, ...]:
-    """Mesh harmonics of a machine with the shares of the meshes in its modes."""
-    machine = modes.structure.machine
-    turning = abs(machine.operation.speed) / (2.0 * np.pi)
-    return tuple(
-        MeshOrder(mesh, harmonic, harmonic * load.mesh_frequency / turning, share)
-        for mesh, load in machine.kinematics.meshes.items()
-        for share in [modes.strain_share[:, modes.parts.index(f"meshes.{mesh}")]]
-        for harmonic in range(1, _MET + 1)
-    )
 
 
 def resonances(

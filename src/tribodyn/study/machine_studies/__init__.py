@@ -1,1 +1,0 @@
-"""Studies of machines: points of sweeps, motions over the speed, run-ups, ensembles."""
