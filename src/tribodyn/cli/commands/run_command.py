@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import warnings
+from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -22,6 +23,27 @@ if TYPE_CHECKING:
     from tribodyn.study import MachineResult, PlanetaryResult, Result
 
 
+@Parameter(name="*")
+@dataclass(frozen=True)
+class Printed:
+    """What a run writes to stdout."""
+
+    quiet: Annotated[
+        Flag,
+        Parameter(help="Omit the tables; warnings and the location of the report are printed."),
+    ] = False
+    all: Annotated[
+        Flag,
+        Parameter(help="Print every figure with its meaning, not the chief ones of each part."),
+    ] = False
+    json: Annotated[
+        Flag, Parameter(help="Write the summary as one flat JSON object in SI to stdout.")
+    ] = False
+
+
+_CHIEF = Printed()
+
+
 def run(
     case: CaseName,
     /,
@@ -29,10 +51,9 @@ def run(
     out: Path | None = None,
     set_: Settings = None,
     force: Force = False,
-    quiet: Flag = False,
+    printed: Printed = _CHIEF,
     open_: Annotated[bool, Parameter(name="--open", negative="")] = False,
     csv: Flag = False,
-    json: Flag = False,
 ) -> None:
     """Compute a case; write its report and its data into a new directory.
 
@@ -40,14 +61,12 @@ def run(
     ----------
     out : Path
         Directory to write; by default it is called like the case.
-    quiet : bool
-        Omit the table of values; warnings and the location of the report are still printed.
+    printed : Printed
+        What is written to stdout.
     open_ : bool
         Show the report in the web browser.
     csv : bool
         Write the motion over the time as response.csv as well.
-    json : bool
-        Write the summary as one flat JSON object in SI to stdout.
     """
     from tribodyn.cli.progress_bar import progress_bar
     from tribodyn.errors import ModelWarning
@@ -64,10 +83,13 @@ def run(
         progress.start("Report")
         result.save(target, force=force, csv=csv)
         progress.finish()
-    if json:
+    if printed.json:
         say_json(result.summary())
-    elif not quiet:
-        say(f"{result.case.title}\n{figures(result.rows())}")
+    elif not printed.quiet:
+        from tribodyn.cli.summary_screen import screen
+
+        text = figures(result.rows()) if printed.all else screen(result.summary())
+        say(f"{result.case.title}\n{text}")
     show_warnings(result.warnings)
     report = target / "report.html"
     tell(f"Report: {report}")

@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Collection, Iterable, Mapping
 from dataclasses import replace
 
-from tribodyn.study.pipeline.summary import SUMMARY, SummaryFigure, summary_entry
+from tribodyn.study.pipeline.summary import MEASURES, SUMMARY, SummaryFigure, summary_entry
+from tribodyn.study.pipeline.summary_labels import split_key
 
 #: Figures of each kind of part: key, quantity that gives the unit (empty: a pure number), meaning.
 #: Others have the definition of a pair.
@@ -109,22 +109,56 @@ _TOPICS = {
     "bearings": "Bearing {0}",
     "housing": "Housing at {0}",
 }
-#: A key of a load case, whose name may have dots.
-_OF_LOAD_CASE = re.compile(rf"load_cases\.(.+?)\.((?:{'|'.join(_KINDS)})\..+)")
+#: Figures that fit on a screen, by kind of part; those of third parties are always among them.
+_CHIEF = {
+    "": (
+        *("static_mesh_force", "line_load", "input_power", "mesh_frequency", "oil_temperature"),
+        *("mean_mesh_force", "rms_mesh_force", "peak_mesh_force", "dynamic_factor_peak"),
+        *("contact_loss_share", "rms_dynamic_transmission_error", "mean_friction_coefficient"),
+        *("peak_to_peak_dynamic_transmission_error", "mean_friction_power", "efficiency"),
+        *("total_power_loss", "total_efficiency", "mesh_natural_frequency", "resonance_speed"),
+        *("contact_ratio_under_load", "face_load_factor", "mean_mesh_stiffness"),
+        *("peak_to_peak_static_transmission_error", "maximum_hertz_pressure", "central_film"),
+        *("minimum_film_over_path", "minimum_film_ratio", "rms_bearing_force_loa_pinion"),
+        *("rms_bearing_force_oloa_pinion", "steady_state_error", "transverse_contact_ratio"),
+        *("overlap_ratio", "backlash"),
+    ),
+    "machine": ("input_power", "friction_power", "efficiency", "output_torque"),
+    "meshes": (
+        *("mesh_frequency", "mean_mesh_force", "alternating_rms_mesh_force", "peak_mesh_force"),
+        *("dynamic_factor_peak", "contact_loss_share", "transmission_error_peak_to_peak"),
+        *("face_load_factor", "maximum_hertz_pressure", "minimum_film_thickness"),
+        "friction_power",
+    ),
+    "planets": (
+        *("ratio", "planet_speed", "load_factor", "dynamic_load_factor", "planets_unloaded"),
+        *("mean_pin_force", "peak_pin_force"),
+    ),
+    "shafts": ("speed", "torque", "power", "largest_deflection"),
+    "bearings": (
+        *("mean_radial_force", "mean_axial_force", "rms_radial_force", "maximum_pressure"),
+    ),
+    "housing": tuple(_KINDS["housing"]),
+}
+#: Those by which load cases are compared.
+_OF_LOADS = ("output_torque", "efficiency", "peak_mesh_force")
+
+
+def is_chief(key: str) -> bool:
+    """Whether a figure belongs to the summary that fits on a screen."""
+    load, kind, _, name = split_key(key)
+    return name in (_OF_LOADS if load else _CHIEF[kind]) or name in MEASURES.names()
 
 
 def figure_of(key: str) -> SummaryFigure:
     """Unit, meaning and topic of a key of a summary; a KeyError if there is no such figure."""
     if key in SUMMARY:
         return SUMMARY[key]
-    match = _OF_LOAD_CASE.fullmatch(key)
-    prefix, part = (f"{match[1]}: ", match[2]) if match else ("", key)
-    kind, _, part_key = part.partition(".")
-    name, _, last = part_key.rpartition(".")
-    topic = prefix + _TOPICS[kind].format(name)
-    if last in _OF_PAIRS.get(kind, ()):
-        return replace(SUMMARY[last], name=key, topic=topic)
-    return summary_entry(key, *_KINDS[kind][last], topic)
+    load, kind, part, name = split_key(key)
+    topic = (f"{load}: " if load else "") + _TOPICS[kind].format(part)
+    if name in _OF_PAIRS.get(kind, ()):
+        return replace(SUMMARY[name], name=key, topic=topic)
+    return summary_entry(key, *_KINDS[kind][name], topic)
 
 
 def part_figures() -> dict[str, list[str]]:

@@ -53,12 +53,18 @@ _KINDS = {
 }
 
 
-def _split(name: str) -> tuple[str, list[str]]:
-    """Name of a figure without its part, and the part and the load case in words."""
+def split_key(name: str) -> tuple[str, str, str, str]:
+    """Load case, kind of part, part and figure of a key; the first three are empty of a pair."""
     match = _OF_PART.fullmatch(name)
     if match is None:
-        return name, []
-    load, kind, part, figure = match.groups()
+        return "", "", "", name
+    load, kind, part, figure = match.groups(default="")
+    return load, kind, part, figure
+
+
+def _split(name: str) -> tuple[str, list[str]]:
+    """Name of a figure without its part, and the part and the load case in words."""
+    load, kind, part, figure = split_key(name)
     where = [f"{_KINDS[kind]}{part}"] if part else []
     return figure, [*where, *([f"load case {load}"] if load else [])]
 
