@@ -71,6 +71,10 @@ class Waviness(Fault):
         """Whether the crests are inclined."""
         return self.lead_angle != 0.0
 
+    def _gap_after(self, turns: Array) -> Array:
+        """Gap of crests along the teeth after turns of the gear, the same at all teeth [m]."""
+        return np.asarray(-self.amplitude * np.cos(self.order * 2.0 * np.pi * turns + self.phase))
+
     def _gap(self, places: ContactPlaces, face: Array) -> Array:
         """Gap (p, s, 1): negative at a crest."""
         base = abs(self._gear_of(places.contact.pair).base_radius)

@@ -100,12 +100,7 @@ def _error(
     """Error of a fault in the direction of the mesh force [m] over mesh cycles."""
     if isinstance(fault, Waviness):
         wave = fault
-
-        def of_wave(turned: Array) -> Array:
-            angle = wave.order * 2.0 * np.pi * turned / gear.teeth + wave.phase
-            return np.asarray(-wave.amplitude * np.cos(angle))
-
-        return of_wave
+        return lambda turned: wave._gap_after(turned / gear.teeth)
     assert isinstance(fault, PitchDeviations)
     places = np.cumsum(fault.single(gear)) * (gear.lever / gear.reference_radius)
     # a flank of the driving gear that is ahead has a gap, one of the driven gear touches early

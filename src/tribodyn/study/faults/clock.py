@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING, NamedTuple
 
-from tribodyn.errors import InputError
+from tribodyn.study.faults.turning import refuse_long_period
 
 if TYPE_CHECKING:
     from tribodyn.study.case.case import Case
@@ -95,14 +95,11 @@ def turning_clock(case: Case) -> TurningClock:
         else math.lcm(*(teeth[fault.gear] for fault in faults))
     )
     cycles = clock_cycles(of_teeth, tuple(excitations(case).values()), teeth, frequency)
-    if cycles > MOST_CYCLES:
-        raise InputError(
-            f"all repeats after {cycles} mesh cycles, {cycles / frequency:.4g} s",
-            "faults",
-            f"At most {MOST_CYCLES} mesh cycles are computed",
-            "Give faults of one gear, orders that repeat after fewer turns, or a random load of a "
-            f"shorter duration ({of_teeth} mesh cycles are those of the teeth)",
-        )
+    remedy = (
+        "Give faults of one gear, orders that repeat after fewer turns, or a random load of a "
+        f"shorter duration ({of_teeth} mesh cycles are those of the teeth)"
+    )
+    refuse_long_period(cycles, cycles / frequency, MOST_CYCLES, remedy)
     cost = _LEAST + cycles * _MOTION
     if pair is not None:
         over_face = pair.has_lead_modification or any(fault._varies_over_face for fault in faults)

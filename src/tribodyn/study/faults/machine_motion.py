@@ -145,10 +145,7 @@ def _error_over_turns(
     def error(phase: Array) -> Array:
         cycles = np.asarray(phase, dtype=float) * period
         total = sound(cycles % 1.0) if callable(sound) else np.full(cycles.shape, sound)
-        for wave in waves:
-            angle = wave.order * 2.0 * np.pi * cycles / teeth[wave.gear] + wave.phase
-            total = total - wave.amplitude * np.cos(angle)
-        return np.asarray(total)
+        return np.asarray(total + sum(wave._gap_after(cycles / teeth[wave.gear]) for wave in waves))
 
     return {"error": error, "period": period}
 
