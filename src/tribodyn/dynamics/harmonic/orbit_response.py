@@ -38,6 +38,8 @@ class _Jumps(NamedTuple):
 
     def turns(self, count: int) -> ComplexArray:
         """Fourier coefficients 1, 2, ... of pulses at the jumps (count, s)."""
+        if not self.step.size:
+            return np.zeros((count, self.force.shape[1]), dtype=complex)
         # exp(-i angle fraction) about the middle of the step, as a series: one transform a term.
         angle = 2.0 * np.pi * np.arange(1, count + 1)[:, None] / self.steps
         total = np.zeros((count, self.force.shape[1]), dtype=complex)
@@ -54,6 +56,8 @@ class _Jumps(NamedTuple):
 
     def polynomials(self, phase: Array, power: int) -> Array:
         """Values at phases (p, s) of what follows the jumps: pulses integrated ``power`` times."""
+        if not self.step.size:
+            return np.zeros((phase.size, self.force.shape[1]))
         # Bernoulli polynomials of the phase since each jump, summed by the moments of the jumps;
         # those after the phase follow their jump of the last period: B(x + 1) - B(x) = n x^(n - 1).
         place = ((self.step + self.fraction) / self.steps - 1e-12) % 1.0
