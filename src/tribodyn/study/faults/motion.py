@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import replace
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
@@ -160,11 +160,15 @@ def turning_motion(result: Result | PreparedRun, progress: Progress = SILENT) ->
         if not _varies(case):
             sound = result if isinstance(result, Computed) else result.result(progress)
             if is_steady(sound.response):
-                return _motion_of_run(sound, mesh)
+                return _motion(case, mesh, sound.response, _of_run(sound), result.mesh)
         driven = driven_system(case, result.mesh, result.damping, mesh)
         frequency = result.mesh.mesh_frequency / driven.cycles
         response = steady_over_turns(driven, frequency, _ACCURACY, progress=progress)
-    return _driven_motion(case, mesh, driven, response, result.mesh.mesh_frequency)
+    fine = response.fine
+    error = fine.deflection[:, 0] - 0.5 * case.backlash
+    return _motion(
+        case, mesh, response, _Period(fine.phase, driven.cycles, error, driven), result.mesh
+    )
 
 
 def _varies(case: Case) -> bool:
@@ -176,28 +180,21 @@ def _varies(case: Case) -> bool:
     return differ or bool(gear_faults(case)) or bool(excitations(case))
 
 
-def _motion_of_run(result: Computed, mesh: TurningMesh) -> TurningMotion:
-    """The motion of a result on evenly spaced samples."""
-    from tribodyn.study.pipeline.response_series import mesh_force, transmission_error
+class _Period(NamedTuple):
+    """Period of a motion, and what differs between that of a run and that of a driven system."""
 
-    response, cycles = result.response, result.response.periods
-    fine, count = response.fine, SAMPLES * cycles
-    phase = fine.phase - fine.phase[0]
-    even = even_samples(phase / cycles, count)
-    return _motion(
-        result.case,
-        mesh,
-        response,
-        {
-            "position": even(fine.position),
-            "velocity": even(fine.velocity),
-            "acceleration": even(fine.acceleration),
-            "mesh_force": even(mesh_force(fine)),
-            "transmission_error": even(transmission_error(result, fine)),
-            "lead": np.zeros(count),
-        },
-        result.mesh.mesh_frequency,
-    )
+    clock: Array  #: of the samples, in periods
+    cycles: int  #: mesh cycles
+    error: Array  #: transmission error of the samples [m]
+    driven: DrivenSystem | None = None
+
+
+def _of_run(sound: Computed) -> _Period:
+    from tribodyn.study.pipeline.response_series import transmission_error
+
+    phase, cycles = sound.response.fine.phase, sound.response.periods
+    error = transmission_error(sound, sound.response.fine)
+    return _Period((phase - phase[0]) / cycles, cycles, error)
 
 
 def _accelerations(position: Array, sampled: Array, cycles: int, period: float) -> Array:
@@ -212,60 +209,41 @@ def _accelerations(position: Array, sampled: Array, cycles: int, period: float) 
     return np.asarray(np.fft.irfft(blended, len(sampled), axis=0))
 
 
-def _driven_motion(
-    case: Case, mesh: TurningMesh, driven: DrivenSystem, response: Response, mesh_frequency: float
+def _motion(
+    case: Case, mesh: TurningMesh, response: Response, of: _Period, table: MeshTable
 ) -> TurningMotion:
-    """The motion of teeth that differ or of an unsteady drive on evenly spaced samples."""
-    cycles = driven.cycles
-    fine, count, period = response.fine, SAMPLES * cycles, cycles / mesh_frequency
-    at, even = np.arange(count) / count, even_samples(fine.phase, count)
+    """Motion on evenly spaced samples, with the rotation by which an unsteady drive is ahead."""
+    from tribodyn.study.pipeline.response_series import mesh_force
+
+    fine, cycles, driven, mesh_frequency = response.fine, of.cycles, of.driven, table.mesh_frequency
+    count, period = SAMPLES * cycles, cycles / mesh_frequency
+    at, even = np.arange(count) / count, even_samples(of.clock, count)
+    ahead = driven is not None and driven.lead.lines.any()
 
     def over(values: Array, turned: int) -> Array:
         """Values on the samples of the period, with a derivative of the fluctuating rotation."""
         samples = even(values)
-        if driven.lead.lines.any():
+        if driven is not None and ahead:
             lead = driven.lead.derivative(turned)(at) / period**turned
             samples = samples + lead[:, None] * driven.rotation
         return np.asarray(samples)
 
-    return _motion(
-        case,
-        mesh,
-        response,
-        {
-            "position": over(fine.position, 0),
-            "velocity": over(fine.velocity, 1),
-            "acceleration": over(fine.acceleration, 2),
-            "mesh_force": even(fine.contact_force.sum(axis=1)),
-            "transmission_error": even(fine.deflection[:, 0]) - 0.5 * case.backlash,
-            "lead": driven.lead(at),
-        },
-        mesh_frequency,
-    )
-
-
-def _motion(
-    case: Case,
-    mesh: TurningMesh,
-    response: Response,
-    samples: dict[str, Any],
-    mesh_frequency: float,
-) -> TurningMotion:
-    """Motion from its even samples."""
-    count = len(samples["position"])
-    cycles = count // SAMPLES
-    period = cycles / mesh_frequency
+    position = over(fine.position, 0)
     teeth = {name: abs(gear.teeth) for name, gear in case.gears.by_name.items()}
-    smooth = _accelerations(samples["position"], samples["acceleration"], cycles, period)
     return TurningMotion(
-        time=np.arange(count) / count * period,
-        **{**samples, "acceleration": smooth},
+        time=at * period,
+        position=position,
+        velocity=over(fine.velocity, 1),
+        acceleration=_accelerations(position, over(fine.acceleration, 2), cycles, period),
+        mesh_force=even(mesh_force(fine)),
+        transmission_error=even(of.error),
+        lead=driven.lead(at) if driven is not None else np.zeros(count),
         names=response.names,
         mesh=mesh,
         mesh_frequency=mesh_frequency,
         cycles=cycles,
         places=PairSensors(response.names),
-        turns={gear: cycles / count for gear, count in teeth.items()},
+        turns={gear: cycles / number for gear, number in teeth.items()},
         tacho=GEARS[0],
         pinion_teeth=teeth[GEARS[0]],
         wheel_teeth=teeth[GEARS[1]],
