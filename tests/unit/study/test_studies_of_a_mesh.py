@@ -5,7 +5,7 @@ import pytest
 
 import tribodyn as td
 from tribodyn.cli.app import COMMANDS
-from tribodyn.study import harris_map, loss_map, optimize_tip_relief
+from tribodyn.study import harris_map, loss_map, operating_data, optimize_tip_relief
 from tribodyn.study.machine.read import read_any_case
 from tribodyn.study.studies.needs import KINDS, PARTS, STUDIES, kind_of, mesh_names, takes
 
@@ -135,3 +135,20 @@ def test_studies_in_time_refuse_cases_of_parts(study, name):
     with pytest.raises(td.InputError, match="needs the case of one pair of gears") as caught:
         study(td.load_case(name))
     assert np.all([problem.remedy for problem in caught.value.problems])
+
+
+@pytest.mark.parametrize("name", ["planetary-stage", "machine"])
+def test_a_surrogate_learns_the_levels_of_parts(name):
+    case = _cases()[1] if name == "machine" else td.load_case(name)
+    over = {"operation.torque": "100 N*m .. 130 N*m"}
+    data = operating_data(case, over, 4, seed=1)
+    point = {"operation.torque": float(data["operation.torque"][2])}
+    figures = td.run(case.replace(point)).summary()
+    levels = [key for key in data.columns if key.endswith(".alternating_rms_mesh_force")]
+    assert data.rows == 4
+    assert levels
+    for key in levels:
+        assert data[key][2] == pytest.approx(figures[key], rel=1e-5)
+        assert data.units[key] == "N"
+    with pytest.raises(td.InputError, match="cannot be spread"):
+        operating_data(case, {"friction_scale": "0.9 .. 1.1"}, 4, seed=1)

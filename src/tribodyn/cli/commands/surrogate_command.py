@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from json import loads
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal
 
@@ -65,7 +66,7 @@ def _train(
     json: bool,
 ) -> None:
     from tribodyn.cli.progress_bar import progress_bar
-    from tribodyn.study.uncertain.operating_data import RESPONSE, operating_data
+    from tribodyn.study.uncertain.operating_data import operating_data
     from tribodyn.surrogate import Training, train
 
     (size, seed), (out, settings) = draw, places
@@ -75,8 +76,9 @@ def _train(
     case = changed_case(source, settings, "surrogate")
     with collected() as warnings, progress_bar() as progress:
         data = operating_data(case, over, size, seed=seed, progress=progress)
-        inputs = [name for name in data.columns if name not in RESPONSE]
-        varied = [name for name in RESPONSE if np.ptp(data[name]) > 1e-9 * abs(data[name]).max()]
+        inputs = list(loads(data.settings)["over"])
+        response = [name for name in data.columns if name not in inputs]
+        varied = [name for name in response if np.ptp(data[name]) > 1e-9 * abs(data[name]).max()]
         shares = Training(shares=(7.0, 1.0, 2.0))
         model = train(
             data, features=inputs, targets=varied, seed=seed, training=shares, progress=progress

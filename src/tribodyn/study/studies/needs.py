@@ -47,7 +47,7 @@ STUDIES: dict[str, Need] = {
     "experiment": Need(_PAIR, _CYLINDRICAL, "Its claims are about spur gears on their supports"),
     "friction-from-loss": _PLANE._replace(why="Its loss factor is that of plane teeth"),
     "losses --rig": Need(_PAIR, _TOOTHED, "A rig tests the gears of one pair"),
-    "surrogate": Need(_PAIR, PAIRS, "It learns from mesh cycles that are computed at once"),
+    "surrogate": _ANY,
     "export": Need(_PAIR, _CYLINDRICAL, "Models of other programs are written of one spur stage"),
     **dict.fromkeys(("recording", "compare"), _ANY),
 }

@@ -15,9 +15,8 @@ from tribodyn.errors import Argument, InputError, quiet, require_one_of
 from tribodyn.progress import SILENT, Progress
 from tribodyn.record import Record, fact, quantity, record
 from tribodyn.study.machine.user_tables import PartsCase
-from tribodyn.study.studies.sweep import points_under
 from tribodyn.study.uncertain.cycles import SIGNALS, steady_cycles
-from tribodyn.study.uncertain.lanes import check_spread_key, draw, lanes_of
+from tribodyn.study.uncertain.lanes import draw, lanes_of, points_of_values
 from tribodyn.study.uncertain.machine_ensemble import MachineEnsemble, ensemble_of
 from tribodyn.types import Array
 from tribodyn.uncertainty import Band, bootstrap_band
@@ -313,12 +312,10 @@ def _of_machine(
     case: PartsCase, values: Mapping[str, Array], seed: int, progress: Progress
 ) -> MachineEnsemble:
     """Figures of a machine or a stage at the median of the values, and at each of them."""
-    for key, column in values.items():
-        check_spread_key(case, key, column)
     medians = {key: float(np.median(column)) for key, column in values.items()}
     middle = {key: case.central(key) if key in case.uncertain else medians[key] for key in values}
-    rows = [dict(zip(values, row, strict=True)) for row in zip(*values.values(), strict=True)]
-    progress.start("Variants", len(rows) + 1)
-    points = points_under(case, [middle, *rows], progress)
+    drawn = {key: np.append(middle[key], column) for key, column in values.items()}
+    progress.start("Variants", 1 + len(next(iter(drawn.values()))))
+    points = points_of_values(case, drawn, progress)
     progress.finish()
     return ensemble_of(points, values, seed, case.title)

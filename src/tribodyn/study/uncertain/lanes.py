@@ -20,11 +20,13 @@ from tribodyn.study.machine.pair_cases import unknown_key
 from tribodyn.study.machine.user_tables import PartsCase
 from tribodyn.study.pipeline.motion import steps_of
 from tribodyn.study.studies.case_grid import Member, built, contact_without_speed, varied
+from tribodyn.study.studies.sweep import points_under
 from tribodyn.types import Array, Index
 from tribodyn.uncertainty import distribution, sample
 
 if TYPE_CHECKING:
     from tribodyn.dynamics import LaneParameters
+    from tribodyn.study.studies.sweep_result import SweepPoint
 
 #: Factor by which a lane takes fewer steps than a single motion (accurate to about 1e-6), and the
 #: smallest number of steps.
@@ -131,6 +133,16 @@ def check_spread_key(case: Case | PartsCase, key: str, column: Array) -> None:
         raise InputError(what, where, why + factors, "Name one of these")
     for end in (np.min(column), np.max(column)):
         case.replace({key: float(end)})
+
+
+def points_of_values(
+    case: Case | PartsCase, values: Mapping[str, Array], progress: Progress = SILENT
+) -> list[SweepPoint]:
+    """Compute a case at values of its keys, each as a case of its own."""
+    for key, column in values.items():
+        check_spread_key(case, key, column)
+    rows = [dict(zip(values, row, strict=True)) for row in zip(*values.values(), strict=True)]
+    return points_under(case, rows, progress)
 
 
 def _factor(case: Case, key: str, column: Array) -> str | None:

@@ -8,14 +8,19 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from tribodyn.checks import require_whole
+from tribodyn.errors import ComputationError, warn
 from tribodyn.progress import SILENT, Progress
+from tribodyn.study.machine.user_tables import PartsCase
+from tribodyn.study.pipeline.summary_figures import figure_of
+from tribodyn.study.studies.sweep_result import OF_PARTS, level_keys
 from tribodyn.study.uncertain.cycles import steady_cycles
 from tribodyn.study.uncertain.data_set import DataSet
-from tribodyn.study.uncertain.lanes import draw, lanes_of
+from tribodyn.study.uncertain.lanes import draw, lanes_of, points_of_values
 from tribodyn.study.uncertain.vibration_data import data_set
 
 if TYPE_CHECKING:
     from tribodyn.study.case.case import Case
+    from tribodyn.types import Array
 
 #: Response figures of every operating point, with units.
 RESPONSE = {
@@ -30,15 +35,15 @@ RESPONSE = {
 _LOW, _HIGH, _PHASES = 0.7, 1.3, 8
 
 
-def default_ranges(case: Case) -> dict[str, str]:
-    """Ranges of torque, speed, friction and stiffness about the case, and of its roughness."""
+def default_ranges(case: Case | PartsCase) -> dict[str, str]:
+    """Ranges of torque and speed about the case, of a pair also of what its teeth depend on."""
+    load = case.operating_point if isinstance(case, PartsCase) else case.operation
     ranges = {
-        key: _about(float(getattr(case.operation, name)), unit)
-        for key, name, unit in (
-            ("operation.torque", "torque", "N*m"),
-            ("operation.speed", "speed", "rad/s"),
-        )
+        "operation.torque": _about(float(load.torque), "N*m"),
+        "operation.speed": _about(float(load.speed), "rad/s"),
     }
+    if isinstance(case, PartsCase):
+        return ranges
     ranges |= dict.fromkeys(("friction_scale", "stiffness_scale"), f"{_LOW} .. {_HIGH}")
     if case.gears.composite_roughness is not None and case.friction.law not in ("none", "constant"):
         ranges["gears.composite_roughness"] = _about(case.gears.composite_roughness, "m")
@@ -50,7 +55,7 @@ def _about(value: float, unit: str) -> str:
 
 
 def operating_data(
-    case: Case,
+    case: Case | PartsCase,
     over: Mapping[str, Any] | None = None,
     size: int = 256,
     *,
@@ -61,12 +66,13 @@ def operating_data(
 
     Parameters
     ----------
-    case : Case
+    case : Case, MachineCase or PlanetaryCase
         From :func:`tribodyn.load_case`.
     over : mapping, optional
         Ranges such as ``{"operation.speed": "400 rpm .. 3000 rpm"}``, of keys of the case or of
         the factors of :func:`ensemble`; by default torque, speed, friction, stiffness and, where
-        friction depends on it, roughness, from 0.7 to 1.3 times those of the case.
+        friction depends on it, roughness, from 0.7 to 1.3 times those of the case; torque and speed
+        of a machine or a stage, which takes keys but no factors.
     size : int
         Operating points, of a Sobol sequence; a power of two is the most even.
     seed : int
@@ -79,7 +85,8 @@ def operating_data(
     DataSet
         The inputs, and mean, rms and peak of the mesh force [N], the swing of the transmission
         error [m], the rms acceleration of the pinion along the line of action [m/s^2], and the
-        friction coefficient.
+        friction coefficient. Of a machine or a stage the levels of its parts that a sweep shows, at
+        the points that can be computed.
 
     Raises
     ------
@@ -98,6 +105,13 @@ def operating_data(
     ranges = dict(default_ranges(case) if over is None else over)
     count = require_whole("size", size)
     inputs = draw(case, ranges, count, method="sobol", seed=seed)
+    settings = {
+        "over": {key: str(value) for key, value in ranges.items()},
+        "size": count,
+        "seed": int(seed),
+    }
+    if isinstance(case, PartsCase):
+        return _of_parts(case, inputs, settings, progress)
     lanes = lanes_of(case, inputs, progress)
     cycles = steady_cycles(lanes, _PHASES, progress)
     mean, rms, _, high = cycles.figures["mesh_force"]
@@ -107,10 +121,28 @@ def operating_data(
         mean, rms, high, greatest - least, np.sqrt(np.maximum(shaking**2 - middle**2, 0.0)),
         cycles.figures["friction_coefficient"][0],
     ), strict=True))  # fmt: skip
-    settings = {
-        "over": {key: str(value) for key, value in ranges.items()},
-        "size": count,
-        "seed": int(seed),
-    }
     data = data_set("operating_data", case, {**inputs, **response}, settings)
     return DataSet(data.columns, {**data.units, **RESPONSE}, data.case, data.settings, data.version)
+
+
+def _of_parts(
+    case: PartsCase, inputs: Mapping[str, Array], settings: dict[str, Any], progress: Progress
+) -> DataSet:
+    """Levels of the parts of a machine or a stage, at the points that can be computed."""
+    progress.start("Operating points", settings["size"])
+    points = points_of_values(case, inputs, progress)
+    progress.finish()
+    failed = [point.failed for point in points if point.failed]
+    good = np.array([not point.failed for point in points])
+    if failed:
+        what = f"{len(failed)} of {len(points)} operating points cannot be computed: {failed[0]}"
+        if not good.any():
+            raise ComputationError(what, "", "", "Narrow the ranges, or correct the case")
+        warn("ensemble-failed", f"{what}. They are left out: narrow the ranges")
+    figures = [point.figures for point in points if not point.failed]
+    names = [name for figure in OF_PARTS for name in level_keys(figures[0], figure)]
+    response = {name: np.array([each[name] for each in figures]) for name in names}
+    columns = {**{key: column[good] for key, column in inputs.items()}, **response}
+    data = data_set("operating_data", case, columns, settings)
+    units = {name: figure_of(name).unit or "1" for name in names}
+    return DataSet(data.columns, {**data.units, **units}, data.case, data.settings, data.version)

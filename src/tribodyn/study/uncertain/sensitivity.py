@@ -14,9 +14,8 @@ from tribodyn.progress import SILENT, Progress
 from tribodyn.record import Record, fact, quantity, record
 from tribodyn.study.pipeline.summary import SUMMARY
 from tribodyn.study.pipeline.summary_figures import in_order, is_figure
-from tribodyn.study.studies.sweep import points_under
 from tribodyn.study.studies.sweep_result import OF_PARTS, SHOWN
-from tribodyn.study.uncertain.lanes import check_spread_key, distributions_of
+from tribodyn.study.uncertain.lanes import distributions_of, points_of_values
 from tribodyn.types import Array
 from tribodyn.uncertainty import sobol_indices as indices_of
 
@@ -189,10 +188,9 @@ class _Runs:
         """Compute what is new; return numbers that vary."""
         rows = _rows(values)
         new = [row for row in dict.fromkeys(rows) if row not in self.summaries]
-        for key, column in values.items():
-            check_spread_key(self.case, key, column)
-        points = points_under(self.case, [dict(zip(values, r, strict=True)) for r in new],
-                              self.progress)  # fmt: skip
+        columns = np.array(new).reshape(len(new), len(values)).T
+        drawn = dict(zip(values, columns, strict=True))
+        points = points_of_values(self.case, drawn, self.progress) if new else []
         if failed := [point for point in points if point.failed]:
             what = f"{len(failed)} of {len(points)} variants cannot be computed: {failed[0].failed}"
             why = "Shares of a variance need every variant"

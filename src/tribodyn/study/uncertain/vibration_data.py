@@ -29,6 +29,7 @@ from tribodyn.types import Array
 if TYPE_CHECKING:
     from tribodyn.dynamics.time.engines import FixedMarcher
     from tribodyn.study.case.case import Case
+    from tribodyn.study.machine.user_tables import PartsCase
 
 #: Stiffness and friction as the source of the data set spreads them.
 SPREAD = {"stiffness_scale": "1 +- 0.83 %", "friction_scale": "1 +- 0.83 %"}
@@ -135,12 +136,12 @@ def vibration_data(
     return data_set("vibration_data", case, columns, settings)
 
 
-def data_set(kind: str, case: Case, columns: dict[str, Array], settings: dict[str, Any]) -> DataSet:
+def data_set(
+    kind: str, case: Case | PartsCase, columns: dict[str, Array], settings: dict[str, Any]
+) -> DataSet:
     """Columns with their units and their origin."""
-    from tribodyn.study.case.provenance import spec_of
-
     signal_units = {**_TIME_COLUMNS, **SIGNALS}
-    specs = {name: spec_of(case, name) for name in columns}
+    specs = {name: case.option_of(name) for name in columns}
     units = {
         name: signal_units.get(name) or (spec.unit if spec else "") or "1"
         for name, spec in specs.items()
