@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from tribodyn.dynamics._engine.adaptive_engine import AdaptiveLanes, adaptive_engine
+from tribodyn.dynamics._engine.adaptive_engine import adaptive_lanes
 from tribodyn.dynamics._engine.blocks import march
 from tribodyn.dynamics.equations.compiled import compile_lanes
 from tribodyn.dynamics.time.engines import AdaptiveMarcher, Setting
@@ -39,13 +39,13 @@ def march_adaptive(
 
 def march_one(system, frequency, state, cycles, *, rtol=1e-6, points=None, record=None):
     """March one lane in adaptive steps; returns steps, rejections and crossings."""
-    engine = adaptive_engine(system, frequency, cycles, rtol=rtol)
-    force, place = np.zeros((1, system.size)), np.arange(1)
-    lane = AdaptiveLanes([(engine, place)], np.array([1.0 / frequency]), force)
+    lanes = np.array([float(frequency)]), cycles, np.zeros((1, system.size))
+    (lane,) = adaptive_lanes([(system, np.arange(1))], *lanes, rtol)
     grid, trail = np.zeros(1) if points is None else np.ascontiguousarray(points), np.zeros((0, 2))
+    rows = None if record is None else record[:, :, 0]
 
-    def run(block):
-        return lane.march_block(block, state[None].copy(), cycles, grid, record, trail, 0)
+    def run(state):
+        return lane.march(state, cycles, grid, rows, trail, 0)
 
-    (report,) = in_threads(run, lane.blocks, 1)
+    (report,) = in_threads(run, [state.copy()], 1)
     return report[:3]

@@ -23,7 +23,7 @@ def numbers(ensemble, lane):
     return np.concatenate([ensemble.position[lane], ensemble.velocity[lane], *parts])
 
 
-@pytest.mark.parametrize("method", ["rk4", "newmark"])
+@pytest.mark.parametrize("method", ["rk4", "dormand-prince", "newmark"])
 @pytest.mark.parametrize("system", [everything_varies(), random_machine(5, gap=0.2, **PARTS)])
 def test_a_trajectory_is_that_of_an_ensemble(system, method):
     generator = np.random.default_rng(2)

@@ -8,14 +8,14 @@ A lane is one trajectory of a block of trajectories that are integrated together
 | `contact_forces` | equation of motion: contact forces, frictions, accelerations |
 | `method` | interface of the fixed-step methods |
 | `runge_kutta`, `newmark` | one step of each fixed-step method |
-| `dormand_prince` | one adaptive step, its error estimate and its dense output |
+| `dormand_prince` | one adaptive step, its error estimate and its dense output; rows at any phase |
 | `crossing` | location of contact loss and contact gain within a step |
 | `statistics` | signals whose statistics are accumulated, and their order |
 | `running_statistics` | accumulation of the statistics during the integration |
 | `midpoint` | state in the middle of a step, needed for the statistics |
 | `marching` | integration loop of a block of lanes with fixed steps |
-| `adaptive` | integration loop of a block of lanes with adaptive steps |
+| `adaptive` | integration loop of one trajectory with adaptive steps |
 | `blocks` | fixed steps: distribution over blocks and threads, report of failures |
-| `adaptive_engine` | adaptive steps: tolerances, blocks, report of failures |
-| `phase_table` | entries of the system as piecewise polynomials of the mesh phase |
+| `adaptive_engine` | adaptive steps: tolerances of each trajectory, report of failures |
+| `row_table` | entries of the system on a grid fine enough to interpolate between its nodes |
 """

@@ -1,22 +1,20 @@
-"""Prepare adaptive integration of a system: tolerances, blocks of lanes, report of failures."""
+"""Prepare adaptive integration: tolerances, one trajectory after another, report of failures."""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from functools import cache, partial
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from tribodyn.dynamics._engine.blocks import LaneBlock, lane_blocks
-from tribodyn.dynamics._engine.phase_table import PhaseTable, build_table
-from tribodyn.dynamics.equations.compiled import Compiled
+from tribodyn.dynamics._engine.row_table import RowTable, build_table
 from tribodyn.dynamics.equations.divergence import Failed, adaptive_failure, chattering_step
 from tribodyn.dynamics.equations.grid import system_events
-from tribodyn.dynamics.equations.lane_parameters import LaneParameters
+from tribodyn.dynamics.equations.lane_parameters import LaneParameters, kinds_of
 from tribodyn.dynamics.equations.nodes import sampled
-from tribodyn.dynamics.equations.program import compile_system, lane_load
+from tribodyn.dynamics.equations.program import lane_load
 from tribodyn.dynamics.equations.step_limit import largest_rate, state_roots
 from tribodyn.dynamics.equations.system import System
 from tribodyn.dynamics.orbits.coordinates import static_start
@@ -29,6 +27,8 @@ Tolerance = float | Sequence[float] | ArrayLike
 
 #: Default absolute tolerance, over the relative one and the size of the static state.
 SMALL = 1e-3
+#: Initial steps of a mesh cycle in which the system is examined.
+_SAMPLE = 64
 #: Error of a step over the requested tolerance, and the same times the memory of the motion [rad].
 #: Errors of steps add up over the memory; so their sum stayed below half of the tolerance in all
 #: reference cases, up to a hundred undamped periods. Impacts spread neighbouring motions, hence the
@@ -53,11 +53,11 @@ def read_atol(atol: Tolerance, size: int) -> Array:
     return np.array(np.broadcast_to(values, (2 * size,)))
 
 
-def static_scale(compiled: Compiled, mesh_frequency: float) -> Array:
+def static_scale(examined: ExaminedSystem, mesh_frequency: float) -> Array:
     """Sizes of positions and velocities in the static state, in the metric of the mass."""
-    system, nodes = compiled.system, compiled.nodes
+    system, nodes = examined.system, examined.nodes
     mass = np.sqrt(np.diag(np.asarray(system.mass)))
-    position = static_start(compiled)[: system.size]
+    position = static_start(examined)[: system.size]
     size = float(np.max(mass * np.abs(position)))
     if not size > 0.0:
         inside = [np.abs(item).max(initial=0.0) for item in (nodes.error, nodes.gap)]
@@ -67,16 +67,14 @@ def static_scale(compiled: Compiled, mesh_frequency: float) -> Array:
     return np.concatenate((size / mass, speed / mass))
 
 
-def step_share(
-    compiled: Compiled, duration: float, stiffness_scale: float = 1.0, damping_scale: float = 1.0
-) -> float:
-    """Allowed error of a step over the tolerance of the motion."""
-    system, nodes = compiled.system, compiled.nodes
+def step_share(examined: ExaminedSystem, duration: float, factors: Array) -> float:
+    """Allowed error of a step over the tolerance of the motion, for the factors of a lane."""
+    system, nodes = examined.system, examined.nodes
     inverse = system.inverse_mass
     longest = 0.0
     pairs = (
-        (stiffness_scale * nodes.stiffness, system.stiffness),
-        (damping_scale * nodes.damping, system.rate_matrix),
+        (factors[0] * nodes.stiffness, system.stiffness),
+        (factors[1] * nodes.damping, system.rate_matrix),
     )
     for share in (0.0, 1.0):
         parts = []
@@ -92,61 +90,48 @@ def step_share(
     return max(min(share, _BUDGET / max(longest, 1.0)), _LEAST)
 
 
-_SAMPLE = 64
+class ExaminedSystem:
+    """A system with what its trajectories of any factors share."""
+
+    def __init__(self, system: System, kinds: Index, rtol: float) -> None:
+        self.system = system
+        self.tables = {kind: _table(system, rtol, kind) for kind in np.unique(kinds).tolist()}
+        self.nodes = sampled(system, max(_SAMPLE, 2 * len(system_events(system))))[1]
+        self.rate = cache(partial(largest_rate, system, self.nodes))
 
 
-@dataclass(frozen=True)
-class AdaptiveEngine:
-    """A system with its phase table and tolerances."""
-
-    system: System
-    table: PhaseTable
-    rtol: float  #: error over the largest size so far of each state [-]
-    atol: Array  #: error allowed on top of that [m or rad, m/s or rad/s]
-    rate: float  #: fastest motion of the system [rad/s]
-    safety: float  #: error of a step over the tolerance [-]
-
-
-@dataclass(frozen=True)
-class AdaptiveBlock(LaneBlock):
-    """Lanes of one system that share their steps."""
-
-    engine: AdaptiveEngine
-    memory: Array  #: next step, last error, and largest size so far of every state
-
-
-class AdaptiveLanes:
-    """Lanes whose integration continues from call to call, in blocks of lanes of one engine."""
+class AdaptiveLane:
+    """A trajectory whose integration continues from call to call in steps of its own."""
 
     def __init__(
         self,
-        engines: Sequence[tuple[AdaptiveEngine, Index]],
-        period: Array,
+        examined: ExaminedSystem,
+        table: RowTable,
+        operation: tuple[float, int],
+        tolerance: tuple[float, Tolerance | None],
         extra_force: Array,
-        scales: Array | None = None,
+        factors: Array,
+        number: int | None,
     ) -> None:
-        lanes, n = extra_force.shape
-        self.period = np.asarray(period, dtype=float)
-        self.factors = np.ones((lanes, 6)) if scales is None else scales
-        steady, self.blocks = np.empty((lanes, n)), []
-        for engine, lane_numbers in engines:
-            force = self.factors[lane_numbers, 5]
-            steady[lane_numbers] = lane_load(
-                engine.table.program, engine.system, extra_force[lane_numbers], force
-            )
-            rate = max(engine.rate * float(np.max(self.period[lane_numbers])), 1e-9)
-            for block in lane_blocks(lane_numbers.size):
-                memory = np.zeros(2 + 2 * n * block.index.size)
-                memory[:2] = min(0.1 * engine.rtol**0.2 / rate, 0.1), 1.0
-                adaptive_block = AdaptiveBlock(
-                    lane_numbers[block.index], block.count, engine, memory
-                )
-                self.blocks.append(adaptive_block)
-        self.load = np.hstack((steady, self.factors))
+        self.examined, self.table, self.factors, self.number = examined, table, factors, number
+        system, n, (frequency, cycles) = examined.system, examined.system.size, operation
+        self.rtol, atol = tolerance
+        self.period, rtol = 1.0 / frequency, self.rtol
+        self.rate = examined.rate(tuple(factors[:3].tolist()))
+        if atol is None:
+            self.atol = SMALL * rtol * static_scale(examined, frequency)
+        else:
+            self.atol = read_atol(atol, n)
+        self.safety = step_share(examined, cycles / frequency, factors)
+        first = min(0.1 * rtol**0.2 / max(self.rate * self.period, 1e-9), 0.1)
+        #: Next step, last error, and largest size so far of every state.
+        self.memory = np.concatenate(([first, 1.0], np.zeros(2 * n)))
+        self.load = lane_load(table.program, system, extra_force, factors[5])
+        if np.any(factors != 1.0):
+            self.load = np.concatenate((self.load, factors))
 
-    def march_block(
+    def march(
         self,
-        block: AdaptiveBlock,
         state: Array,
         cycles: int,
         points: Array,
@@ -154,53 +139,61 @@ class AdaptiveLanes:
         trail: Array,
         elapsed: int,
     ) -> Array:
-        """Integrate one block, whose states are overwritten; returns its report."""
-        from tribodyn.dynamics._engine.adaptive import MarchOutput, march_adaptive_block
+        """Integrate a state (2 n,), which is overwritten; returns the report."""
+        from tribodyn.dynamics._engine.adaptive import MarchOutput, march_adaptive
 
-        engine, (width, double) = block.engine, state.shape
-        states = np.zeros((0, double, width)) if record is None else record
-        report = np.zeros(10)
-        lanes = (0.0,) * width, engine.table, self.period[block.index], self.load[block.index]
-        tolerances = engine.safety * engine.rtol, engine.safety * engine.atol
+        states = np.zeros((0, state.size)) if record is None else record
+        report = np.zeros(9)
+        tolerances = self.safety * self.rtol, self.safety * self.atol
         output = MarchOutput(points, states, trail, report)
-        slots = march_adaptive_block(
-            *lanes, state, block.memory, *tolerances, cycles, output, stop_flag()
+        period, load, lane = np.array([self.period]), self.load[None], state[None]
+        march_adaptive(
+            self.table, period, load, lane, self.memory, *tolerances, cycles, output, stop_flag()
         )
         refuse_stopped(int(report[4]))
         if report[4]:
-            self._report(block, report, slots[:double], elapsed)
+            self._report(report, state, elapsed)
         return report
 
-    def _report(self, block: AdaptiveBlock, report: Array, state: Array, elapsed: int) -> None:
-        """Raise the reason why a block failed; ``state`` is that of its lane at the failed step."""
-        system, lane = block.engine.system, int(block.index[int(report[6])])
-        phase, period = elapsed + report[9] + report[5], float(self.period[lane])
-        who = lane if self.period.size > 1 else None
+    def _report(self, report: Array, state: Array, elapsed: int) -> None:
+        """Raise the reason of a failure; ``state`` is that at the failed step."""
+        phase = elapsed + report[8] + report[5]
         if report[4] == 2.0:
-            place = int(report[7]), len(system.contacts), phase, phase * period, who
-            raise chattering_step(*place, adaptive=True)
-        nodes = sampled(system, max(_SAMPLE, 2 * len(system_events(system))))[1]
-        scale = block.engine.atol / (SMALL * block.engine.rtol)
-        facts = period, who, self.factors[lane], 0.0
-        failed = Failed(system, nodes, state[None], np.array([phase]), *facts)
-        raise adaptive_failure(failed, scale)
+            contact = int(report[6]), len(self.examined.system.contacts), phase, phase * self.period
+            raise chattering_step(*contact, self.number, adaptive=True)
+        place = self.examined.system, self.examined.nodes, state[None], np.array([phase])
+        failed = Failed(*place, self.period, self.number, self.factors, 0.0)
+        raise adaptive_failure(failed, self.atol / (SMALL * self.rtol))
 
 
-def adaptive_engine(
-    system: System,
-    mesh_frequency: ArrayLike,
+def adaptive_lanes(
+    systems: Sequence[tuple[System, Index]],
+    frequency: Array,
     cycles: int,
-    *,
+    extra_force: Array,
     rtol: float = 1e-6,
     atol: Tolerance | None = None,
-    table: PhaseTable | None = None,
     parameters: LaneParameters | None = None,
-) -> AdaptiveEngine:
-    """Prepare a system for adaptive steps."""
+) -> list[AdaptiveLane]:
+    """Prepare the trajectories of systems, each with the numbers of its lanes."""
     require_between("rtol", rtol, 1e-12, 1e-2)
-    scaled = parameters is not None and parameters.scales_contacts
-    split = parameters is not None and parameters.scales_friction
-    table = build_table(system, scaled=scaled, split=split) if table is None else table
+    lanes = frequency.size
+    factors = np.ones((lanes, 6)) if parameters is None else parameters.table(lanes)
+    kinds = np.zeros(lanes, np.int64) if parameters is None else kinds_of(parameters, lanes)
+    prepared: dict[int, AdaptiveLane] = {}
+    for system, numbers in systems:
+        examined = ExaminedSystem(system, kinds[numbers], rtol)
+        for lane in numbers.tolist():
+            prepared[lane] = AdaptiveLane(
+                examined, examined.tables[int(kinds[lane])], (float(frequency[lane]), cycles),
+                (float(rtol), atol), extra_force[lane], factors[lane], lane if lanes > 1 else None,
+            )  # fmt: skip
+    return [prepared[lane] for lane in range(lanes)]
+
+
+def _table(system: System, rtol: float, kind: int) -> RowTable:
+    """Table of a kind of factors; refuse a tolerance that it does not resolve."""
+    table = build_table(system, rtol, scaled=bool(kind & 1), split=bool(kind & 2))
     if table.error > rtol:
         raise InputError(
             f"rtol = {rtol:.1e} is below {table.error:.1e}, the accuracy to which the entries "
@@ -209,15 +202,4 @@ def adaptive_engine(
             why="Their kinks or noise cannot be resolved any further",
             remedy=f"Give rtol of at least {table.error:.0e}, or smoother entries",
         )
-    grid, nodes, program = compile_system(system, max(_SAMPLE, 2 * table.events.size))
-    compiled = Compiled(system, grid, nodes, program, math.nan)
-    slowest = float(np.min(np.asarray(mesh_frequency, dtype=float)))
-    if atol is None:
-        absolute_tolerance = SMALL * rtol * static_scale(compiled, slowest)
-    else:
-        absolute_tolerance = read_atol(atol, system.size)
-    factors = np.ones((1, 6)) if parameters is None else parameters.table(parameters.count)
-    most, least = factors.max(axis=0), factors.min(axis=0)
-    safety = step_share(compiled, cycles / slowest, float(most[0]), float(least[1]))
-    rate = largest_rate(system, nodes, tuple(most[:3]))
-    return AdaptiveEngine(system, table, float(rtol), absolute_tolerance, rate, safety)
+    return table

@@ -1,9 +1,10 @@
-"""One Dormand-Prince step of all lanes, its error and the polynomial of the step.
+"""One Dormand-Prince step, its error, the polynomial of the step and the row at any mesh phase.
 
 Seven stages give a solution of fifth order and, by comparison with one of fourth, its error
 (Dormand and Prince 1980). The last stage is the first of the next step. Between the ends the
 position is the quintic Hermite interpolant of position, velocity and acceleration at both ends,
 and the velocity is its derivative: of sixth and fifth order, hence no worse than the step.
+Every trajectory has steps of its own, so that no vectors of lanes appear: slots are plain numbers.
 The readable version is in ``tests/plain``.
 """
 
@@ -19,19 +20,19 @@ from tribodyn.dynamics._engine.contact_forces import (
     I64,
     Law,
     acceleration,
-    clearances,
-    first_contact,
-    is_dead_zone,
-    next_contact,
     slots_of,
 )
-from tribodyn.dynamics._engine.lanes import any_negative, greatest, keep_apart, load, store
+from tribodyn.dynamics._engine.lanes import keep_apart
 from tribodyn.dynamics._engine.method import INNER
+from tribodyn.dynamics._engine.row_table import DENOMINATORS, POINTS
 from tribodyn.dynamics.equations import motion
 from tribodyn.types import Array, Index
 
 quintic_place = nb.njit(**INNER)(motion.quintic_place)
 quintic_speed = nb.njit(**INNER)(motion.quintic_speed)
+
+#: A block of a single lane, for the functions of the law.
+SINGLE = (0.0,)
 
 #: Places of the stages, their weights (the last row is the step itself) and those of the error.
 NODES = np.array([0.0, 1 / 5, 3 / 10, 4 / 5, 8 / 9, 1.0, 1.0])
@@ -60,7 +61,6 @@ class AdaptiveSlots(NamedTuple):
     mean: int  #: mean velocity of the step
     size: int  #: largest size of each state so far
     tolerance: int  #: inverse tolerance of each state
-    error: int
     period: int  #: [s]
     table: int  #: distances of every contact at five places of the step
     fresh: int  #: marks of contacts that have just changed their sides
@@ -73,186 +73,122 @@ def adaptive_slots(code: Index) -> AdaptiveSlots:
     s = slots_of(code)
     n, stage, contacts = s.n, s.end, s.contacts
     mean = stage + 14 * n
-    error = mean + 5 * n
-    table = error + 2
-    fresh = table + 10 * contacts
+    period = mean + 5 * n
+    fresh = period + 1 + 10 * contacts
     return AdaptiveSlots(
-        stage, stage + 6 * n, stage + 7 * n, mean, mean + n, mean + 3 * n, error, error + 1, table,
-        fresh, fresh + contacts - stage,
+        stage, stage + 6 * n, stage + 7 * n, mean, mean + n, mean + 3 * n, period, period + 1,
+        fresh, fresh + contacts,
     )  # fmt: skip
 
 
-class Cells(NamedTuple):
-    """Addresses of the polynomials of the row over the mesh phase."""
+class Rows(NamedTuple):
+    """Addresses of the table between whose rows is interpolated."""
 
-    edge: Any
-    degree: Any
-    start: Any
-    coefficients: Any
+    events: Any
+    first: Any
     varying: Any
-    varies: int  #: how many factors vary
+    varies: int  #: how many columns vary
+    columns: int
+    values: Any
+    weights: Any  #: of the nodes of an interpolation
+    places: Any  #: of their rows in the values
 
 
 class Trial(NamedTuple):
-    """A step within a segment between two events."""
+    """A step within the segment between two events."""
 
-    cell: int  #: cell of its beginning
-    last: int  #: cell behind those of the segment
+    segment: int
     phase: float  #: [-]
     width: float  #: [-]
 
 
 @nb.njit(**INNER)
-def find_cell(cells: Cells, cell: int, first: int, last: int, phase: float) -> int:
-    """Cell of a phase within the segment from cell ``first`` to before ``last``."""
-    while cell < last - 1 and phase > cells.edge[cell + 1]:
-        cell += 1
-    while cell > first and phase < cells.edge[cell]:
-        cell -= 1
-    return cell
+def fill_row(rows: Rows, segment: int, phase: float, row: Array) -> None:
+    """Interpolate the varying factors of the row at a phase of the segment."""
+    low, high = rows.events[segment], rows.events[segment + 1]
+    begin, end = rows.first[segment], rows.first[segment + 1]
+    last = 2 * (end - begin)
+    points = min(I64(POINTS), last + 1)
+    x = (phase - low) / (high - low) * last
+    start = min(max(I64(x) - 2, 0), last + 1 - points)
+    weights, at = rows.weights, rows.places
+    for k in range(points):
+        node = start + k
+        step = min(node >> 1, end - begin - 1)
+        at[k] = (3 * (begin + step) + node - 2 * step) * rows.columns
+        weights[k] = DENOMINATORS[points, k]
+        for j in range(points):
+            if j != k:
+                weights[k] *= x - (start + j)
+    for k in range(points, POINTS):
+        at[k], weights[k] = at[0], 0.0
+    for item in range(rows.varies):
+        column = rows.varying[item]
+        total = 0.0
+        for k in range(POINTS):
+            total += weights[k] * rows.values[at[k] + column]
+        row[column] = total
 
 
 @nb.njit(**INNER)
-def fill_row(cells: Cells, cell: int, phase: float, row: Array) -> None:
-    """Evaluate the varying factors of the row at a phase of the cell."""
-    low, high = cells.edge[cell], cells.edge[cell + 1]
-    x = ((phase - low) - (high - phase)) / (high - low)
-    top, at = cells.degree[cell], cells.start[cell]
-    for item in range(cells.varies):
-        value = cells.coefficients[at + top]
-        for k in range(top):
-            value = value * x + cells.coefficients[at + top - 1 - k]
-        row[cells.varying[item]] = value
-        at += top + 1
+def fill_within(rows: Rows, trial: Trial, theta: float, row: Array) -> None:
+    """Interpolate the row at a fraction of a step."""
+    fill_row(rows, trial.segment, trial.phase + theta * trial.width, row)
 
 
 @nb.njit(**INNER)
-def fill_within(cells: Cells, trial: Trial, theta: float, cell: int, row: Array) -> int:
-    """Evaluate the row at a fraction of a step; returns its cell."""
-    phase = trial.phase + theta * trial.width
-    cell = find_cell(cells, cell, trial.cell, trial.last, phase)
-    fill_row(cells, cell, phase, row)
-    return cell
-
-
-@nb.njit(**INNER)
-def set_scale(width: int, code: Index, rtol: float, atol: Array, w: Array) -> None:
+def set_scale(code: Index, rtol: float, atol: Array, w: Array) -> None:
     """Update the largest size and the inverse tolerance of each state."""
-    n, o = code[0], adaptive_slots(code)
-    for i in range(2 * n):
-        size, inverse = (o.size + i) * width, (o.tolerance + i) * width
-        for lane in range(width):
-            now = abs(w[i * width + lane])
-            if now > w[size + lane]:
-                w[size + lane] = now
-            w[inverse + lane] = 1.0 / (atol[i] + rtol * w[size + lane])
+    o = adaptive_slots(code)
+    for i in range(2 * code[0]):
+        w[o.size + i] = max(w[o.size + i], abs(w[i]))
+        w[o.tolerance + i] = 1.0 / (atol[i] + rtol * w[o.size + i])
 
 
 @nb.njit(**INNER)
-def try_step(lanes: Any, law: Law, cells: Cells, trial: Trial, w: Array) -> float:
-    """Step every lane, from buffer 0 to buffer 2; returns the worst error over the tolerance."""
+def try_step(law: Law, rows: Rows, trial: Trial, w: Array) -> float:
+    """Step from buffer 0 to buffer 2; returns the error over the tolerance."""
     keep_apart()
     s, o = slots_of(law.code), adaptive_slots(law.code)
-    n = s.n
-    h = trial.width * load(lanes, w, o.period)
-    store(w, s.h, h)
+    n, h = s.n, trial.width * w[o.period]
+    w[s.h] = h
     for i in range(n):
-        store(w, o.rate + i, load(lanes, w, n + i))
-    cell = trial.cell
+        w[o.rate + i] = w[n + i]
     for stage in range(1, 7):
         if stage < 6:
-            cell = fill_within(cells, trial, NODES[stage], cell, law.rows)
+            fill_within(rows, trial, NODES[stage], law.rows)
         buffer = I64(2) if stage == 6 else I64(1)
         target = 2 * n * buffer
         for i in range(n):
-            dq = MATRIX[stage, 0] * load(lanes, w, o.rate + i)
-            dv = MATRIX[stage, 0] * load(lanes, w, o.stage + i)
-            for j in range(1, stage):
-                factor = MATRIX[stage, j]
-                dq = dq + factor * load(lanes, w, o.rate + j * n + i)
-                dv = dv + factor * load(lanes, w, o.stage + j * n + i)
-            v = load(lanes, w, n + i) + h * dv
-            store(w, target + i, load(lanes, w, i) + h * dq)
-            store(w, target + n + i, v)
-            store(w, o.rate + stage * n + i, v)
-            if stage == 6:
-                store(w, o.mean + i, dq)
-        acceleration(lanes, law, I64(0), buffer, o.stage + stage * n, w)
-    total = 0.0 * h
+            dq, dv = 0.0, 0.0
+            for j in range(stage):
+                dq += MATRIX[stage, j] * w[o.rate + j * n + i]
+                dv += MATRIX[stage, j] * w[o.stage + j * n + i]
+            v = w[n + i] + h * dv
+            w[target + i] = w[i] + h * dq
+            w[target + n + i] = w[o.rate + stage * n + i] = v
+            w[o.mean + i] = dq
+        acceleration(SINGLE, law, I64(0), buffer, o.stage + stage * n, w)
+    total = 0.0
     for i in range(2 * n):
         at = (o.rate if i < n else o.stage - n) + i
-        error = WEIGHT_ERROR[0] * load(lanes, w, at)
-        for j in range(2, 7):
-            error = error + WEIGHT_ERROR[j] * load(lanes, w, at + j * n)
-        error = error * h * load(lanes, w, o.tolerance + i)
-        total = total + error * error
-    store(w, o.error, total)
-    worst = 0.0
-    for lane in range(len(lanes)):
-        value = w[o.error * len(lanes) + lane]
-        if not np.isfinite(value):
-            return np.inf
-        worst = max(worst, value)
-    return math.sqrt(worst)
+        error = 0.0
+        for j in range(7):
+            error += WEIGHT_ERROR[j] * w[at + j * n]
+        total += (error * h * w[o.tolerance + i]) ** 2
+    return math.sqrt(total) if math.isfinite(total) else math.inf
 
 
 @nb.njit(**INNER)
-def between(lanes: Any, law: Law, theta: float, speed: bool, w: Array) -> None:
+def between(law: Law, theta: float, speed: bool, w: Array) -> None:
     """State at the fraction ``theta`` of the step, into buffer 1; velocities if ``speed``."""
-    slots, o = slots_of(law.code), adaptive_slots(law.code)
-    n, h = slots.n, load(lanes, w, slots.h)
+    s, o = slots_of(law.code), adaptive_slots(law.code)
+    n, h = s.n, w[s.h]
     b5, b1, b4, b2, b3 = quintic_place(theta)
     d5, d1, d4, d2, d3 = quintic_speed(theta)
     for i in range(n):
-        v0, v1 = load(lanes, w, n + i), load(lanes, w, 5 * n + i)
-        a0, a1 = load(lanes, w, o.stage + i), load(lanes, w, o.last + i)
-        mean = load(lanes, w, o.mean + i)
-        q = b5 * mean + b1 * v0 + b4 * v1 + h * (b2 * a0 + b3 * a1)
-        store(w, 2 * n + i, load(lanes, w, i) + h * q)
+        v0, v1, mean = w[n + i], w[5 * n + i], w[o.mean + i]
+        a0, a1 = w[o.stage + i], w[o.last + i]
+        w[2 * n + i] = w[i] + h * (b5 * mean + b1 * v0 + b4 * v1 + h * (b2 * a0 + b3 * a1))
         if speed:
-            store(w, 3 * n + i, d5 * mean + d1 * v0 + d4 * v1 + h * (d2 * a0 + d3 * a1))
-
-
-@nb.njit(**INNER)
-def _distances(lanes: Any, law: Law, buffer: int, slot: int, w: Array) -> None:
-    """Distances of every contact to the boundaries of its side, two slots each from ``slot``."""
-    s, cursor = slots_of(law.code), first_contact(law, I64(0), buffer)
-    for j in range(s.contacts):
-        if is_dead_zone(law, cursor):
-            upper, lower = clearances(lanes, law, s, cursor, j, w)
-            store(w, slot + 2 * j, upper)
-            store(w, slot + 2 * j + 1, lower)
-        cursor = next_contact(law, cursor)
-
-
-@nb.njit(**INNER)
-def may_cross(lanes: Any, law: Law, cells: Cells, trial: Trial, w: Array) -> bool:
-    """Whether a contact of any lane may have left its side within the last trial step."""
-    keep_apart()
-    contacts, table = law.code[1], adaptive_slots(law.code).table
-    cell = trial.cell
-    for m in range(5):
-        theta = 0.25 * m
-        cell = fill_within(cells, trial, theta, cell, law.rows)
-        if 0 < m < 4:
-            between(lanes, law, theta, False, w)
-        buffer = I64(0) if m == 0 else (I64(2) if m == 4 else I64(1))
-        _distances(lanes, law, buffer, table + 2 * contacts * m, w)
-    crossing = False
-    cursor = first_contact(law, I64(0), I64(0))
-    for j in range(contacts):
-        dead = is_dead_zone(law, cursor)
-        cursor = next_contact(law, cursor)
-        if not dead:
-            continue
-        for slot in range(table + 2 * j, table + 2 * j + 2):
-            before = load(lanes, w, slot)
-            now = load(lanes, w, slot + 2 * contacts)
-            for m in range(2, 5):
-                after = load(lanes, w, slot + 2 * contacts * m)
-                slope = after - before
-                reach = greatest(slope, 0.0 * slope - slope)
-                if any_negative(now - 0.25 * reach) or any_negative(after):
-                    crossing = True
-                before, now = now, after
-    return crossing
+            w[3 * n + i] = d5 * mean + d1 * v0 + d4 * v1 + h * (d2 * a0 + d3 * a1)

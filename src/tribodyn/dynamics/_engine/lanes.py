@@ -137,18 +137,6 @@ def _any(builder: Any, comparison: Any, width: int) -> Any:
 
 
 @intrinsic
-def any_negative(typing: Any, value: Any) -> Any:
-    """Whether the number of any lane is below zero."""
-
-    def generate(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
-        width = signature.args[0].width
-        below = builder.fcmp_ordered("<", arguments[0], _uniform(width, 0.0))
-        return _any(builder, below, width)
-
-    return types.boolean(value), generate
-
-
-@intrinsic
 def any_above(typing: Any, value: Any, limit: Any) -> Any:
     """Whether the number of any lane is above its limit or NaN."""
 

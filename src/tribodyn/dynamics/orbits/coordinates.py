@@ -11,6 +11,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 from functools import cached_property
+from typing import Protocol
 
 import numpy as np
 
@@ -207,7 +208,19 @@ def _row_space(matrices: list[Array]) -> Array:
 _ROUNDS = 50
 
 
-def static_start(compiled: Compiled) -> Array:
+class Sampled(Protocol):
+    """A system and its entries at phases of the mesh cycle."""
+
+    @property
+    def system(self) -> System:
+        """The system."""
+
+    @property
+    def nodes(self) -> Nodes:
+        """Its entries."""
+
+
+def static_start(compiled: Sampled) -> Array:
     """State at rest under the mean loads, every contact on its driving flank."""
     nodes = compiled.nodes
     lowest = lowest_of_each_law(nodes)[:, None]
@@ -225,7 +238,7 @@ def static_start(compiled: Compiled) -> Array:
     return np.concatenate((position, np.zeros(compiled.system.size)))
 
 
-def _equilibrium(compiled: Compiled, carrying: Array, gap: Array) -> Array:
+def _equilibrium(compiled: Sampled, carrying: Array, gap: Array) -> Array:
     """Position at rest with the stiffness (steps, 3, contacts, m) of the closed springs."""
     system, nodes = compiled.system, compiled.nodes
     if carrying.shape[-1] > 1:  # one spring per contact that carries what all of them do

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from tribodyn.checks import require_number, require_whole
-from tribodyn.dynamics._engine.adaptive_engine import AdaptiveLanes, Tolerance, adaptive_engine
+from tribodyn.dynamics._engine.adaptive_engine import Tolerance, adaptive_lanes
 from tribodyn.dynamics.equations.motion import quintic_place, quintic_speed
 from tribodyn.dynamics.equations.system import System
 from tribodyn.dynamics.time.simulate import read_force, read_start
@@ -182,29 +182,26 @@ def solve_adaptive(
     require_positive("mesh_frequency", mesh_frequency, "Hz")
     require_number("rtol", rtol)
     require_whole("cycles", cycles)
-    engine = adaptive_engine(system, mesh_frequency, cycles, rtol=rtol, atol=atol)
-    state = read_start(system, start)[None, :]
-    extra = read_force(system, extra_force)
-    n = system.size
-    period = np.array([1.0 / mesh_frequency])
-    lane = AdaptiveLanes([(engine, np.arange(1))], period, extra[None, :])
-    (block,) = lane.blocks
+    state = read_start(system, start)
+    extra, frequency = read_force(system, extra_force), np.array([float(mesh_frequency)])
+    systems = [(system, np.arange(1))]
+    (lane,) = adaptive_lanes(systems, frequency, cycles, extra[None, :], rtol, atol)
+    trails, capacity, counts, n = [], _ROOM, np.zeros(2, dtype=np.int64), system.size
 
     def march(task: tuple[Array, Array, int]) -> Array:
         state, trail, elapsed = task
-        return lane.march_block(block, state, 1, np.zeros(1), None, trail, elapsed)
+        return lane.march(state, 1, np.zeros(1), None, trail, elapsed)
 
-    trails, capacity, counts = [], _ROOM, np.zeros(2, dtype=np.int64)
     for cycle in range(cycles):
-        memory, begin = block.memory.copy(), state
+        memory, begin = lane.memory.copy(), state
         while True:
             trail, state = np.zeros((capacity, 2 + 6 * n)), begin.copy()
             # In a thread, so that an interruption stops it.
             (report,) = in_threads(march, [(state, trail, cycle)], 1)
-            steps = int(report[8])
+            steps = int(report[7])
             if steps <= capacity:
                 break
-            capacity, block.memory[:] = 2 * steps, memory
+            capacity, lane.memory[:] = 2 * steps, memory
         trail[:, 0] += cycle
         trails.append(trail[:steps])
         counts += report[1:3].astype(np.int64)
@@ -213,13 +210,13 @@ def solve_adaptive(
     return AdaptiveSolution(
         time=phase / mesh_frequency,
         phase=phase,
-        state=np.concatenate((trail[:, 2 : 2 + 2 * n], state)),
+        state=np.concatenate((trail[:, 2 : 2 + 2 * n], state[None])),
         names=tuple(system.names),
         mesh_frequency=float(mesh_frequency),
-        rtol=engine.rtol,
-        atol=engine.atol,
+        rtol=lane.rtol,
+        atol=lane.atol,
         rejections=int(counts[0]),
         crossings=int(counts[1]),
-        table_error=engine.table.error,
+        table_error=lane.table.error,
         _trail=trail,
     )

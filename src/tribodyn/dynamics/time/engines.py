@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from typing import Any, Literal, NamedTuple
@@ -9,12 +10,10 @@ from typing import Any, Literal, NamedTuple
 import numpy as np
 
 from tribodyn.dynamics._engine.adaptive_engine import (
-    AdaptiveBlock,
-    AdaptiveLanes,
     Tolerance,
-    adaptive_engine,
+    adaptive_lanes,
 )
-from tribodyn.dynamics._engine.blocks import Backend, Run, march, march_blocks, marching_on
+from tribodyn.dynamics._engine.blocks import Backend, LaneBlock, Run, march, marching_on
 from tribodyn.dynamics._engine.method import Newmark, RungeKutta4
 from tribodyn.dynamics._engine.statistics import Statistics
 from tribodyn.dynamics.equations.compiled import Compiled, compile_lanes, sample_system
@@ -23,6 +22,7 @@ from tribodyn.dynamics.equations.system import System
 from tribodyn.dynamics.harmonic.modal_march import ModalMarcher
 from tribodyn.dynamics.time.newmark import newmark_law, newmark_method
 from tribodyn.errors import InputError, require_one_of
+from tribodyn.interrupt import in_threads
 from tribodyn.model import Model, Registry, choice, number
 from tribodyn.types import Array
 
@@ -66,31 +66,21 @@ class FixedMarcher:
 
 
 class AdaptiveMarcher:
-    """Integrate lanes with adaptive steps; the grid defines the samples."""
+    """Integrate lanes with adaptive steps, one by one; the grid defines the samples."""
 
     def __init__(
         self, setting: Setting, compiled: Compiled, rtol: float, atol: Tolerance | None
     ) -> None:
-        lanes, parameters = setting.frequency.size, setting.parameters
-        self.setting, self._compiled, self._widest = setting, compiled, 0.0
-        options: dict[str, Any] = {"rtol": rtol, "atol": atol, "parameters": parameters}
-        engines = [
-            (
-                adaptive_engine(
-                    member.system, setting.frequency[member.lanes], setting.cycles, **options
-                ),
-                member.lanes,
-            )
-            for member in compiled.each(lanes)
-        ]
-        scales = None if parameters is None else parameters.table(lanes)
-        self.lanes = AdaptiveLanes(engines, 1.0 / setting.frequency, setting.extra_force, scales)
+        self.setting, self._compiled, self._step_number = setting, compiled, 0.0
+        self.lanes = adaptive_lanes(
+            [(member.system, member.lanes) for member in compiled.each(setting.frequency.size)],
+            setting.frequency, setting.cycles, setting.extra_force, rtol, atol, setting.parameters,
+        )  # fmt: skip
 
     @property
     def compiled(self) -> Compiled:
         """The systems on the grid of the samples, with the widest step so far."""
-        rate, slowest = self.lanes.blocks[0].engine.rate, float(self.setting.frequency.min())
-        return replace(self._compiled, step_number=rate * self._widest / slowest)
+        return replace(self._compiled, step_number=self._step_number)
 
     def march(
         self,
@@ -103,26 +93,29 @@ class AdaptiveMarcher:
         elapsed: int = 0,
     ) -> Array:
         """Integrate over ``cycles`` mesh cycles; with statistics, record one cycle at a time."""
-        setting, points, lanes = self.setting, self._compiled.grid.left, self.lanes
-        facts = lanes.period, state, setting.extra_force
+        setting, points, new = self.setting, self._compiled.grid.left, state.copy()
+        facts = 1.0 / setting.frequency, state, setting.extra_force
         run = Run(self._compiled, RungeKutta4(), setting.parameters, *facts)
-        empty = np.zeros((0, 2 + 3 * state.shape[1]))
+        empty, at_once = np.zeros((0, 2 + 3 * state.shape[1])), cycles if statistics is None else 1
 
-        def march_lanes(block: AdaptiveBlock, part: Array, block_record: Array | None) -> float:
-            if statistics is None:
-                report = lanes.march_block(
-                    block, part, cycles, points, block_record, empty, elapsed
-                )
-                return float(report[3])
-            cycle, widest = np.empty((points.size + 1, state.shape[1], block.index.size)), 0.0
-            for before in range(elapsed, elapsed + cycles):
-                report = lanes.march_block(block, part, 1, points, cycle, empty, before)
-                run.gather(block, cycle, statistics, cycles)
+        def march_lane(number: int) -> float:
+            lane, widest = self.lanes[number], 0.0
+            rows = None
+            if record is not None or statistics is not None:
+                rows = np.empty((at_once * points.size + 1, state.shape[1]))
+            for before in range(elapsed, elapsed + cycles, at_once):
+                report = lane.march(new[number], at_once, points, rows, empty, before)
                 widest = max(widest, float(report[3]))
-            return widest
+                if rows is not None and statistics is not None:
+                    block = LaneBlock(np.array([number]), 1)
+                    run.gather(block, rows[:, :, None], statistics, cycles)
+                if rows is not None and record is not None:
+                    first = (before - elapsed) * points.size
+                    record[first : first + len(rows), :, number] = rows
+            return lane.rate * widest * lane.period
 
-        new, widest = march_blocks(lanes.blocks, state, record, march_lanes, threads)
-        self._widest = max([self._widest, *widest])
+        numbers = in_threads(march_lane, range(len(state)), threads or os.cpu_count() or 1)
+        self._step_number = max([self._step_number, *numbers])
         return new
 
 
