@@ -176,7 +176,8 @@ def machine_modes_report_data(
     with single_blas_thread():
         structure = structure_at_rest(case, progress)
         progress.start("Natural modes")
-        modes, campbell = machine_modes(structure), campbell_of(structure, diagram_speeds(ends))
+        modes = machine_modes(structure)
+        campbell = campbell_of(structure, diagram_speeds(ends), modes)
     figures = [
         figure_with_caption(plot.machine_modes, modes),
         figure_with_caption(plot.machine_campbell, campbell),

@@ -53,13 +53,22 @@ def test_mesh_that_varies_most_is_that_with_the_highest_curve(
     swings: tuple[float, ...], means: tuple[float, ...]
 ) -> None:
     figure = plot.machine_forces(machine(swings, means))
-    curves = panels(figure)["y"]
-    most = max(curves, key=lambda name: float(np.ptp(curves[name])))
-    title = figure.layout.title.text
+    names = ("first", "second", "third")[: len(swings)]
+    order = sorted(range(len(swings)), key=lambda k: -swings[k])
+    drawn = [trace.name for trace in figure.data]
+    assert drawn == [names[k] for k in order]  # what varies most comes first
+    most, title = drawn[0], figure.layout.title.text
     assert f"mesh {most} varies most" in title
     value, mean = map(float, re.findall(r"(-?[\d.]+) N", title))
-    assert value == pytest.approx(np.ptp(curves[most]), rel=5e-3)
-    assert mean == pytest.approx(np.mean(curves[most][:-1]), rel=5e-3)
+    assert value == pytest.approx(np.ptp(figure.data[0].y), rel=5e-3)
+    assert mean == pytest.approx(means[order[0]], rel=5e-3)
+    axes = [getattr(figure.layout, f"yaxis{n + 1 if n else ''}") for n in range(len(swings))]
+    for trace, k, axis in zip(figure.data, order, axes, strict=True):
+        assert np.mean(trace.y[:-1]) == pytest.approx(0.0, abs=1e-9 * abs(means[k]))
+        assert np.ptp(trace.y) == pytest.approx(swings[k], rel=5e-3)
+        assert axis.range is None  # each to its own scale
+    notes = [note.text for note in figure.layout.annotations]
+    assert all(any(f"Mesh {name}:" in note for note in notes) for name in names)
 
 
 def test_forces_that_only_round_do_not_vary() -> None:

@@ -5,9 +5,12 @@ import pytest
 
 from known_figures import curve
 from known_systems import reference_system
+from tribodyn import plot
 from tribodyn.dynamics import campbell, forced_response, fzg12, natural_modes
 from tribodyn.errors import InputError
 from tribodyn.plot import FIGURES
+from tribodyn.study import MachineCampbell
+from tribodyn.study.machine.modes import nearest_first
 
 
 def test_bars_are_the_energy_shares() -> None:
@@ -98,3 +101,46 @@ def test_response_shows_amplitudes_in_display_units() -> None:
 def test_results_of_other_kinds_are_refused(name: str) -> None:
     with pytest.raises(InputError, match=r"Call tribodyn\.dynamics"):
         FIGURES[name](object())
+
+
+def _diagram(frequency: list[float], shares: list[list[float]]) -> MachineCampbell:
+    """Modes that do not change with the speed, and two harmonics of a mesh of 10 teeth."""
+    speed = np.linspace(0.0, 400.0, 5)
+    return MachineCampbell(
+        speed, np.tile(frequency, (5, 1)), ("mesh first x 1", "mesh first x 2", "shaft input"),
+        np.array([10.0, 20.0, 1.0]), 300.0, np.array(shares),
+    )  # fmt: skip
+
+
+def test_only_modes_that_a_mesh_strains_and_meets_are_emphasised():
+    nothing = float("nan")
+    diagram = _diagram(
+        [300.0, 500.0, 2000.0], [[0.4, 0.4, nothing], [0.0, 0.0, nothing], [0.9, 0.9, nothing]]
+    )
+    met = diagram.meetings()
+    # Constant frequencies are met at 2 pi f / order, the nearest to the operation first.
+    assert [each.speed for each in met] == pytest.approx(
+        [2.0 * np.pi * 300.0 / 10.0, 2.0 * np.pi * 300.0 / 20.0]
+    )
+    assert [each.frequency for each in met] == pytest.approx([300.0] * 2)
+    figure = plot.machine_campbell(diagram)
+    modes = [trace for trace in figure.data if trace.name == "natural mode"]
+    widths = [trace.line.width for trace in modes]
+    assert widths[0] > widths[1]  # the second mode does not strain the mesh
+    assert "300.0 Hz at 1800 rpm" in figure.layout.title.text
+    still = plot.machine_campbell(_diagram([500.0], [[0.0, 0.0, nothing]]))
+    assert still.layout.title.text.startswith("No mesh meets")
+
+
+@pytest.mark.parametrize("count", [8, 25])
+def test_a_table_of_modes_begins_with_those_nearest_to_an_excitation(count):
+    distance = np.random.default_rng(count).normal(size=count)
+    rows = nearest_first(list(range(count)), distance)
+    assert sorted(rows) == list(range(count))
+    if count <= 10:
+        assert rows == list(range(count))
+    else:
+        nearest = np.abs(distance)[rows[:10]]
+        assert np.all(np.diff(nearest) >= 0.0)
+        assert nearest.max() <= np.abs(distance)[rows[10:]].min()
+        assert rows[10:] == sorted(rows[10:])

@@ -1,56 +1,84 @@
-"""Forces of meshes and on bearings over a period of the clock."""
+"""Alternating forces of meshes and on bearings over a period of the clock."""
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from tribodyn.drawing import drawing
 from tribodyn.plot.machine.orders import COLORS
-from tribodyn.plot.theme.labels import axis_label, display_unit, displayed, rounded
+from tribodyn.plot.theme.labels import display_unit, displayed, rounded
 from tribodyn.plot.theme.panels import ROUNDING, Panel, stack
 from tribodyn.plot.theme.style import line
+from tribodyn.types import Array
 
 if TYPE_CHECKING:
     from tribodyn.study.machine.motion import MachineMotion
 
-#: Most samples of a period that are drawn.
-_SAMPLES = 30_000
+#: Most samples of a period, most meshes and most bearings that are drawn, height of a panel.
+_SAMPLES, _PARTS, _HEIGHT = 30_000, 8, 0.42
+
+
+def _caption(motion: MachineMotion) -> str:
+    drawn = (("mesh", motion.mesh), ("bearing", motion.bearing))
+    left_out = [
+        f"{len(names) - _PARTS} {kind}{'es' if kind == 'mesh' else 's'}"
+        for kind, names in drawn
+        if len(names) > _PARTS
+    ]
+    rest = f" Not drawn: {' and '.join(left_out)} that vary less." if left_out else ""
+    bearings = ", and the radial force on each bearing" if motion.bearing else ""
+    return (
+        f"Force of each mesh along its line of action{bearings}, without its mean, each to its own "
+        "scale; those that vary most come first. The period is the shortest after which all meshes "
+        f"repeat.{rest}"
+    )
+
+
+def _panels(
+    motion: MachineMotion, quantity: str, names: Sequence[str], force: Array
+) -> list[Panel]:
+    """Alternating force of each part to its own scale, the largest swing first."""
+    unit, mean, swing = display_unit(quantity), motion.mean(force), np.ptp(force, axis=0)
+    kind = "Mesh" if quantity == "mesh_force" else "Bearing"
+    panels = []
+    for i in np.argsort(-swing, kind="stable")[:_PARTS]:
+        values = displayed(quantity, force[:_SAMPLES, i] - mean[i])
+        level = rounded(quantity, float(mean[i]))
+        varies = swing[i] > ROUNDING * np.abs(mean).max()
+        size = rounded(quantity, float(swing[i]))
+        trace = line(motion.clock[:_SAMPLES], values, names[i], COLORS[i % len(COLORS)], unit=unit)
+        note = f"{kind} {names[i]}: " + (
+            f"{size} peak to peak about {level}" if varies else f"constant, {level}"
+        )
+        panels.append(
+            Panel(
+                f"[{unit}]",
+                [trace],
+                {"nticks": 4, "zeroline": True},
+                _HEIGHT,
+                float(displayed(quantity, np.abs(mean).max())),
+                note,
+            )
+        )
+    return panels
 
 
 @drawing(
     "machine_forces",
     heading="Forces over a period",
-    caption="Above, the force of each mesh along its line of action; below, the radial force on "
-    "each bearing. The period is the shortest after which all meshes repeat.",
+    caption=_caption,
     of=("MachineMotion", "MachineResult.motion"),
     made_by="Run a case with shafts: tribodyn.run.",
 )
 def machine_forces(motion: MachineMotion) -> Any:
-    """Draw mesh forces and radial bearing forces over one period of the clock."""
-    shown = slice(_SAMPLES)
-    clock = motion.clock[shown]
-
-    def panel(quantity: str, label: str, names: Any, values: Any) -> Panel:
-        unit = display_unit(quantity)
-        traces = [
-            line(
-                clock,
-                displayed(quantity, values[shown, i]),
-                name,
-                COLORS[i % len(COLORS)],
-                unit=unit,
-            )
-            for i, name in enumerate(names)
-        ]
-        return Panel(axis_label(quantity, label), traces)
-
-    panels = [panel("mesh_force", "Mesh force", motion.mesh, motion.mesh_force)]
-    if motion.bearing:
-        panels.append(
-            panel("bearing_force", "Radial bearing force", motion.bearing, motion.radial_force)
-        )
+    """Draw the alternating forces of meshes and on bearings over one period of the clock."""
+    panels = [
+        *_panels(motion, "mesh_force", motion.mesh, motion.mesh_force),
+        *_panels(motion, "bearing_force", motion.bearing, motion.radial_force),
+    ]
     swing, mean = np.ptp(motion.mesh_force, axis=0), motion.mean(motion.mesh_force)
     worst = int(np.argmax(swing))
     title = (
@@ -60,6 +88,6 @@ def machine_forces(motion: MachineMotion) -> Any:
     )
     if swing[worst] <= ROUNDING * np.abs(mean).max():
         title = "No mesh force varies"
-    milliseconds = 1e3 / motion.frequency
-    part = f", its first {100.0 * clock[-1]:.2g} %" if motion.clock.size > _SAMPLES else ""
-    return stack(title, f"Phase of the clock, 1 = {milliseconds:.4g} ms{part}", panels)
+    part = f", its first {motion.clock[_SAMPLES]:.2%}" if motion.clock.size > _SAMPLES else ""
+    label = f"Phase of the clock, 1 = {1e3 / motion.frequency:.4g} ms{part}"
+    return stack(title, label, panels)

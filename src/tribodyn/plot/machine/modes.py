@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+from itertools import cycle
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -11,16 +13,30 @@ from tribodyn.plot.machine.orders import COLORS
 from tribodyn.plot.machine.side_view import SideView, joined_names, shaft_outline
 from tribodyn.plot.theme.labels import axis_label, display_unit, displayed, rounded, significant
 from tribodyn.plot.theme.panels import Panel, event_lines, stack
-from tribodyn.plot.theme.style import GRID, MUTED, PAIR_COLORS, PINION, WHEEL, Trace, figure, line
+from tribodyn.plot.theme.style import (
+    GRID,
+    INK,
+    MUTED,
+    PAIR_COLORS,
+    PINION,
+    WHEEL,
+    Trace,
+    figure,
+    line,
+    marked,
+    translucent,
+)
 from tribodyn.study.machine.modes import energy_shares, modes_in_reach
 from tribodyn.types import Array, ComplexArray
 
 if TYPE_CHECKING:
     from tribodyn.machine import MachineModes, MachineStructure
-    from tribodyn.study.machine.modes import MachineCampbell
+    from tribodyn.study.machine.modes import MachineCampbell, Meeting
 
 #: Modes that can be chosen, points along a shaft, and largest drawn displacement over the height.
 _MOST, _POINTS, _SIZE = 16, 41, 0.12
+#: Colour of modes that no mesh excites.
+_FAINT = translucent(MUTED, 0.45)
 #: Directions drawn on a shaft: label, row of the displacement, colour, dash.
 _DRAWN = (("y", 1, PINION, "solid"), ("z", 2, WHEEL, "dash"), ("x", 0, PAIR_COLORS[0], "dot"))
 
@@ -133,12 +149,63 @@ def _equal_orders(diagram: MachineCampbell) -> dict[str, int]:
     return lines
 
 
+def _natural(diagram: MachineCampbell, speed: Array, top: float, met: set[int]) -> list[Trace]:
+    """Lines of the modes: dark with a number where a mesh meets them, light otherwise."""
+    unit, traces = display_unit("frequency"), []
+    for column, values in enumerate(displayed("frequency", diagram.frequency).T):
+        if values.min() > 1.05 * top:
+            continue
+        color, width = (INK, 1.6) if column in met else (_FAINT, 1.0)
+        trace = line(speed, values, f"mode {column + 1}", color, unit=unit, width=width)
+        if column in met:
+            trace |= {"mode": "lines+text", "textposition": "top right", "textfont": {"size": 11}}
+            trace["text"] = [f"{column + 1}"] + [""] * (speed.size - 1)
+        # One name: that modes coincide is no note.
+        traces.append({**trace, "name": "natural mode", "showlegend": False})
+    return traces
+
+
+def _excitations(diagram: MachineCampbell, speed: Array, hertz: Array) -> list[Trace]:
+    """Lines of the mesh harmonics in the colour of the mesh, and of the turning of the shafts."""
+    equal, traces, unit = _equal_orders(diagram), list[Trace](), display_unit("frequency")
+    groups = {name: name.rpartition(" x ")[0] or name for name in equal}
+    colors = dict(zip(dict.fromkeys(groups.values()), cycle(COLORS), strict=False))
+    named: set[str] = set()
+    for name, number in equal.items():
+        group, mesh = groups[name], " x " in name
+        color, dash = (colors[group], "solid") if mesh else (MUTED, "dot")
+        trace = line(speed, hertz[number], group, color, unit=unit, dash=dash)
+        if mesh:
+            text = [""] * (len(speed) - 1) + [name.removeprefix("mesh ")]
+            trace |= {"mode": "lines+text", "text": text, "textposition": "middle right"}
+        trace |= {"legendgroup": group, "showlegend": group not in named, "cliponaxis": False}
+        traces.append(trace)
+        named.add(group)
+    return traces
+
+
+def _crossings(met: Sequence[Meeting]) -> Trace:
+    """Dots where mesh harmonics meet modes, by the share of the mesh in the strain energy."""
+    x = displayed("speed", np.array([each.speed for each in met]))
+    y = displayed("frequency", np.array([each.frequency for each in met]))
+    dots = marked(x, y, "mesh meets a mode", INK, size=6, symbol="circle")
+    dots["marker"]["size"] = 5.0 + 9.0 * np.sqrt([each.share for each in met])
+    texts = [
+        f"{each.excitation} meets mode {each.mode + 1}, {100.0 * each.share:.2g} % of its strain"
+        for each in met
+    ]
+    hover = f"%{{customdata}}: %{{y:.5g}} {display_unit('frequency')} at %{{x:.5g}} "
+    hover += f"{display_unit('speed')}<extra></extra>"
+    return {**dots, "customdata": texts, "hovertemplate": hover}
+
+
 @drawing(
     "machine_campbell",
     heading="Campbell diagram of the machine",
-    caption="Natural frequencies with gyroscopic moments (grey) and what excites them over the "
-    "speed of the input: the harmonics of each mesh in its colour, and the turning of the shafts. "
-    "Where a line crosses a natural frequency, that mesh or shaft can excite it.",
+    caption="Natural frequencies and what excites them over the speed of the input: the harmonics "
+    "of each mesh in its colour, and the turning of the shafts (dotted). Dark, numbered modes are "
+    "met by a mesh that strains them, at the dots; the larger the dot, the larger the part of the "
+    "strain energy that lies in the mesh. Light modes are not met, or not strained.",
     of=("MachineCampbell", "MachineResult.campbell"),
     made_by="Run a case with shafts, or tribodyn modes.",
 )
@@ -146,46 +213,17 @@ def machine_campbell(diagram: MachineCampbell) -> Any:
     """Draw natural frequencies and labelled excitations over the speed of the input."""
     speed = displayed("speed", diagram.speed)
     hertz = displayed("frequency", np.multiply.outer(diagram.order, diagram.speed) / (2.0 * np.pi))
-    top, unit = float(hertz.max()), display_unit("frequency")
-    traces: list[Trace] = []
-    for column, values in enumerate(displayed("frequency", diagram.frequency).T):
-        if values.min() > 1.05 * top:
-            continue
-        traces.append(
-            {**line(speed, values, f"mode {column + 1}", MUTED, unit=unit, width=1.2),
-             "showlegend": False}
-        )  # fmt: skip
-    equal = _equal_orders(diagram)
-    names = list(dict.fromkeys(name.rpartition(" x ")[0] or name for name in equal))
-    named: set[str] = set()
-    for name, number in equal.items():
-        values = hertz[number]
-        group = name.rpartition(" x ")[0] or name
-        mesh = " x " in name
-        color = COLORS[names.index(group) % len(COLORS)] if mesh else GRID
-        trace = line(speed, values, group, color, unit=unit, dash="solid" if mesh else "dot")
-        text = [""] * (len(speed) - 1) + [name.removeprefix("mesh ")]
-        label = {"mode": "lines+text", "text": text, "textposition": "middle right"}
-        traces.append(
-            {**trace, **(label if mesh else {}), "legendgroup": group,
-             "showlegend": group not in named, "cliponaxis": False}
-        )  # fmt: skip
-        named.add(group)
-    met = [
-        (abs(at / diagram.operating_speed - 1.0), name, hertz_mode, at)
-        for hertz_mode in diagram.frequency[-1]
-        for name, at in diagram.excited(float(hertz_mode))
-        if name.startswith("mesh ")
-    ]
-    title = "No mesh meets a natural frequency in this range of speeds"
+    top, met = float(hertz.max()), diagram.meetings()
+    traces = _natural(diagram, speed, top, {each.mode for each in met})
+    traces += _excitations(diagram, speed, hertz)
+    title = "No mesh meets a natural frequency that it strains in this range of speeds"
     if met:
-        _, name, frequency, at = min(met)
+        traces.append(_crossings(met))
         title = (
-            f"{name} meets {rounded('frequency', float(frequency), 4)} at "
-            f"{rounded('speed', at)}, nearest to the operating speed"
+            f"{met[0].excitation} meets {rounded('frequency', met[0].frequency, 4)} at "
+            f"{rounded('speed', met[0].speed)}, nearest to the operating speed"
         )
     marks = [("operation", float(displayed("speed", diagram.operating_speed)))]
-    axis = {"range": [0.0, 1.02 * top]}
-    panel = Panel(axis_label("frequency"), traces, axis, height=2.0)
+    panel = Panel(axis_label("frequency"), traces, {"range": [0.0, 1.02 * top]}, height=2.0)
     layout = {"hovermode": "closest", **event_lines(marks)}
     return stack(title, axis_label("speed", "Speed of the input"), [panel], layout)

@@ -9,14 +9,24 @@ import numpy as np
 from tribodyn.drawing import drawing
 from tribodyn.plot.theme.labels import axis_label, display_unit, displayed, rounded, significant
 from tribodyn.plot.theme.panels import Panel, event_lines, stack
-from tribodyn.plot.theme.style import MUTED, PAIR_COLORS, PINION, TOTAL, WHEEL, Trace, line
+from tribodyn.plot.theme.style import (
+    MUTED,
+    PAIR_COLORS,
+    PINION,
+    TOTAL,
+    WHEEL,
+    Trace,
+    line,
+    translucent,
+)
 
 if TYPE_CHECKING:
     from tribodyn.dynamics import Campbell, ForcedResponse, NaturalModes
 
 _COLORS = (PINION, WHEEL, *PAIR_COLORS, MUTED, TOTAL)
 _HATCHES = ("", "/", "x", ".")
-#: Springs with a smaller strain share in every mode are left out.
+#: Springs with a smaller strain share in every mode are left out; the mesh does not excite a mode
+#: with a smaller share of strain in it.
 _LEAST = 1e-3
 #: Widths of the curve of a mode without and with all of its strain in the mesh [px].
 _THIN, _THICK = 1.0, 4.0
@@ -109,8 +119,9 @@ def _modes(diagram: Campbell, speed: Any, top: float) -> list[Trace]:
         color = PAIR_COLORS[column % len(PAIR_COLORS)]
         values = displayed("frequency", diagram.frequency[:, column])
         width = _THIN + (_THICK - _THIN) * share
+        color = color if share > _LEAST else translucent(MUTED, 0.45)  # the mesh cannot excite it
         trace = line(speed, values, name, color, unit=unit, width=width)
-        traces.append({**trace, "showlegend": bool(np.min(values) <= top)})
+        traces.append({**trace, "showlegend": bool(np.min(values) <= top and share > _LEAST)})
     return traces
 
 
@@ -156,10 +167,10 @@ def _met(diagram: Campbell) -> list[Trace]:
 @drawing(
     "campbell",
     heading="Campbell diagram",
-    caption="Natural frequencies and mesh harmonics over the speed. Where two lines cross, "
-    "the mesh can excite a resonance; the thicker the line of a mode and the larger the dot, the "
-    "higher the share of strain in the mesh. For a case the operating speed is marked, and the "
-    "stiffness is taken at this speed and load.",
+    caption="Natural frequencies and mesh harmonics over the speed. Where two lines cross, the "
+    "mesh can excite a resonance; the thicker the line of a mode and the larger the dot, the "
+    "higher the share of strain in the mesh. Light lines are modes that do not strain it. For a "
+    "case the operating speed is marked, and the stiffness is taken at this speed and load.",
     of=("Campbell", "Result.campbell"),
     made_by="Call tribodyn.dynamics.campbell and its plot method.",
 )

@@ -33,6 +33,7 @@ class Panel:
     axis: dict[str, Any] = field(default_factory=dict)  #: further properties of the vertical axis
     height: float = 1.0  #: height relative to the other panels
     size: float = 0.0  #: of the values that cancel in the curves, in their unit
+    note: str = ""  #: text above the panel
 
     def with_axes(self, x: str, suffix: str) -> list[Trace]:
         """Assign the curves to their axes; a single curve has no legend entry."""
@@ -40,17 +41,19 @@ class Panel:
         several = len(self.traces) > 1
         return [{"showlegend": several, **trace, **place} for trace in self.traces]
 
-    def coincident(self, top: float) -> list[dict[str, Any]]:
-        """Note of curves that nobody sees, because they lie on others."""
+    def notes(self, top: float) -> list[dict[str, Any]]:
+        """Text above the panel, and a note of curves that nobody sees, as they lie on others."""
         hidden = _covered(self.traces)
         texts = [f"{name} lies on {first}" for name, first in list(hidden.items())[:_NOTED]]
         texts += [f"{len(hidden) - _NOTED} more coincide"] * (len(hidden) > _NOTED)
-        if not texts:
-            return []
-        place = {"xref": "paper", "yref": "paper", "x": 1.0, "y": top}
-        ends = {"xanchor": "right", "yanchor": "top", "showarrow": False}
-        font = {"size": 12, "color": MUTED}
-        return [{**place, **ends, "text": "; ".join(texts), "font": font}]
+        places = ((self.note, 0.0, "left", "bottom"), ("; ".join(texts), 1.0, "right", "top"))
+        common = {"xref": "paper", "yref": "paper", "y": top, "showarrow": False}
+        common["font"] = {"size": 12, "color": MUTED}
+        return [
+            {**common, "text": text, "x": x, "xanchor": side, "yanchor": end}
+            for text, x, side, end in places
+            if text
+        ]
 
     @property
     def vertical(self) -> dict[str, Any]:
@@ -138,7 +141,7 @@ def stack(
         merged[f"yaxis{suffix}"] = {**y_axis, **panel.vertical}
         merged[f"legend{suffix}"] = {**_legend(domain[1]), "tracegroupgap": 2}
         traces += panel.with_axes("x", suffix)
-        notes += panel.coincident(domain[1])
+        notes += panel.notes(domain[1])
     return figure(title, traces, {**merged, **({"annotations": notes} if notes else {}), **more})
 
 
@@ -157,7 +160,7 @@ def stack_rows(title: str, rows: Sequence[Row], layout: dict[str, Any] | None = 
         merged[f"yaxis{suffix}"] = {**y_axis, **row.panel.vertical}
         merged[f"legend{suffix}"] = _legend(domain[1])
         traces += row.panel.with_axes(f"x{suffix}", suffix)
-        notes += row.panel.coincident(domain[1])
+        notes += row.panel.notes(domain[1])
         marks = event_lines(row.marks)
         place = {"xref": f"x{suffix}", "yref": f"y{suffix} domain"}
         shapes += [{**shape, **place} for shape in marks["shapes"]]

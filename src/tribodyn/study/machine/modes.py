@@ -2,24 +2,32 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple, TypeVar
 
 import numpy as np
 
-from tribodyn.machine import MachineModes, MachineStructure
+from tribodyn.machine import MachineModes, MachineStructure, machine_modes
 from tribodyn.machine.modes import machine_frequencies
 from tribodyn.progress import SILENT, Progress
 from tribodyn.record import Record, fact, quantity, record
 from tribodyn.types import Array
 
 if TYPE_CHECKING:
+    from collections.abc import Iterable, Sequence
+
     from tribodyn.study.machine.case import MachineCase
+
+_Row = TypeVar("_Row")
 
 #: Speeds of a diagram, its top speed over that of the operation, and harmonics of each mesh.
 _SPEEDS, _TOP, _HARMONICS = 6, 1.3, 3
 #: Modes above this many times the highest excitation are left out of tables and figures.
 _BEYOND = 1.5
 _LEAST_SHARE = 0.05
+#: Share of the strain energy of a mode in a mesh from which the mesh excites the mode.
+STRAINED = 1e-3
+#: Modes nearest to an excitation with which a table begins.
+_NEAREST = 10
 #: Motion of a shaft along its axis over that of all shafts across, from which it is axial.
 _ALONG = 5.0
 MODES_HEAD = ("Mode", "Frequency [Hz]", "Damping [%]", "Energy in", "Nearest excitation")
@@ -32,6 +40,16 @@ class MeshOrder(NamedTuple):
     harmonic: int
     order: float
     share: Array  #: of the strain energy of each mode (m,)
+
+
+class Meeting(NamedTuple):
+    """A mesh harmonic that meets a mode which it strains."""
+
+    mode: int  #: column of the diagram
+    excitation: str
+    speed: float  #: of the input [rad/s]
+    frequency: float  #: [Hz]
+    share: float  #: share of the strain energy of the mode that the excitation feeds
 
 
 @record
@@ -50,6 +68,8 @@ class MachineCampbell(Record):
         Frequency of each excitation over the rotational frequency of the input [1].
     operating_speed : float
         Speed of the operation [rad/s].
+    share : (m, k) array, optional
+        Share of the strain energy of a mode that an excitation feeds; NaN for turning shafts.
     """
 
     speed: Array = quantity("speed", unit="rad/s", axis=True)
@@ -57,6 +77,29 @@ class MachineCampbell(Record):
     excitation: tuple[str, ...] = quantity("excitation", axis=True, unit="")
     order: Array = quantity("excitation", unit="1")
     operating_speed: float = fact()
+    share: Array | None = quantity("mode", "excitation", unit="1", default=None)
+
+    def meetings(self) -> list[Meeting]:
+        """Crossings of the modes by mesh harmonics that strain them.
+
+        Returns
+        -------
+        list of Meeting
+            Within the diagram, by the distance from the operating speed.
+        """
+        meetings = []
+        for row, curve in enumerate(self.frequency.T):
+            for column, (name, order) in enumerate(zip(self.excitation, self.order, strict=True)):
+                share = 1.0 if self.share is None else float(self.share[row, column])
+                if not (name.startswith("mesh ") and share > STRAINED):
+                    continue
+                above = float(order) * self.speed / (2.0 * np.pi) - curve
+                for k in np.flatnonzero((above[:-1] < 0.0) & (above[1:] >= 0.0)):
+                    part = above[k] / (above[k] - above[k + 1])
+                    speed = self.speed[k] + part * (self.speed[k + 1] - self.speed[k])
+                    hertz = curve[k] + part * (curve[k + 1] - curve[k])
+                    meetings.append(Meeting(row, name, float(speed), float(hertz), share))
+        return sorted(meetings, key=lambda met: abs(met.speed - self.operating_speed))
 
     def excited(self, hertz: float) -> list[tuple[str, float]]:
         """Excitations that meet a frequency within the diagram.
@@ -95,7 +138,29 @@ def excitations(structure: MachineStructure, harmonics: int = _HARMONICS) -> dic
     }
 
 
-def campbell_of(structure: MachineStructure, speeds: Array | None = None) -> MachineCampbell:
+def excited_share(modes: MachineModes, orders: Iterable[str]) -> Array:
+    """Share of each mode (m, k) that an excitation strains; NaN for turning shafts."""
+    unknown = np.full(len(modes.frequency), np.nan)
+    columns = []
+    for kind, _, name in (order.partition(" ") for order in orders):
+        part = f"meshes.{name.rpartition(' x ')[0]}"
+        columns.append(
+            modes.strain_share[:, modes.parts.index(part)] if kind == "mesh" else unknown
+        )
+    return np.stack(columns, axis=1)
+
+
+def nearest_first(rows: Sequence[_Row], distances: Iterable[float]) -> list[_Row]:
+    """Rows with the few first that are nearest to an excitation; a short table as it is."""
+    if len(rows) <= _NEAREST:
+        return list(rows)
+    order = np.argsort(np.abs(list(distances)), kind="stable")
+    return [rows[k] for k in (*order[:_NEAREST], *sorted(order[_NEAREST:]))]
+
+
+def campbell_of(
+    structure: MachineStructure, speeds: Array | None = None, modes: MachineModes | None = None
+) -> MachineCampbell:
     """Campbell diagram of a machine with the mesh stiffness of its operating point."""
     now = abs(structure.machine.operation.speed)
     if speeds is None:
@@ -105,7 +170,9 @@ def campbell_of(structure: MachineStructure, speeds: Array | None = None) -> Mac
     rows = machine_frequencies(structure, speeds)
     count = min(int((row <= top).sum()) for row in rows)
     frequency = np.array([row[:count] for row in rows])
-    return MachineCampbell(speeds, frequency, tuple(orders), np.array(list(orders.values())), now)
+    share = excited_share(modes or machine_modes(structure), orders)[:count]
+    values = np.array(list(orders.values()))
+    return MachineCampbell(speeds, frequency, tuple(orders), values, now, share)
 
 
 def modes_in_reach(modes: MachineModes) -> int:
@@ -155,25 +222,27 @@ def axial_notes(modes: MachineModes) -> list[str]:
 
 def mode_rows(modes: MachineModes) -> list[list[str]]:
     """Rows of the table of modes under :data:`MODES_HEAD`."""
-    structure, count = modes.structure, modes_in_reach(modes)
-    orders = excitations(structure)
-    turning = abs(structure.machine.operation.speed) / (2.0 * np.pi)
-    rows = []
-    for k in range(count):
-        hertz = float(modes.frequency[k])
-        nearest = min(orders, key=lambda name: abs(orders[name] * turning - hertz))
-        distance = orders[nearest] * turning / hertz - 1.0
+    orders = excitations(modes.structure)
+    turning = abs(modes.structure.machine.operation.speed) / (2.0 * np.pi)
+    hertz = turning * np.array(list(orders.values()))
+    # Meshes reach the modes that they strain, turning shafts any.
+    reaches = ~(excited_share(modes, orders) <= STRAINED)
+    rows, distances = [], []
+    for k in range(modes_in_reach(modes)):
+        distance = hertz / modes.frequency[k] - 1.0
+        nearest = int(np.argmin(np.where(reaches[k], np.abs(distance), np.inf)))
         axial = axial_shaft(modes, k)
+        distances.append(float(distance[nearest]))
         rows.append(
             [
                 f"{k + 1}",
-                f"{hertz:.5g}",
+                f"{modes.frequency[k]:.5g}",
                 f"{100.0 * modes.damping_ratio[k]:.3g}",
                 energy_shares(modes, k) + (f"; {axial} along its axis" if axial else ""),
-                f"{nearest}, {100.0 * distance:+.1f} %",
+                f"{list(orders)[nearest]}, {100.0 * distance[nearest]:+.1f} %",
             ]
         )
-    return rows
+    return nearest_first(rows, distances)
 
 
 def mesh_orders(modes: MachineModes) -> tuple[MeshOrder, ...]:

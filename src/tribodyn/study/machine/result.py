@@ -204,7 +204,7 @@ class MachineResult(PartsResult):
         """Natural frequencies and excitations over the speed of the input."""
         from tribodyn.study.machine.modes import campbell_of
 
-        return campbell_of(self.structure)
+        return campbell_of(self.structure, modes=self.modes)
 
     @cached_property
     def turning_motion(self) -> MachineTurningMotion:

@@ -113,7 +113,7 @@ class PlanetaryLoadResult:
     @property
     def mesh_orders(self) -> tuple[MeshOrder, ...]:
         """Mesh harmonics with what they excite of the modes by the phases of the meshes."""
-        return self.stage_modes.orders
+        return self.stage_modes.orders()
 
     def signals_along(self, response: Response) -> MachineMotion:
         """Forces and errors of all meshes, and forces of pins and supports, along another motion.

@@ -10,7 +10,7 @@ import numpy as np
 from tribodyn.dynamics import natural_modes
 from tribodyn.machine import planetary_modes, planetary_plane_model
 from tribodyn.progress import SILENT, Progress
-from tribodyn.study.machine.modes import MachineCampbell, MeshOrder
+from tribodyn.study.machine.modes import MachineCampbell, MeshOrder, nearest_first
 from tribodyn.study.machine.run import warn_of_meshes
 from tribodyn.study.planetary.stage import stage_data, stage_teeth
 from tribodyn.types import Array
@@ -44,8 +44,7 @@ class StageModes(NamedTuple):
         phases: MeshPhases = self.data["phases"]
         return phases
 
-    @property
-    def orders(self) -> tuple[MeshOrder, ...]:
+    def orders(self, harmonics: int = _MET) -> tuple[MeshOrder, ...]:
         """Shares of the strain energy of each mode that the mesh harmonics excite."""
         frequency, shape = self.modes.frequency, np.asarray(self.modes.shape)
         contacts = planetary_plane_model(**self.data).contacts
@@ -56,7 +55,7 @@ class StageModes(NamedTuple):
         energy = np.where(frequency > 0.0, (2.0 * np.pi * frequency) ** 2, np.inf)
         first = np.flatnonzero(np.diff(frequency, prepend=-1.0) > _EQUAL * frequency)
         orders = []
-        for harmonic in range(1, _MET + 1):
+        for harmonic in range(1, harmonics + 1):
             waves = np.exp(2j * np.pi * harmonic * offsets) * np.sqrt(stiffness)
             sides = ((shape @ along.T) * waves).reshape(len(shape), 2, -1).sum(axis=2)
             share = 2.0 * (np.abs(sides) ** 2).sum(axis=1) / stiffness.size / energy
@@ -89,13 +88,18 @@ class StageModes(NamedTuple):
             if stage.speeds[role]
         }
         frequency = np.array([row[len(row) - elastic :] for row in rows])
-        return MachineCampbell(at, frequency, tuple(orders), np.array(list(orders.values())), now)
+        share = np.full((elastic, len(orders)), np.nan)
+        for column, met in enumerate(self.orders(_DRAWN)):
+            share[:, column] = met.share[len(met.share) - elastic :]
+        values = np.array(list(orders.values()))
+        return MachineCampbell(at, frequency, tuple(orders), values, now, share)
 
     def rows(self) -> list[list[str]]:
         """Rows of the table of modes under :data:`MODES_HEAD`."""
         harmonics = {k: self.phases.excitation(k).types for k in range(1, _HARMONICS + 1)}
         mesh_frequency = self.kinematics.mesh_frequency
         rows: list[list[str]] = []
+        distances: list[float] = []
         last = (-1.0, "")
         for frequency, kind in zip(self.modes.frequency.tolist(), self.modes.types, strict=True):
             if kind == last[1] and abs(frequency - last[0]) <= _EQUAL * frequency:
@@ -103,13 +107,14 @@ class StageModes(NamedTuple):
                 continue
             last = frequency, kind
             exciting = [k for k, types in harmonics.items() if set(types) & set(_TYPES[kind])]
-            text = ", ".join(map(str, exciting)) or "none"
+            text, distance = ", ".join(map(str, exciting)) or "none", np.inf
             if exciting and frequency > 0.0:
                 nearest = min(exciting, key=lambda k: abs(k * mesh_frequency - frequency))
                 distance = nearest * mesh_frequency / frequency - 1.0
                 text += f"; nearest {nearest}, {100.0 * distance:+.1f} %"
             rows.append([str(len(rows) + 1), f"{frequency:.5g}", "1", kind, text])
-        return rows
+            distances.append(distance)
+        return nearest_first(rows, distances)
 
     def frame_effect(self) -> str:
         """Sentence on what the rotation of the carrier changes of the natural frequencies."""

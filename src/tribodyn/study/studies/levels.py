@@ -10,7 +10,7 @@ import numpy as np
 
 from tribodyn.errors import ComputationError
 from tribodyn.record import Record, quantity, record
-from tribodyn.study.machine.modes import MeshOrder
+from tribodyn.study.machine.modes import STRAINED, MeshOrder
 from tribodyn.types import Array
 
 if TYPE_CHECKING:
@@ -19,9 +19,8 @@ if TYPE_CHECKING:
 
 #: Harmonics of each mesh that are followed over the speed.
 _HARMONICS = 4
-#: Most resonances that are named, their least weight over that of the strongest, and least share
-#: of a mesh in the strain energy of a mode.
-_MOST, _LEAST, _STRAINED = 8, 0.08, 1e-3
+#: Most resonances that are named, and their least weight over that of the strongest.
+_MOST, _LEAST = 8, 0.08
 
 
 class Resonance(NamedTuple):
@@ -146,7 +145,7 @@ def resonances(
     for mesh, harmonic, order, share in orders:
         for number, hertz in enumerate(frequency.tolist()):
             speed, part = 2.0 * np.pi * hertz / order, float(share[number])
-            if low <= speed <= high and part > _STRAINED:
+            if low <= speed <= high and part > STRAINED:
                 met = Resonance(mesh, harmonic, number + 1, hertz, speed)
                 weights.append((weight(mesh, harmonic, speed, part), met))
     weights.sort(key=lambda pair: -pair[0])

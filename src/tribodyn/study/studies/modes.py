@@ -193,7 +193,7 @@ def modes_at_rest(case: PartsCase, progress: Progress = SILENT) -> ModesOfParts:
     """Natural modes of a machine or a stage with the teeth at its operating point."""
     if isinstance(case, PlanetaryCase):
         stage = stage_modes(case, progress)
-        return ModesOfParts(stage.modes, stage.orders)
+        return ModesOfParts(stage.modes, stage.orders())
     assert isinstance(case, MachineCase)
     modes = machine_modes(structure_at_rest(case, progress))
     return ModesOfParts(modes, mesh_orders(modes))
