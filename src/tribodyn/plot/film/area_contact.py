@@ -7,12 +7,12 @@ from typing import Any
 import numpy as np
 
 from tribodyn.drawing import drawing
-from tribodyn.plot.theme.labels import display_unit, displayed, significant
+from tribodyn.plot.theme.curves import curve
+from tribodyn.plot.theme.labels import axis_label, display_unit, displayed, rounded
 from tribodyn.plot.theme.panels import Panel, Row, from_zero, stack, stack_rows
-from tribodyn.plot.theme.style import INK, MUTED, PINION, TOTAL, WHEEL, Trace, line
+from tribodyn.plot.theme.style import HEAT, INK, MUTED, TOTAL, WHEEL, Trace, heat, line
 from tribodyn.types import Array
 
-_COLORS = [[0.0, "#f2f6fa"], [0.5, "#56B4E9"], [0.75, PINION], [1.0, WHEEL]]
 #: Film over the central one up to which the map distinguishes it, and lines of equal film.
 _FILMS, _LINES = 2.5, 12
 #: Most nodes of a map along each axis.
@@ -30,18 +30,10 @@ def _metric(solution: Any) -> tuple[Array, Array, Array, Array]:
 def _map(x: Array, y: Array, values: Array, unit: str, bar: tuple[float, float]) -> Trace:
     """Map of values; ``bar`` is centre and length of the colour bar."""
     step_x, step_y = (max(1, -(-each.size // _MOST)) for each in (x, y))
-    return {
-        "type": "heatmap",
-        "x": x[::step_x],
-        "y": y[::step_y],
-        "z": values[::step_y, ::step_x],
-        "colorscale": _COLORS,
-        "colorbar": {"title": {"text": unit}, "thickness": 14, "y": bar[0], "len": bar[1]},
-        "hovertemplate": f"%{{x:.4g}}, %{{y:.4g}}: %{{z:.4g}} {unit}<extra></extra>",
-        "showlegend": False,
-        "hoverongaps": False,
-        "name": unit,
-    }
+    scale = {"title": {"text": unit}, "thickness": 14, "y": bar[0], "len": bar[1]}
+    more = {"colorbar": scale, "hoverongaps": False, "name": unit}
+    hover = f"%{{x:.4g}}, %{{y:.4g}}: %{{z:.4g}} {unit}"
+    return heat(x[::step_x], y[::step_y], values[::step_y, ::step_x], HEAT, hover, **more)
 
 
 def _levels(heat: Trace, top: float) -> Trace:
@@ -64,45 +56,33 @@ def _levels(heat: Trace, top: float) -> Trace:
 def point_contact(solution: Any) -> Any:
     """Draw maps of pressure and film, and a cut through the middle along the x axis."""
     x, y, pressure, film = _metric(solution)
-    a, b = (
-        float(displayed("half_width", half))
-        for half in (solution.semi_axis_x, solution.semi_axis_y)
-    )
+    a, b = displayed("half_width", [solution.semi_axis_x, solution.semi_axis_y]).tolist()
     top = float(displayed("film_thickness", _FILMS * solution.central_film))
-    view = [
-        (max(x[0], -2.0 * a), min(x[-1], 1.6 * a)), (max(y[0], -1.6 * b), min(y[-1], 1.6 * b)),
-    ]  # fmt: skip
+    ahead = {"range": [max(x[0], -2.0 * a), min(x[-1], 1.6 * a)]}
+    aside = {"range": [max(y[0], -1.6 * b), min(y[-1], 1.6 * b)]}
     angle = np.linspace(0.0, 2.0 * np.pi, 121)
-    ellipse = line(a * np.cos(angle), b * np.sin(angle), "dry contact", MUTED, dash="dash")
-    ellipse |= {"showlegend": False, "hoverinfo": "skip", "hovertemplate": None}
-    film = np.where(film < top, film, np.nan)
-    films = _map(x, y, film, display_unit("film_thickness"), (0.5, 0.3))
-    units = (
-        display_unit("half_width"),
-        display_unit("hertz_pressure"),
-        display_unit("film_thickness"),
-    )
+    quiet: Trace = {"dash": "dash", "showlegend": False, "hoverinfo": "skip", "hovertemplate": None}
+    ellipse = line(a * np.cos(angle), b * np.sin(angle), "dry contact", MUTED, **quiet)
+    width, gpa, micro = map(display_unit, ("half_width", "hertz_pressure", "film_thickness"))
+    films = _map(x, y, np.where(film < top, film, np.nan), micro, (0.5, 0.3))
     middle = int(np.argmin(np.abs(solution.y)))
-    inside = np.clip(x / a, -1.0, 1.0)
-    dry = float(displayed("hertz_pressure", solution.hertz_pressure)) * np.sqrt(1.0 - inside**2)
-    pressed = _map(x, y, pressure, units[1], (0.87, 0.26))
-    labels = f"x [{units[0]}]", f"y [{units[0]}]"
+    dry = displayed("hertz_pressure", solution.hertz_pressure)
+    dry = dry * np.sqrt(1.0 - np.clip(x / a, -1.0, 1.0) ** 2)
+    pressed = _map(x, y, pressure, gpa, (0.87, 0.26))
+    film = np.where(film < top, film, np.nan)
     cut = [
-        line(x, pressure[middle], f"pressure [{units[1]}]", TOTAL, unit=units[1]),
-        line(x, dry, f"dry (Hertz) [{units[1]}]", MUTED, unit=units[1], dash="dash"),
-        line(x, film[middle], f"film [{units[2]}]", WHEEL, unit=units[2]),
+        line(x, pressure[middle], f"pressure [{gpa}]", TOTAL, unit=gpa),
+        line(x, dry, f"dry (Hertz) [{gpa}]", MUTED, unit=gpa, dash="dash"),
+        line(x, film[middle], f"film [{micro}]", WHEEL, unit=micro),
     ]
-    central, least = (
-        f"{significant(float(displayed('film_thickness', each)))} {units[2]}"
-        for each in (solution.central_film, solution.minimum_film)
-    )
-    ahead = {"range": list(view[0])}
+    along, across = f"x [{width}]", f"y [{width}]"
     rows = [
-        Row(labels[0], Panel(labels[1], [pressed, ellipse], {"range": list(view[1])}, 1.5), ahead),
-        Row(labels[0], Panel(labels[1], [films, _levels(films, top), ellipse],
-                             {"range": list(view[1])}, 1.5), ahead),
-        Row(labels[0], from_zero("Cut through the middle", cut), ahead),
-    ]  # fmt: skip
+        Row(along, Panel(across, [pressed, ellipse], aside, 1.5), ahead),
+        Row(along, Panel(across, [films, _levels(films, top), ellipse], aside, 1.5), ahead),
+        Row(along, from_zero("Cut through the middle", cut), ahead),
+    ]
+    films_named = (solution.central_film, solution.minimum_film)
+    central, least = (rounded("film_thickness", each) for each in films_named)
     title = f"The film is {central} thick in the middle and {least} at its thinnest"
     return stack_rows(title, rows, {"hovermode": "closest"})
 
@@ -117,38 +97,27 @@ def point_contact(solution: Any) -> Any:
 )
 def finite_line_contact(solution: Any) -> Any:
     """Draw pressure, film and load along a roller."""
-    y = np.asarray(displayed("face_width", solution.y))
-    ends = y[[0, -1]]
-    pressure, film = display_unit("hertz_pressure"), display_unit("film_thickness")
-    ridge = displayed("hertz_pressure", solution.ridge_pressure)
-    least = np.asarray(displayed("film_thickness", solution.ridge_film))
-    top = float(displayed("film_thickness", _FILMS * solution.central_film))
-    least = np.where(least < top, least, np.nan)
-    line_pressure, line_film = (
-        np.full(2, float(displayed(name, value)))
-        for name, value in (
-            ("hertz_pressure", solution.line_maximum_pressure),
-            ("film_thickness", solution.line_minimum_film),
-        )
-    )
-    load = 1e-3 * solution.load_per_length
-    mean = np.full(2, 1e-3 * solution.normal_force / solution.length)
+    y = displayed("face_width", solution.y)
+    film = np.asarray(solution.ridge_film)
+    film = np.where(film < _FILMS * solution.central_film, film, np.nan)
     panels = [
-        from_zero(f"Greatest pressure [{pressure}]", [
-            line(y, ridge, "roller", TOTAL, unit=pressure),
-            line(ends, line_pressure, "infinite line", MUTED, unit=pressure, dash="dash"),
-        ]),
-        from_zero(f"Least film [{film}]", [
-            line(y, least, "roller", TOTAL, unit=film),
-            line(ends, line_film, "infinite line", MUTED, unit=film, dash="dash"),
-        ]),
-        from_zero("Load per length [N/mm]", [
-            line(y, load, "roller", TOTAL, unit="N/mm"),
-            line(ends, mean, "mean", MUTED, unit="N/mm", dash="dash"),
-        ]),
+        _along(y, "hertz_pressure", "Greatest pressure", solution.ridge_pressure,
+               solution.line_maximum_pressure),
+        _along(y, "film_thickness", "Least film", film, solution.line_minimum_film),
+        _along(y, "load_per_width", "Load per length", solution.load_per_length,
+               solution.normal_force / solution.length, "mean"),
     ]  # fmt: skip
     title = f"The ends carry {solution.edge_pressure_ratio:.2f} times the pressure of the middle"
     return stack(title, f"Along the roller [{display_unit('face_width')}]", panels).figure()
+
+
+def _along(
+    y: Array, quantity: str, label: str, values: Any, level: float, name: str = "infinite line"
+) -> Panel:
+    """Panel with values along the roller and a level to compare with."""
+    roller = curve(quantity, y, values, "roller", TOTAL)
+    dashed = curve(quantity, y[[0, -1]], [level] * 2, name, MUTED, dash="dash")
+    return from_zero(axis_label(quantity, label), [roller, dashed])
 
 
 @drawing(
@@ -161,9 +130,8 @@ def finite_line_contact(solution: Any) -> Any:
 )
 def area_friction(friction: Any) -> Any:
     """Draw friction and film temperature over the position across the entrainment."""
-    position = np.asarray(displayed("face_width", friction.position))
-    force = 1e-3 * friction.force_per_width
-    rise = friction.temperature_rise
+    position = displayed("face_width", friction.position)
+    force, rise = 1e-3 * friction.force_per_width, friction.temperature_rise
     panels = [
         from_zero("Friction [N/mm]", [line(position, force, "friction", TOTAL, unit="N/mm")]),
         from_zero("Temperature rise [K]", [line(position, rise, "film", WHEEL, unit="K")]),

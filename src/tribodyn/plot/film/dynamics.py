@@ -9,9 +9,10 @@ from numpy.typing import ArrayLike
 
 from tribodyn.drawing import drawing
 from tribodyn.errors import InputError
-from tribodyn.plot.theme.labels import axis_label, display_unit, displayed, rounded, significant
-from tribodyn.plot.theme.panels import Panel, event_lines, from_zero, stack
-from tribodyn.plot.theme.style import MUTED, PAIR_COLORS, TOTAL, Trace, line
+from tribodyn.plot.theme.curves import FROM_ZERO, curves
+from tribodyn.plot.theme.labels import axis_label, displayed, rounded, significant
+from tribodyn.plot.theme.panels import Panel, event_lines, stack
+from tribodyn.plot.theme.style import MUTED, PAIR_COLORS, TOTAL
 from tribodyn.types import Array
 
 if TYPE_CHECKING:
@@ -100,27 +101,19 @@ def film_response(
         ("mesh_damping", "Damping", damping, crossing),
     )
     x = displayed("frequency", at)
-    return stack(
-        _response_title(at, stiffness, static),
-        axis_label("frequency"),
-        [
-            Panel(
-                axis_label(name, label),
-                [line(x, displayed(name, values), label.lower(), TOTAL, unit=display_unit(name))],
-                axis,
-                height=0.8,
-            )
-            for name, label, values, axis in rows
-        ],
-        {"xaxis": logarithmic, **marks},
-    ).figure()
+    panels = [
+        curves(quantity, label, x, [(label.lower(), values, TOTAL)], axis, 0.8)
+        for quantity, label, values, axis in rows
+    ]
+    layout = {"xaxis": logarithmic, **marks}
+    title = _response_title(at, stiffness, static)
+    return stack(title, axis_label("frequency"), panels, layout).figure()
 
 
-def _films(transient: TransientLineContact, time: Any, steady: ArrayLike | None) -> list[Trace]:
-    unit = display_unit("film_thickness")
-    rows = [
-        ("in the centre", transient.central_film, PAIR_COLORS[2], "solid"),
-        ("at its thinnest", transient.minimum_film, TOTAL, "solid"),
+def _films(transient: TransientLineContact, time: Any, steady: ArrayLike | None) -> Panel:
+    rows: list[tuple[Any, ...]] = [
+        ("in the centre", transient.central_film, PAIR_COLORS[2]),
+        ("at its thinnest", transient.minimum_film, TOTAL),
     ]
     if steady is not None:
         films = np.asarray(steady, dtype=float)
@@ -130,10 +123,13 @@ def _films(transient: TransientLineContact, time: Any, steady: ArrayLike | None)
             remedy = "Give the central films of solve_line_contacts at the same instants"
             raise InputError(what, "argument steady", why, remedy)
         rows.append(("in the centre, steady", films, MUTED, "dash"))
-    return [
-        line(time, displayed("film_thickness", films), name, color, unit=unit, dash=dash)
-        for name, films, color, dash in rows
-    ]
+    return curves("film_thickness", "Film", time, rows, usual_films(transient.central_film))
+
+
+def usual_films(film: Array) -> dict[str, Any]:
+    """Axis of films without the thick film of a contact that carries little load."""
+    thick = displayed("film_thickness", film)
+    return {"range": [0.0, float(min(1.05 * np.max(thick), 4.0 * np.median(thick)))]}
 
 
 @drawing(
@@ -165,23 +161,16 @@ def film_transient(transient: TransientLineContact, *, steady: ArrayLike | None 
         If the steady films are not as many as the instants.
     """
     time = displayed("time", transient.time)
-    films = _films(transient, time, steady)
 
-    def panel(name: str, label: str, values: Any) -> Panel:
-        curve = line(time, displayed(name, values), label, TOTAL, unit=display_unit(name))
-        return from_zero(axis_label(name, label), [curve], height=0.6)
+    def panel(quantity: str, label: str, values: Any) -> Panel:
+        return curves(quantity, label, time, [(label, values, TOTAL)], FROM_ZERO, 0.6)
 
-    # The thick film of a lightly loaded contact is outside the initial view.
-    thick = displayed("film_thickness", transient.central_film)
-    view = {"range": [0.0, float(min(1.05 * np.max(thick), 4.0 * np.median(thick)))]}
     at = int(np.argmin(transient.minimum_film))
     least = rounded("film_thickness", float(transient.minimum_film[at]))
-    return stack(
-        f"The film is thinnest, {least}, after {rounded('time', float(transient.time[at]))}",
-        axis_label("time"),
-        [
-            panel("load_per_width", "Load", transient.load_per_width),
-            Panel(axis_label("film_thickness", "Film"), films, view),
-            panel("hertz_pressure", "Maximum pressure", transient.maximum_pressure),
-        ],
-    )
+    panels = [
+        panel("load_per_width", "Load", transient.load_per_width),
+        _films(transient, time, steady),
+        panel("hertz_pressure", "Maximum pressure", transient.maximum_pressure),
+    ]
+    title = f"The film is thinnest, {least}, after {rounded('time', float(transient.time[at]))}"
+    return stack(title, axis_label("time"), panels)

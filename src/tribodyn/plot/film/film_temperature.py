@@ -7,10 +7,12 @@ from typing import Any
 import numpy as np
 
 from tribodyn.drawing import drawing
+from tribodyn.plot.film.dynamics import usual_films
 from tribodyn.plot.film.line_contact import contact_scales, window
+from tribodyn.plot.theme.curves import curves
 from tribodyn.plot.theme.labels import axis_label, display_unit, displayed, rounded
 from tribodyn.plot.theme.panels import Panel, event_lines, from_zero, stack
-from tribodyn.plot.theme.style import MUTED, PAIR_COLORS, TOTAL, Trace, line
+from tribodyn.plot.theme.style import MUTED, PAIR_COLORS, TOTAL, Trace, heat, line
 from tribodyn.types import Array
 
 #: Levels of the height, and height over the central film up to which it is drawn.
@@ -27,15 +29,19 @@ def _in_film(solution: Any, inside: Array, position: Array, film_scale: float) -
         np.interp(height / thick, solution.height, column, right=np.nan)
         for thick, column in zip(film, temperature, strict=True)
     ]
-    return {
-        "type": "heatmap",
-        "x": position,
-        "y": film_scale * height,
-        "z": np.array(columns).T,
-        "colorscale": "Inferno",
-        "colorbar": {"title": {"text": _UNIT}, "len": 0.5, "y": 0.78, "thickness": 14},
-        "hovertemplate": f"%{{z:.1f}} {_UNIT}<extra></extra>",
-    }
+    bar = {"title": {"text": _UNIT}, "len": 0.5, "y": 0.78, "thickness": 14}
+    values, hover = np.array(columns).T, f"%{{z:.1f}} {_UNIT}"
+    return heat(position, film_scale * height, values, "Inferno", hover, colorbar=bar)
+
+
+def _temperatures(label: str, x: Any, oil: Any, surfaces: Any, name: str) -> Panel:
+    """Panel with the temperatures of the oil and of both surfaces [K]."""
+    rows = (
+        (name, oil, TOTAL),
+        *zip(("surface 1", "surface 2"), surfaces, PAIR_COLORS, strict=False),
+    )
+    traces = [line(x, values - _ZERO, name, color, unit=_UNIT) for name, values, color in rows]
+    return Panel(axis_label("temperature", label), traces)
 
 
 @drawing(
@@ -63,30 +69,18 @@ def film_temperature(solution: Any) -> Any:
     first, last = window(solution)
     inside = (solution.position >= first) & (solution.position <= last)
     position = scales.position * solution.position[inside]
-    middle = solution.film_temperature[:, solution.height.size // 2]
-    curves = [
-        line(position, values[inside] - _ZERO, name, color, unit=_UNIT)
-        for values, name, color in (
-            (middle, "middle of the film", TOTAL),
-            (solution.surface_temperatures[0], "surface 1", PAIR_COLORS[0]),
-            (solution.surface_temperatures[1], "surface 2", PAIR_COLORS[1]),
-        )
-    ]
+    middle = solution.film_temperature[inside, solution.height.size // 2]
+    surfaces = [each[inside] for each in solution.surface_temperatures]
     hottest = float(solution.film_temperature.max()) - _ZERO
     surface = float(solution.surface_temperatures.max()) - _ZERO
     marks = event_lines([("centre", 0.0), ("outlet", scales.position * solution.outlet)])
-    return stack(
-        f"The film gets {hottest:.0f} {_UNIT} hot, its surfaces {surface:.0f} {_UNIT}",
-        scales.position_label,
-        [
-            Panel(
-                axis_label("film_thickness", "Height in the film"),
-                [_in_film(solution, inside, position, scales.film)],
-            ),
-            Panel(axis_label("temperature", "Temperature"), curves),
-        ],
-        marks,
-    )
+    height = axis_label("film_thickness", "Height in the film")
+    panels = [
+        Panel(height, [_in_film(solution, inside, position, scales.film)]),
+        _temperatures("Temperature", position, middle, surfaces, "middle of the film"),
+    ]
+    title = f"The film gets {hottest:.0f} {_UNIT} hot, its surfaces {surface:.0f} {_UNIT}"
+    return stack(title, scales.position_label, panels, marks)
 
 
 @drawing(
@@ -109,33 +103,21 @@ def film_temperature_over_time(transient: Any) -> Any:
     -------
     plotly.graph_objects.Figure
     """
-    time, film = displayed("time", transient.time), "film_thickness"
-    rows = [
-        (transient.highest_film_temperature, "oil", TOTAL),
-        (transient.highest_surface_temperatures[0], "surface 1", PAIR_COLORS[0]),
-        (transient.highest_surface_temperatures[1], "surface 2", PAIR_COLORS[1]),
-    ]
-    hottest = int(np.argmax(rows[0][0]))
-    friction = line(time, transient.friction_coefficient, "friction", TOTAL, unit="1")
-    films = [
-        line(time, displayed(film, values), name, color, unit=display_unit(film))
-        for values, name, color in (
-            (transient.central_film, "film in the centre", PAIR_COLORS[2]),
-            (transient.minimum_film, "film at its thinnest", MUTED),
-        )
-    ]
-    thick = displayed(film, transient.central_film)
-    view = {"range": [0.0, float(min(1.05 * np.max(thick), 4.0 * np.median(thick)))]}
-    return stack(
-        f"The oil gets {rows[0][0][hottest] - _ZERO:.0f} {_UNIT} hot, after "
-        f"{rounded('time', float(transient.time[hottest]))}",
-        axis_label("time"),
-        [
-            Panel(axis_label(film, "Film"), films, view),
-            Panel(
-                axis_label("temperature", "Highest temperature"),
-                [line(time, t - _ZERO, name, color, unit=_UNIT) for t, name, color in rows],
-            ),
-            from_zero(axis_label("friction_coefficient", "Friction"), [friction], height=0.6),
-        ],
+    time, oil = displayed("time", transient.time), transient.highest_film_temperature
+    surfaces = transient.highest_surface_temperatures
+    films = (
+        ("film in the centre", transient.central_film, PAIR_COLORS[2]),
+        ("film at its thinnest", transient.minimum_film, MUTED),
     )
+    friction = line(time, transient.friction_coefficient, "friction", TOTAL, unit="1")
+    panels = [
+        curves("film_thickness", "Film", time, films, usual_films(transient.central_film)),
+        _temperatures("Highest temperature", time, oil, surfaces, "oil"),
+        from_zero(axis_label("friction_coefficient", "Friction"), [friction], height=0.6),
+    ]
+    hottest = int(np.argmax(oil))
+    title = (
+        f"The oil gets {oil[hottest] - _ZERO:.0f} {_UNIT} hot, after "
+        f"{rounded('time', float(transient.time[hottest]))}"
+    )
+    return stack(title, axis_label("time"), panels)

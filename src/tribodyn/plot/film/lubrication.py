@@ -11,9 +11,10 @@ from tribodyn.ehl.load_share import REGIME_LIMITS, REGIMES
 from tribodyn.plot.film.path import Path, gaps_sentence
 from tribodyn.plot.gear.path import roll_label
 from tribodyn.plot.mesh.cycle import TABLE, roll_angle_positions, sharing_under_load
+from tribodyn.plot.theme.curves import FROM_ZERO, ZERO, curves
 from tribodyn.plot.theme.labels import axis_label, display_unit, displayed, rounded, significant
-from tribodyn.plot.theme.panels import Panel, event_lines, from_zero, stack
-from tribodyn.plot.theme.style import MUTED, PAIR_COLORS, PINION, TOTAL, WHEEL, Trace, figure, line
+from tribodyn.plot.theme.panels import Panel, event_lines, stack
+from tribodyn.plot.theme.style import MUTED, PAIR_COLORS, PINION, TOTAL, WHEEL, figure, line
 from tribodyn.types import Array
 
 if TYPE_CHECKING:
@@ -102,18 +103,17 @@ def _title(mesh: MeshTable, share: Array) -> str:
 
 def _friction(path: Path) -> Panel:
     """Friction force of a pair with its film and asperity parts."""
-    unit = display_unit("friction_force")
     force = path.life("normal_force") * path.life("sliding_direction")
     total, asperities = (
-        displayed("friction_force", path.under_load(name) * force)
+        path.under_load(name) * force
         for name in ("friction_coefficient", "asperity_friction_coefficient")
     )
-    curves = [
-        line(path.angle, total, "total", TOTAL, unit=unit),
-        line(path.angle, total - asperities, "oil film", _OIL, unit=unit),
-        line(path.angle, asperities, "asperities", _METAL, unit=unit, dash="dash"),
-    ]
-    return Panel(axis_label("friction_force"), curves, {"zeroline": True})
+    rows = (
+        ("total", total, TOTAL),
+        ("oil film", total - asperities, _OIL),
+        ("asperities", asperities, _METAL, "dash"),
+    )
+    return curves("friction_force", None, path.angle, rows, ZERO)
 
 
 def _edges(low: float, high: float) -> list[tuple[float, float]]:
@@ -173,25 +173,20 @@ def film_over_operation(films: FilmOverOperation) -> Any:
         f"{rounded('torque', float(films.pinion_torque[row]))} and "
         f"{rounded('pinion_speed', float(films.pinion_speed[column]))} of the pinion"
     )
-    panels = [
-        from_zero(axis_label("film_thickness"), _curves(films, film, "film_thickness"), height=1.4)
-    ]
+    panels = [_over_speed(films, film, "film_thickness", 1.4)]
     if films.film_ratio is not None:
-        ratio = np.nanmin(films.film_ratio, axis=2)
-        curves = _curves(films, ratio, "film_ratio")
-        panels.append(from_zero(axis_label("film_ratio"), curves))
+        panels.append(_over_speed(films, np.nanmin(films.film_ratio, axis=2), "film_ratio"))
     return stack(title, axis_label("pinion_speed"), panels)
 
 
-def _curves(films: FilmOverOperation, values: Any, quantity: str) -> list[Trace]:
-    speed, unit = displayed("pinion_speed", films.pinion_speed), display_unit(quantity)
-    traces = []
-    for number, torque in enumerate(films.pinion_torque):
-        color, dash = _COLORS[number % len(_COLORS)], _DASHES[number // len(_COLORS) % 3]
-        name = rounded("torque", float(torque))
-        curve = line(speed, displayed(quantity, values[number]), name, color, unit=unit, dash=dash)
-        traces.append({**curve, "mode": "lines+markers"})
-    return traces
+def _over_speed(films: FilmOverOperation, values: Any, quantity: str, height: float = 1.0) -> Panel:
+    rows = [
+        (rounded("torque", float(torque)), values[number], _COLORS[number % len(_COLORS)],
+         _DASHES[number // len(_COLORS) % 3])
+        for number, torque in enumerate(films.pinion_torque)
+    ]  # fmt: skip
+    speed = displayed("pinion_speed", films.pinion_speed)
+    return curves(quantity, None, speed, rows, FROM_ZERO, height, mode="lines+markers")
 
 
 def _no_map(films: FilmOverOperation) -> str:
@@ -249,13 +244,8 @@ def lubrication_map(films: FilmOverOperation) -> Any:
         "showlegend": False,
     }
     least, most = significant(float(ratio.min())), significant(float(ratio.max()))
-    return figure(
-        f"The least film ratio is {least} to {most} over these speeds and torques",
-        [*filled, levels],
-        {
-            "xaxis": {"title": {"text": axis_label("pinion_speed")}},
-            "yaxis": {"title": {"text": axis_label("torque", "Torque of the pinion")}},
-            "hovermode": "closest",
-            "height": 460,
-        },
-    )
+    title = f"The least film ratio is {least} to {most} over these speeds and torques"
+    layout: dict[str, Any] = {"hovermode": "closest", "height": 460}
+    layout["xaxis"] = {"title": {"text": axis_label("pinion_speed")}}
+    layout["yaxis"] = {"title": {"text": axis_label("torque", "Torque of the pinion")}}
+    return figure(title, [*filled, levels], layout)

@@ -8,8 +8,9 @@ import numpy as np
 
 from tribodyn.drawing import drawing
 from tribodyn.plot.film.lubrication import RATIO_TICKS, REGIME_SENTENCE
-from tribodyn.plot.theme.labels import axis_label, display_unit, displayed, significant
-from tribodyn.plot.theme.panels import Panel, from_zero, stack
+from tribodyn.plot.theme.curves import FROM_ZERO, curves
+from tribodyn.plot.theme.labels import significant
+from tribodyn.plot.theme.panels import Panel, stack
 from tribodyn.plot.theme.style import MUTED, PAIR_COLORS, TOTAL, WHEEL, Trace, line
 
 if TYPE_CHECKING:
@@ -29,56 +30,27 @@ def mixed_line_contact(contact: MixedLineContact) -> Any:
     """Draw load shares, gap and pressures over the film ratio."""
     ratio = np.ravel(contact.film_ratio)
     order = np.argsort(ratio, kind="stable")
-    place = ratio[order]
+    place, share = ratio[order], 100.0 * np.ravel(contact.film_load_share)[order]
+    mode: Trace = {"mode": "lines+markers"}
 
-    def curve(values: Any, name: str, color: str, unit: str, dash: str = "solid") -> Trace:
-        points = line(place, np.ravel(values)[order], name, color, unit=unit, dash=dash)
-        return {**points, "mode": "lines+markers"}
+    def pair(quantity: str, label: str, *rows: tuple[str, Any, str, str]) -> Panel:
+        sorted_rows = [(name, np.ravel(each)[order], *style) for name, each, *style in rows]
+        return curves(quantity, label, place, sorted_rows, FROM_ZERO, **mode)
 
-    share = contact.film_load_share
-    film, pressure = display_unit("film_thickness"), display_unit("hertz_pressure")
-    panels = [
-        Panel(
-            "Share of the load [%]",
-            [
-                curve(100.0 * share, "oil film", PAIR_COLORS[2], "%"),
-                curve(100.0 * (1.0 - share), "asperities", WHEEL, "%", "dash"),
-            ],
-            {"range": [-2.0, 102.0]},
-        ),
-        from_zero(
-            axis_label("film_thickness", "Thickness"),
-            [
-                curve(displayed("film_thickness", contact.gap), "gap of rough flanks", TOTAL, film),
-                curve(
-                    displayed("film_thickness", contact.smooth_film),
-                    "film of smooth flanks",
-                    MUTED,
-                    film,
-                    "dash",
-                ),
-            ],
-        ),
-        from_zero(
-            axis_label("hertz_pressure", "Pressure"),
-            [
-                curve(
-                    displayed("hertz_pressure", contact.hertz_pressure),
-                    "maximum, dry smooth contact",
-                    MUTED,
-                    pressure,
-                    "dash",
-                ),
-                curve(
-                    displayed("hertz_pressure", contact.asperity_pressure),
-                    "mean of the asperities",
-                    WHEEL,
-                    pressure,
-                ),
-            ],
-        ),
+    shares = [
+        line(place, share, "oil film", PAIR_COLORS[2], unit="%", **mode),
+        line(place, 100.0 - share, "asperities", WHEEL, unit="%", dash="dash", **mode),
     ]
-    low, high = (significant(100.0 * float(f(share))) for f in (np.min, np.max))
+    panels = [
+        Panel("Share of the load [%]", shares, {"range": [-2.0, 102.0]}),
+        pair("film_thickness", "Thickness",
+             ("gap of rough flanks", contact.gap, TOTAL, "solid"),
+             ("film of smooth flanks", contact.smooth_film, MUTED, "dash")),
+        pair("hertz_pressure", "Pressure",
+             ("maximum, dry smooth contact", contact.hertz_pressure, MUTED, "dash"),
+             ("mean of the asperities", contact.asperity_pressure, WHEEL, "solid")),
+    ]  # fmt: skip
+    low, high = (significant(float(f(share))) for f in (np.min, np.max))
     carried = f"{low} %" if low == high else f"{low} to {high} %"
     log = {"type": "log", "tickvals": RATIO_TICKS}
     layout = {"xaxis": log} if place[0] > 0.0 and place[-1] > 4.0 * place[0] else {}

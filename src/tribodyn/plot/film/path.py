@@ -17,6 +17,7 @@ from tribodyn.plot.mesh.cycle import (
     sharing_under_load,
     table_drawing,
 )
+from tribodyn.plot.theme.curves import FROM_ZERO, ZERO, curve, curves
 from tribodyn.plot.theme.labels import axis_label, display_unit, displayed, rounded, significant
 from tribodyn.plot.theme.panels import Panel, event_lines, stack
 from tribodyn.plot.theme.style import MUTED, PAIR_COLORS, PINION, TOTAL, WHEEL, Trace, line
@@ -49,8 +50,6 @@ _TEETH: Rows = (("tooth_stiffness", "teeth", PAIR_COLORS[0], "dash"),)
 _BOTH: Rows = (("stiffness", "teeth and film", TOTAL, "solid"),)
 #: The quantity of a column that is called differently.
 _QUANTITIES = {"stiffness": "pair_stiffness"}
-#: Axes that begin at zero, and that mark their zero.
-_FROM_ZERO, _ZERO = {"rangemode": "tozero"}, {"zeroline": True}
 _LOGARITHMIC = {"type": "log", "dtick": 1}
 #: Ratio of the thickest to the usual film from which the scale is logarithmic.
 _VERY_THICK = 10.0
@@ -80,13 +79,12 @@ class Path:
 
     def curves(self, rows: Rows, quantity: str = "", *, loaded: bool = True) -> list[Trace]:
         """Curves of columns of the mesh table in their display units or in that of ``quantity``."""
-        traces = []
-        for column, name, color, dash in rows:
-            quantity_name = quantity or _QUANTITIES.get(column, column)
-            values = self.under_load(column) if loaded else self.life(column)
-            displayed_values, unit = displayed(quantity_name, values), display_unit(quantity_name)
-            traces.append(line(self.angle, displayed_values, name, color, unit=unit, dash=dash))
-        return traces
+        values = self.under_load if loaded else self.life
+        return [
+            curve(quantity or _QUANTITIES.get(column, column), self.angle, values(column), name,
+                  color, dash=dash)
+            for column, name, color, dash in rows
+        ]  # fmt: skip
 
     def figure(self, title: str, panels: list[Panel]) -> Any:
         """Stack panels over the roll angle, with the positions A to E."""
@@ -121,14 +119,12 @@ def path_of_contact(mesh: MeshTable) -> Any:
     radii = path.curves(_RADII, "curvature_radius", loaded=False)
     speeds = path.curves(_SPEEDS, "sliding_speed", loaded=False)
     panels = [
-        Panel(axis_label("sliding_speed", "Speed"), speeds, _ZERO),
+        Panel(axis_label("sliding_speed", "Speed"), speeds, ZERO),
         Panel(axis_label("curvature_radius", "Radius of curvature"), radii),
-        Panel(axis_label("slide_to_roll_ratio"), [ratio], _ZERO, height=0.8),
+        Panel(axis_label("slide_to_roll_ratio"), [ratio], ZERO, height=0.8),
     ]
-    return path.figure(
-        f"The flanks slide at up to {rounded('sliding_speed', float(fastest))}",
-        panels,
-    )
+    title = f"The flanks slide at up to {rounded('sliding_speed', float(fastest))}"
+    return path.figure(title, panels)
 
 
 def _friction_caption(mesh: MeshTable) -> str:
@@ -159,20 +155,20 @@ def friction(mesh: MeshTable) -> Any:
     """Draw friction coefficient and friction force of a tooth pair over the roll angle."""
     path = Path(mesh)
     coefficient, load = path.under_load("friction_coefficient"), path.life("normal_force")
-    unit, force = display_unit("friction_force"), coefficient * load
-    force = displayed("friction_force", force * path.life("sliding_direction"))
-    curve = line(path.angle, coefficient, "friction coefficient", PAIR_COLORS[0])
-    pulled = line(path.angle, force, "friction force", WHEEL, unit=unit)
-    pressed = line(path.angle, displayed("normal_force", load), "normal force", TOTAL, unit=unit)
+    force = coefficient * load * path.life("sliding_direction")
     mean = rounded("friction_coefficient", mesh.mean_friction_coefficient)
     title = (
         f"The mean friction coefficient is {mean} over the mesh cycle, weighted with the "
         "load shares"
     )
+    rows = (
+        ("friction_coefficient", coefficient, PAIR_COLORS[0], FROM_ZERO, 1.0),
+        ("friction_force", force, WHEEL, ZERO, 1.0),
+        ("normal_force", load, TOTAL, FROM_ZERO, 0.8),
+    )
     panels = [
-        Panel(axis_label("friction_coefficient"), [curve], _FROM_ZERO),
-        Panel(axis_label("friction_force"), [pulled], _ZERO),
-        Panel(axis_label("normal_force"), [pressed], _FROM_ZERO, height=0.8),
+        curves(name, None, path.angle, [(name.replace("_", " "), values, color)], axis, height)
+        for name, values, color, axis, height in rows
     ]
     return path.figure(title, panels)
 
@@ -186,7 +182,7 @@ _has_film = Need(
 def _film_axis(films: list[Array]) -> dict[str, Any]:
     """Axis from zero, or logarithmic if a lightly loaded pair has a very thick film."""
     thickest = max(float(np.nanmax(film)) for film in films)
-    return _LOGARITHMIC if thickest > _VERY_THICK * float(np.nanmedian(films[0])) else _FROM_ZERO
+    return _LOGARITHMIC if thickest > _VERY_THICK * float(np.nanmedian(films[0])) else FROM_ZERO
 
 
 def _film_caption(mesh: MeshTable) -> str:
@@ -249,7 +245,7 @@ def film_pressure(mesh: MeshTable) -> Any:
     label, curves = axis_label("film_pressure"), path.curves(_PRESSURES)
     return path.figure(
         f"The pressure in the oil film reaches {greatest}",
-        [Panel(label, curves, _FROM_ZERO, height=1.3)],
+        [Panel(label, curves, FROM_ZERO, height=1.3)],
     )
 
 

@@ -39,18 +39,10 @@ def amplitude_reduction(waves: AmplitudeReduction) -> Any:
     slide = waves.slide_to_roll_ratio
     motion = "pure rolling" if slide == 0.0 else f"a slide-to-roll ratio of {slide:g}"
     least, most = (significant(float(f(waves.amplitude_ratio)), 2) for f in (np.min, np.max))
-    return stack(
-        f"Waves keep {least} to {most} of their amplitude in {motion}",
-        "Wavelength / half width · M<sup>3/4</sup> L<sup>-1/2</sup>",
-        [
-            Panel(
-                "Amplitude over that of the free surface",
-                [
-                    line(curve, ratio, "fit for pure rolling", MUTED, dash="dash"),
-                    {**solved, "mode": "markers", "marker": {"size": 9}},
-                ],
-                {"range": [0.0, 1.02]},
-            )
-        ],
-        {"xaxis": {"type": "log", "tickvals": _TICKS, "tickformat": "~g"}},
-    )
+    title = f"Waves keep {least} to {most} of their amplitude in {motion}"
+    fit = line(curve, ratio, "fit for pure rolling", MUTED, dash="dash")
+    solved |= {"mode": "markers", "marker": {"size": 9}}
+    panel = Panel("Amplitude over that of the free surface", [fit, solved], {"range": [0.0, 1.02]})
+    label = "Wavelength / half width · M<sup>3/4</sup> L<sup>-1/2</sup>"
+    axis = {"type": "log", "tickvals": _TICKS, "tickformat": "~g"}
+    return stack(title, label, [panel], {"xaxis": axis})

@@ -188,7 +188,7 @@ def _crossings(met: Sequence[Meeting]) -> Trace:
     """Dots where mesh harmonics meet modes, by the share of the mesh in the strain energy."""
     x = displayed("speed", np.array([each.speed for each in met]))
     y = displayed("frequency", np.array([each.frequency for each in met]))
-    dots = marked(x, y, "mesh meets a mode", INK, size=6, symbol="circle")
+    dots = marked(x, y, "resonance", INK, size=6, symbol="circle")
     dots["marker"]["size"] = 5.0 + 9.0 * np.sqrt([each.share for each in met])
     texts = [
         f"{each.excitation} meets mode {each.mode + 1}, {100.0 * each.share:.2g} % of its strain"

@@ -11,7 +11,7 @@ from tribodyn.plot.gear.path import pair_letters, roll_label
 from tribodyn.plot.mesh.cycle import table_drawing
 from tribodyn.plot.theme.labels import axis_label, display_unit, displayed, rounded
 from tribodyn.plot.theme.panels import event_lines
-from tribodyn.plot.theme.style import PINION, WHEEL, figure
+from tribodyn.plot.theme.style import HEAT, Trace, figure, heat
 
 if TYPE_CHECKING:
     from tribodyn.mesh import MeshTable
@@ -34,7 +34,6 @@ _NAMES = {
     "friction_coefficient": "Friction coefficient",
     "flash_temperature": "Flash temperature",
 }
-_COLORS = [[0.0, "#f2f6fa"], [0.5, "#56B4E9"], [0.75, PINION], [1.0, WHEEL]]
 #: Part of the film whose values the colours resolve: slices that hardly carry have thick films.
 _COLORED = 0.97
 #: Height of a map, of the gap between two, and of what surrounds them [px].
@@ -78,29 +77,16 @@ def face_maps(mesh: MeshTable) -> Any:
         top = 1.0 - number * (_HEIGHT + _GAP) / total
         domain = (max(top - _HEIGHT / total, 0.0), top)
         label = f"{_NAMES[column]} [{unit}]" if unit else _NAMES[column]
-        traces.append(
-            {
-                "type": "heatmap",
-                "x": displayed("roll_angle", radius / pair.driving.base_radius),
-                "y": displayed("face_position", chart.face_position),
-                "z": values,
-                "yaxis": f"y{suffix}",
-                "colorscale": _COLORS,
-                "zmin": np.nanmin(values),
-                "zmax": np.nanquantile(values, _COLORED if "film" in column else 1.0),
-                "colorbar": {
-                    "title": {"text": label, "side": "right"},
-                    "y": sum(domain) / 2.0,
-                    "len": domain[1] - domain[0],
-                    "thickness": 14,
-                },
-                "hovertemplate": f"%{{x:.4g}} deg, %{{y:.4g}} mm: %{{z:.4g}} {unit}<extra></extra>",
-            }
-        )
-        layout[f"yaxis{suffix}"] = {
-            "title": {"text": axis_label("face_position", "Face")},
-            "domain": domain,
-        }
+        heading = {"text": axis_label("face_position", "Face")}
+        layout[f"yaxis{suffix}"] = {"title": heading, "domain": domain}
+        bar = Trace(y=sum(domain) / 2.0, len=domain[1] - domain[0], thickness=14)
+        bar["title"] = {"text": label, "side": "right"}
+        most = np.nanquantile(values, _COLORED if "film" in column else 1.0)
+        x = displayed("roll_angle", radius / pair.driving.base_radius)
+        y = displayed("face_position", chart.face_position)
+        hover = f"%{{x:.4g}} deg, %{{y:.4g}} mm: %{{z:.4g}} {unit}"
+        more = {"yaxis": f"y{suffix}", "zmin": np.nanmin(values), "zmax": most, "colorbar": bar}
+        traces.append(heat(x, y, values, HEAT, hover, **more))
     last = str(len(columns)) if len(columns) > 1 else ""
     layout["xaxis"] = {"title": {"text": roll_label(pair)}, "anchor": f"y{last}"}
     greatest = rounded("load_per_width", float(mesh.load_per_width.max()))

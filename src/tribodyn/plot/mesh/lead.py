@@ -8,7 +8,7 @@ from tribodyn.drawing import drawing
 from tribodyn.plot.mesh.loaded_contact import torque_colors, torque_names
 from tribodyn.plot.theme.labels import axis_label, displayed, rounded
 from tribodyn.plot.theme.panels import from_zero, stack
-from tribodyn.plot.theme.style import line
+from tribodyn.plot.theme.style import Trace, line
 
 if TYPE_CHECKING:
     from tribodyn.stiffness import LeadOptimum
@@ -29,16 +29,16 @@ def lead_optimum(study: LeadOptimum) -> Any:
     colors, names = torque_colors(study.torque.size), torque_names(study.torque)
     for t, (color, name) in enumerate(zip(colors, names, strict=True)):
         traces.append(line(place, study.face_load_after[t], name, color))
-        before = line(place, study.face_load_before[t], f"{name}, before", color, dash="dot")
-        traces.append({**before, "showlegend": False})
+        style: Trace = {"dash": "dot", "showlegend": False}
+        traces.append(line(place, study.face_load_before[t], f"{name}, before", color, **style))
     crowning, slope = (rounded(name, getattr(study, name)) for name in ("crowning", "lead_slope"))
     first, last = (
         float(factors.max())
         for factors in (study.face_load_factor_before, study.face_load_factor_after)
     )
-    return stack(
+    title = (
         f"Crowning of {crowning} and a lead slope of {slope} lower the greatest face load factor "
-        f"from {first:.3g} to {last:.3g}",
-        axis_label("face_position", "Position along the face from its middle"),
-        [from_zero("Load over its mean", traces, 1.6)],
+        f"from {first:.3g} to {last:.3g}"
     )
+    label = axis_label("face_position", "Position along the face from its middle")
+    return stack(title, label, [from_zero("Load over its mean", traces, 1.6)])

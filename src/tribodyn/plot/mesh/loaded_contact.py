@@ -11,6 +11,7 @@ from numpy.typing import ArrayLike
 from tribodyn.drawing import drawing
 from tribodyn.plot.gear.path import corner_shades, pair_letters, roll_angle_of, roll_label
 from tribodyn.plot.mesh.cycle import between
+from tribodyn.plot.theme.curves import curve
 from tribodyn.plot.theme.labels import axis_label, display_unit, displayed, rounded
 from tribodyn.plot.theme.panels import Panel, event_lines, from_zero, stack
 from tribodyn.plot.theme.style import TOTAL, Trace, line
@@ -141,23 +142,20 @@ def _over(contact: LoadedContact, values: Array) -> tuple[Array, Array]:
 
 def _curves(contact: LoadedContact, quantity: str, values: Array, **style: Any) -> list[Trace]:
     """One curve per torque."""
-    colors, names = torque_colors(np.size(contact.torque)), torque_names(contact.torque)
-    in_legend_flags, traces = in_legend(len(names)), []
-    for color, name, visible, each in zip(
-        colors, names, in_legend_flags, rows(contact, values), strict=True
-    ):
-        x, y = _over(contact, displayed(quantity, each))
-        trace = line(
-            x,
-            y,
-            style.get("name", name),
-            color,
-            unit=display_unit(quantity),
-            dash=style.get("dash", "solid"),
-            width=_THIN if several_cycles(contact) or len(names) > _MANY_TORQUES else 2.0,
-        )
-        traces.append({**trace, "showlegend": visible and len(names) > 1})
-    return traces
+    count, name = np.size(contact.torque), style.pop("name", "")
+    style["width"] = _THIN if several_cycles(contact) or count > _MANY_TORQUES else 2.0
+    return [
+        curve(quantity, *_over(contact, each), name or torque, color,
+              showlegend=visible and count > 1, **style)
+        for (torque, color, visible), each in zip(
+            _styles(contact), rows(contact, values), strict=True)
+    ]  # fmt: skip
+
+
+def _styles(contact: LoadedContact) -> list[tuple[str, str, bool]]:
+    """Name, colour and whether the legend has it, of each torque."""
+    names = torque_names(contact.torque)
+    return list(zip(names, torque_colors(len(names)), in_legend(len(names)), strict=True))
 
 
 def _stiffness(contact: LoadedContact) -> list[Trace]:
@@ -183,24 +181,19 @@ def _shares(contact: LoadedContact) -> list[Trace]:
     first, last = span(contact)
     inside = (life.age >= first) & (life.age <= last)
     x = displayed("roll_angle", roll_angle_of(contact.gear_pair, life.age[inside]))
-    colors, names = torque_colors(np.size(contact.torque)), torque_names(contact.torque)
     return [
-        {**line(x, share[inside], name, color), "showlegend": False}
-        for color, name, share in zip(colors, names, life.mean, strict=True)
+        line(x, share[inside], name, color, showlegend=False)
+        for (name, color, _), share in zip(_styles(contact), life.mean, strict=True)
     ]
 
 
 def _shares_over_cycles(contact: LoadedContact) -> list[Trace]:
     """Largest load share of all pairs, for each torque."""
-    greatest = np.max(contact.load_share, axis=-1)
-    period = contact.mesh_cycles
-    colors, names = torque_colors(np.size(contact.torque)), torque_names(contact.torque)
+    shares = rows(contact, np.max(contact.load_share, axis=-1))
+    over = [whole_cycles(contact.phase, share, contact.mesh_cycles) for share in shares]
     return [
-        {
-            **line(*whole_cycles(contact.phase, share, period), name, color, width=_THIN),
-            "showlegend": False,
-        }
-        for color, name, share in zip(colors, names, rows(contact, greatest), strict=True)
+        line(*each, name, color, width=_THIN, showlegend=False)
+        for (name, color, _), each in zip(_styles(contact), over, strict=True)
     ]
 
 
@@ -249,35 +242,22 @@ def _caption(contact: LoadedContact) -> str:
 
 def _band(x: Array, least: Array, greatest: Array, color: str) -> dict[str, Any]:
     """Band between the least and the most loaded pair."""
-    return {
-        "type": "scatter",
-        "mode": "lines",
-        "x": np.concatenate((x, x[::-1])),
-        "y": np.concatenate((greatest, least[::-1])),
-        "fill": "toself",
-        "fillcolor": color,
-        "opacity": 0.25,
-        "line": {"width": 0, "color": color},
-        "hoverinfo": "skip",
-        "showlegend": False,
-    }
+    ends = np.concatenate((x, x[::-1])), np.concatenate((greatest, least[::-1]))
+    fill: Trace = {"fill": "toself", "fillcolor": color, "opacity": 0.25, "hoverinfo": "skip"}
+    band = line(*ends, "", color, line={"width": 0, "color": color}, showlegend=False, **fill)
+    return {key: value for key, value in band.items() if key not in ("name", "hovertemplate")}
 
 
 def _traces(contact: LoadedContact, life: Life, inside: Mask) -> list[Trace]:
     x = displayed("roll_angle", roll_angle_of(contact.gear_pair, life.age[inside]))
-    newton, names = display_unit("normal_force"), torque_names(contact.torque)
-    traces = []
-    for row, (name, color, visible) in enumerate(
-        zip(names, torque_colors(len(names)), in_legend(len(names)), strict=True)
-    ):
-        least, mean, most = (
-            displayed("normal_force", part[row][inside])
-            for part in (life.least, life.mean, life.greatest)
-        )
+    styles, traces = _styles(contact), []
+    for row, (name, color, visible) in enumerate(styles):
+        least, mean, most = (p[row][inside] for p in (life.least, life.mean, life.greatest))
         if np.max(most - least) > _DIFFERENT * np.max(most):
-            traces.append(_band(x, least, most, color))
-        trace = line(x, mean, name, color, unit=newton)
-        traces.append({**trace, "showlegend": visible and len(names) > 1})
+            band = displayed("normal_force", [least, most])
+            traces.append(_band(x, band[0], band[1], color))
+        in_key = visible and len(styles) > 1
+        traces.append(curve("normal_force", x, mean, name, color, showlegend=in_key))
     return traces
 
 
@@ -298,18 +278,9 @@ def loaded_sharing(contact: LoadedContact) -> Any:
     layout = event_lines(pair_letters(pair))
     for kind, shades in corner_shades(pair, float(loaded.min()), float(loaded.max())).items():
         layout[kind] = [*shades, *layout[kind]]
-    layout["xaxis"] = {
-        "range": displayed("roll_angle", roll_angle_of(pair, np.array([first, last]))).tolist()
-    }
-    return stack(
-        f"A tooth pair carries up to {rounded('normal_force', float(peak))}",
-        roll_label(pair),
-        [
-            from_zero(
-                axis_label("normal_force", "Force on a tooth pair"),
-                _traces(contact, life, inside),
-                1.6,
-            )
-        ],
-        layout,
-    )
+    ends = displayed("roll_angle", roll_angle_of(pair, np.array([first, last])))
+    layout["xaxis"] = {"range": ends.tolist()}
+    label = axis_label("normal_force", "Force on a tooth pair")
+    panel = from_zero(label, _traces(contact, life, inside), 1.6)
+    title = f"A tooth pair carries up to {rounded('normal_force', float(peak))}"
+    return stack(title, roll_label(pair), [panel], layout)

@@ -9,9 +9,20 @@ import numpy as np
 from tribodyn.drawing import Need, drawing
 from tribodyn.plot.gear.path import mesh_marks, pair_letters, roll_label
 from tribodyn.plot.mesh.loaded_contact import in_legend, torque_colors, torque_names, whole_cycles
+from tribodyn.plot.theme.curves import FROM_ZERO, curve, curves
 from tribodyn.plot.theme.labels import axis_label, display_unit, displayed, rounded
-from tribodyn.plot.theme.panels import Panel, Row, event_lines, from_zero, stack, stack_rows
-from tribodyn.plot.theme.style import INK, MUTED, PAIR_COLORS, PINION, TOTAL, WHEEL, line
+from tribodyn.plot.theme.panels import Panel, Row, event_lines, stack, stack_rows
+from tribodyn.plot.theme.style import (
+    INK,
+    MUTED,
+    PAIR_COLORS,
+    PINION,
+    TOTAL,
+    WHEEL,
+    Trace,
+    line,
+    marked,
+)
 from tribodyn.types import Array, Mask
 
 if TYPE_CHECKING:
@@ -42,30 +53,23 @@ _DASHES = ("solid", "dash", "dot", "dashdot", "longdash", "longdashdot")
 
 def _curves(study: HarrisMap) -> Row:
     """Row with the transmission error over the mesh cycles, one curve per torque."""
-    unit, cycles = display_unit(_QUANTITY), 2 if study.mesh_cycles == 1 else 1
-    rigid = study.unloaded_transmission_error
-
+    cycles, rigid = 2 if study.mesh_cycles == 1 else 1, study.unloaded_transmission_error
     phases, errors = study.curves()
 
-    def over_cycles(values: Array, at: Array) -> tuple[Array, Array]:
-        return whole_cycles(at, displayed(_QUANTITY, values), study.mesh_cycles, cycles)
+    def over_cycles(values: Array, at: Array, name: str, color: str, **style: Any) -> Trace:
+        x, y = whole_cycles(at, values, study.mesh_cycles, cycles)
+        return curve(_QUANTITY, x, y, name, color, **style)
 
     traces = []
     if np.any(rigid):
-        phase, rigid_error = over_cycles(rigid, study.phase)
-        traces.append(line(phase, rigid_error, "no load", MUTED, unit=unit, dash="dash", width=1.2))
+        traces.append(over_cycles(rigid, study.phase, "no load", MUTED, dash="dash", width=1.2))
     count = study.torque.size
     chosen = np.unique(np.linspace(0, count - 1, min(count, _MOST_CURVES)).round().astype(int))
     labels, colors = torque_names(study.torque), torque_colors(count)
     for number, visible in zip(chosen[::-1], in_legend(chosen.size)[::-1], strict=True):
-        trace = line(
-            *over_cycles(errors[number], phases),
-            labels[number],
-            colors[number],
-            unit=unit,
-            width=1.6,
-        )
-        traces.append({**trace, "showlegend": visible})
+        style: Trace = {"width": 1.6, "showlegend": visible}
+        label, color = labels[number], colors[number]
+        traces.append(over_cycles(errors[number], phases, label, color, **style))
     return Row(
         axis_label("mesh_phase", "Mesh cycles"),
         Panel(axis_label(_QUANTITY, "Transmission error"), traces, height=1.5),
@@ -85,22 +89,18 @@ def _cycle_marks(study: HarrisMap, cycles: int) -> list[tuple[str, float]]:
 
 def _harris_swings(study: HarrisMap) -> Row:
     """Row with peak-to-peak value and mesh harmonics over the torque."""
-    unit, torque = display_unit(_QUANTITY), displayed("torque", study.torque)
-    mode = {"mode": "lines+markers", "marker": {"size": 5}}
-    swing = displayed(_QUANTITY, study.peak_to_peak_transmission_error)
-    traces = [{**line(torque, swing, "peak to peak", TOTAL, unit=unit), **mode}]
-    for number, dash in enumerate(_HARMONICS[: study.harmonics.shape[1]]):
-        amplitude = displayed(_QUANTITY, study.harmonics[:, number])
-        name, color = f"harmonic {number + 1}", PAIR_COLORS[number]
-        traces.append({**line(torque, amplitude, name, color, unit=unit, dash=dash), **mode})
+    torque, swing = displayed("torque", study.torque), study.peak_to_peak_transmission_error
+    rows = [("peak to peak", swing, TOTAL, "solid")]
+    rows += [
+        (f"harmonic {number + 1}", study.harmonics[:, number], PAIR_COLORS[number], dash)
+        for number, dash in enumerate(_HARMONICS[: study.harmonics.shape[1]])
+    ]
+    style: Trace = {"mode": "lines+markers", "marker": {"size": 5}}
+    panel = curves(_QUANTITY, "Variation, amplitude", torque, rows, FROM_ZERO, 1.2, **style)
     quietest = float(displayed("torque", study.quietest_torque))
     inside = study.torque.min() < study.quietest_torque < study.torque.max()
-    return Row(
-        axis_label("torque", "Torque on the pinion"),
-        from_zero(axis_label(_QUANTITY, "Variation, amplitude"), traces, 1.2),
-        {"rangemode": "tozero"},
-        [("least", quietest)] if inside else (),
-    )
+    marks = [("least", quietest)] if inside else ()
+    return Row(axis_label("torque", "Torque on the pinion"), panel, FROM_ZERO, marks)
 
 
 def _harris_caption(study: HarrisMap) -> str:
@@ -154,24 +154,13 @@ def _map(study: TipReliefOptimum) -> Row:
         "hovertemplate": hover,
         "showlegend": False,
     }
-    optimum = {
-        "type": "scatter",
-        "mode": "markers+text",
-        "x": [float(displayed("tip_relief", study.amount))],
-        "y": [float(displayed("tip_relief_length", study.length))],
-        "marker": {
-            "symbol": "star",
-            "size": 15,
-            "color": WHEEL,
-            "line": {"color": "white", "width": 1},
-        },
-        "text": ["optimum"],
-        "textposition": "top center",
-        "textfont": {"color": TOTAL},
-        "name": "optimum",
-        "hovertemplate": f"%{{x:.4g}} {micro} over %{{y:.4g}} {milli}<extra>optimum</extra>",
-        "showlegend": False,
-    }
+    x, y = displayed("tip_relief", [study.amount]), displayed("tip_relief_length", [study.length])
+    optimum = marked(x, y, "optimum", WHEEL, size=15, symbol="star", showlegend=False)
+    optimum["marker"]["line"] = {"color": "white", "width": 1}
+    optimum |= {"mode": "markers+text", "text": ["optimum"], "textposition": "top center"}
+    optimum["textfont"] = {"color": TOTAL}
+    hover = f"%{{x:.4g}} {micro} over %{{y:.4g}} {milli}<extra>optimum</extra>"
+    optimum["hovertemplate"] = hover
     return Row(
         axis_label("tip_relief", "Amount of the tip relief"),
         Panel(axis_label("tip_relief_length", "Its length"), [surface, optimum], height=1.6),
@@ -188,34 +177,27 @@ def _present(study: TipReliefOptimum) -> str:
 
 def _relief_swings(study: TipReliefOptimum) -> Row:
     """Row with the peak-to-peak value over the torque, before and with the best relief."""
-    unit, torque = display_unit(_QUANTITY), displayed("torque", study.torque)
-    mode = {"mode": "lines+markers", "marker": {"size": 6}}
-    traces = [
-        {**line(torque, displayed(_QUANTITY, swing), name, color, unit=unit, dash=dash), **mode}
-        for name, color, dash, swing in (
-            (_present(study), MUTED, "dash", study.peak_to_peak_before),
-            ("with the best relief", WHEEL, "solid", study.peak_to_peak_after),
-        )
-    ]
-    return Row(
-        axis_label("torque", "Torque on the pinion"),
-        from_zero(axis_label(_QUANTITY, "Peak to peak"), traces, 0.8),
+    rows = (
+        (_present(study), study.peak_to_peak_before, MUTED, "dash"),
+        ("with the best relief", study.peak_to_peak_after, WHEEL, "solid"),
     )
+    torque, style = displayed("torque", study.torque), Trace(mode="lines+markers")
+    panel = curves(_QUANTITY, "Peak to peak", torque, rows, FROM_ZERO, 0.8, **style,
+                   marker={"size": 6})  # fmt: skip
+    return Row(axis_label("torque", "Torque on the pinion"), panel)
 
 
 def _relief_time_histories(study: TipReliefOptimum) -> Row:
     """Row with the transmission error with and without relief at the extreme torques."""
-    unit, names = display_unit(_QUANTITY), torque_names(study.torque)
-    ends = sorted({0, study.torque.size - 1})
+    names, ends = torque_names(study.torque), sorted({0, study.torque.size - 1})
     traces = []
     for number, color in zip(ends, torque_colors(len(ends)), strict=True):
         for state, dash, error in (
             (_present(study), "dash", study.transmission_error_before),
             ("with the best relief", "solid", study.transmission_error_after),
         ):
-            displayed_error = displayed(_QUANTITY, error[number])
-            curve = whole_cycles(study.phase, displayed_error, 1, _CYCLES)
-            traces.append(line(*curve, f"{names[number]}, {state}", color, unit=unit, dash=dash))
+            over = whole_cycles(study.phase, error[number], 1, _CYCLES)
+            traces.append(curve(_QUANTITY, *over, f"{names[number]}, {state}", color, dash=dash))
     return Row(
         axis_label("mesh_phase", "Mesh cycles"),
         Panel(axis_label(_QUANTITY, "Transmission error"), traces),
@@ -277,14 +259,13 @@ def _panel(
 ) -> Panel:
     column, quantity, label = _PANELS[number]
     chosen, slices = _middle_of_face(study)
-    unit, angle = display_unit(quantity), displayed("roll_angle", study.roll_angle[chosen])
-    values, traces = slices * getattr(study, column)[..., chosen], []
-    for t, s, name, color, dash in styles:
-        displayed_values = displayed(quantity, values[t, s])
-        trace = line(angle, displayed_values, name, color, unit=unit, dash=dash)
-        # One legend for all panels, next to the first.
-        more = {"legendgroup": name, "showlegend": number == 0 and len(styles) > 1}
-        traces.append({**trace, **more})
+    angle = displayed("roll_angle", study.roll_angle[chosen])
+    values, in_key = slices * getattr(study, column)[..., chosen], number == 0 and len(styles) > 1
+    traces = [  # one legend for all panels, next to the first
+        curve(quantity, angle, values[t, s], name, color, dash=dash, legendgroup=name,
+              showlegend=in_key)
+        for t, s, name, color, dash in styles
+    ]  # fmt: skip
     sizes = displayed(quantity, values)
     sizes = sizes[np.isfinite(sizes) & (sizes > 0.0)]
     wide = sizes.size > 0 and float(sizes.max()) > _WIDE * float(sizes.min())

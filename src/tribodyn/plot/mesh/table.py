@@ -21,9 +21,10 @@ from tribodyn.plot.mesh.cycle import (
     stiffness_jump,
     table_drawing,
 )
+from tribodyn.plot.theme.curves import curve, points
 from tribodyn.plot.theme.labels import axis_label, display_unit, displayed, rounded, significant
 from tribodyn.plot.theme.panels import Panel, Row, event_lines, from_zero, stack, stack_rows
-from tribodyn.plot.theme.style import MUTED, PAIR_COLORS, TOTAL, line
+from tribodyn.plot.theme.style import MUTED, PAIR_COLORS, TOTAL, Trace, bars, line
 from tribodyn.types import Array
 
 if TYPE_CHECKING:
@@ -76,20 +77,16 @@ def _stiffness_caption(mesh: MeshTable) -> str:
 @table_drawing("mesh_stiffness", heading="Mesh stiffness", caption=_stiffness_caption)
 def mesh_stiffness(mesh: MeshTable) -> Any:
     """Draw the stiffness of the tooth pairs and their sum."""
-    unit = display_unit("mesh_stiffness")
-    phase, total = cycles(mesh.phase, displayed("mesh_stiffness", mesh.mesh_stiffness))
-    traces = [line(phase, total, "all pairs", TOTAL, unit=unit)]
-    for number, (at, pair) in enumerate(pair_lives(mesh, "stiffness"), start=1):
-        color = PAIR_COLORS[(number - 1) % len(PAIR_COLORS)]
-        values = displayed("pair_stiffness", pair)
-        traces.append(line(at, values, f"tooth pair {number}", color, unit=unit, dash="dash"))
+    total = cycles(mesh.phase, mesh.mesh_stiffness)
+    traces = [curve("mesh_stiffness", *total, "all pairs", TOTAL)]
+    for number, (at, pair) in enumerate(pair_lives(mesh, "stiffness")):
+        name, color = f"tooth pair {number + 1}", PAIR_COLORS[number % len(PAIR_COLORS)]
+        traces.append(curve("pair_stiffness", at, pair, name, color, dash="dash"))
     least, greatest = (rounded("mesh_stiffness", f(mesh.mesh_stiffness)) for f in (np.min, np.max))
-    return stack(
-        f"The mesh stiffness varies between {least} and {greatest}",
-        axis_label("mesh_phase", "Mesh cycles"),
-        [from_zero(axis_label("mesh_stiffness"), traces, height=1.3)],
-        {**event_lines(mesh_events(mesh)), "xaxis": {"range": [0, CYCLES]}},
-    )
+    title = f"The mesh stiffness varies between {least} and {greatest}"
+    panel = from_zero(axis_label("mesh_stiffness"), traces, height=1.3)
+    layout = {**event_lines(mesh_events(mesh)), "xaxis": {"range": [0, CYCLES]}}
+    return stack(title, axis_label("mesh_phase", "Mesh cycles"), [panel], layout)
 
 
 def _pairs(mesh: MeshTable, ends: tuple[float, float]) -> list[tuple[str, Array, Array]]:
@@ -113,15 +110,14 @@ def _pairs(mesh: MeshTable, ends: tuple[float, float]) -> list[tuple[str, Array,
 )
 def static_stiffness(mesh: MeshTable) -> Any:
     """Draw secant and tangent stiffness of the mesh and the parts of the tooth pairs."""
-    pair, unit = mesh.gear_pair, display_unit("mesh_stiffness")
-    ends = (-_MARGIN, mesh.transverse_contact_ratio + _MARGIN)
+    pair, ends = mesh.gear_pair, (-_MARGIN, mesh.transverse_contact_ratio + _MARGIN)
 
-    def curve(age: Array, values: Array, name: str, color: str, dash: str) -> dict[str, Any]:
+    def over_angle(age: Array, values: Array, name: str, color: str, **style: Any) -> Trace:
         x = displayed("roll_angle", roll_angle_of(pair, age))
-        return line(x, displayed("mesh_stiffness", values), name, color, unit=unit, dash=dash)
+        return curve("mesh_stiffness", x, values, name, color, **style)
 
     traces = [
-        curve(*between(mesh.phase, values, ends), f"all pairs, {kind}", TOTAL, dash)
+        over_angle(*between(mesh.phase, values, ends), f"all pairs, {kind}", TOTAL, dash=dash)
         for kind, values, dash in (
             ("secant", mesh.mesh_stiffness, "solid"),
             ("tangent", mesh.mesh_stiffness_tangent, "dot"),
@@ -129,19 +125,17 @@ def static_stiffness(mesh: MeshTable) -> Any:
     ]
     named: set[str] = set()
     for name, age, stiffness in _pairs(mesh, ends):
+        style: Trace = {"dash": "dash", "showlegend": name not in named}
         color = PAIR_COLORS[0] if name == _PAIR else MUTED
-        trace = curve(age, stiffness, name, color, "dash")
-        traces.append({**trace, "showlegend": name not in named})
+        traces.append(over_angle(age, stiffness, name, color, **style))
         named.add(name)
     means = (mesh.mean_mesh_stiffness, mesh.mean_mesh_stiffness_tangent)
     secant, tangent = (rounded("mesh_stiffness", mean) for mean in means)
     x = displayed("roll_angle", roll_angle_of(pair, np.array(ends)))
-    return stack(
-        f"The mean stiffness is {secant} as a secant and {tangent} as a tangent",
-        roll_label(pair),
-        [from_zero(axis_label("mesh_stiffness"), traces, 1.5)],
-        {**event_lines(pair_letters(pair)), "xaxis": {"range": x.tolist()}},
-    )
+    title = f"The mean stiffness is {secant} as a secant and {tangent} as a tangent"
+    panel = from_zero(axis_label("mesh_stiffness"), traces, 1.5)
+    layout = {**event_lines(pair_letters(pair)), "xaxis": {"range": x.tolist()}}
+    return stack(title, roll_label(pair), [panel], layout)
 
 
 def life_with_corners(mesh: MeshTable) -> tuple[Array, Array]:
@@ -177,58 +171,41 @@ def load_sharing(mesh: MeshTable) -> Any:
     x = displayed("roll_angle", roll_angle_of(pair, age))
     newton = display_unit("normal_force")
     hover = f"%{{y:.4g}} (%{{customdata:.4g}} {newton})<extra>load share</extra>"
-    trace = {
-        **line(x, share, "load share", TOTAL),
-        "customdata": displayed("normal_force", share * mesh.total_normal_force),
-        "hovertemplate": hover,
-    }
+    force = displayed("normal_force", share * mesh.total_normal_force)
+    trace = line(x, share, "load share", TOTAL, customdata=force, hovertemplate=hover)
     layout = event_lines(pair_letters(pair))
     for kind, shades in corner_shades(pair, float(age[0]), float(age[-1])).items():
         layout[kind] = [*shades, *layout[kind]]
     most = float(np.max(share)) * mesh.total_normal_force
-    return stack(
+    title = (
         f"A tooth pair carries up to {rounded('normal_force', most)}, "
-        f"{100.0 * float(np.max(share)):.3g} % of the load",
-        roll_label(pair),
-        [Panel("Load share of a pair", [trace], {"range": [0.0, 1.05]}, 1.3)],
-        layout,
+        f"{100.0 * float(np.max(share)):.3g} % of the load"
     )
+    panel = Panel("Load share of a pair", [trace], {"range": [0.0, 1.05]}, 1.3)
+    return stack(title, roll_label(pair), [panel], layout)
 
 
 def _transmission_error_row(mesh: MeshTable, error: Array, mean: float) -> Row:
     """Row with the transmission error over the mesh cycles and its mean."""
-    unit = display_unit(_QUANTITY)
-    phase, displayed_error = cycles(mesh.phase, displayed(_QUANTITY, error))
-    level = np.full(2, displayed(_QUANTITY, mean))
     curves = [
-        line(phase, displayed_error, "under load", TOTAL, unit=unit),
-        line(np.array([0.0, CYCLES]), level, "mean", MUTED, unit=unit, dash="dash", width=1.2),
+        curve(_QUANTITY, *cycles(mesh.phase, error), "under load", TOTAL),
+        curve(
+            _QUANTITY, np.array([0.0, CYCLES]), [mean] * 2, "mean", MUTED, dash="dash", width=1.2
+        ),
     ]
-    return Row(
-        axis_label("mesh_phase", "Mesh cycles"),
-        Panel(axis_label(_QUANTITY, "Transmission error"), curves),
-        {"range": [0, CYCLES]},
-        mesh_events(mesh),
-    )
+    panel = Panel(axis_label(_QUANTITY, "Transmission error"), curves)
+    label = axis_label("mesh_phase", "Mesh cycles")
+    return Row(label, panel, {"range": [0, CYCLES]}, mesh_events(mesh))
 
 
 def _bars(mesh: MeshTable, error: Array) -> Row:
     """Row with the amplitudes of the mesh harmonics."""
-    unit = display_unit(_QUANTITY)
-    bars = {
-        "type": "bar",
-        "x": np.arange(1, _ORDERS + 1),
-        "y": displayed(_QUANTITY, mesh.grid._harmonics(error, _ORDERS)),
-        "name": "amplitude",
-        "marker": {"color": TOTAL},
-        "width": 0.35,
-        "hovertemplate": f"%{{y:.4g}} {unit}<extra>harmonic %{{x}}</extra>",
-    }
-    return Row(
-        "Mesh harmonic",
-        from_zero(axis_label(_QUANTITY, "Amplitude"), [bars], 0.7),
-        {"dtick": 1, "range": [0.4, _ORDERS + 0.6], "showgrid": False},
-    )
+    heights = displayed(_QUANTITY, mesh.grid._harmonics(error, _ORDERS))
+    hover = f"%{{y:.4g}} {display_unit(_QUANTITY)}<extra>harmonic %{{x}}</extra>"
+    amplitudes = bars(np.arange(1, _ORDERS + 1), heights, "amplitude", TOTAL, hover, width=0.35)
+    panel = from_zero(axis_label(_QUANTITY, "Amplitude"), [amplitudes], 0.7)
+    axis = {"dtick": 1, "range": [0.4, _ORDERS + 0.6], "showgrid": False}
+    return Row("Mesh harmonic", panel, axis)
 
 
 def _error_caption(contact: Any) -> str:
@@ -310,34 +287,23 @@ def force_law(mesh: MeshTable) -> Any:
     reach = last - first
     deflection = np.linspace(first - 0.08 * reach, first + _BEYOND * reach, _POINTS)
     newton, x = display_unit("normal_force"), displayed("deflection", deflection)
+    colors = [_COLORS[number % len(_COLORS)] for number in range(len(chosen))]
     traces = [
-        line(
-            x,
-            displayed("normal_force", law.force(phase, deflection)),
-            label,
-            _COLORS[number % len(_COLORS)],
-            unit=newton,
-            dash="solid" if number % 2 == 0 else "dash",
-        )
-        for number, (label, phase) in enumerate(chosen)
-    ]
-    level = np.full(2, displayed("normal_force", load))
-    traces.append(line(x[[0, -1]], level, "working load", MUTED, unit=newton, dash="dot", width=1))
-    micro = display_unit("deflection")
-    marks = {
-        "type": "scatter",
-        "mode": "markers",
-        "x": displayed("deflection", working),
-        "y": np.full(working.size, level[0]),
-        "marker": {"color": [_COLORS[k % len(_COLORS)] for k in range(len(chosen))], "size": 9},
-        "name": "deflection under it",
-        "showlegend": False,
-        "hovertemplate": f"%{{y:.4g}} {newton} at %{{x:.4g}} {micro}<extra>working load</extra>",
-    }
+        curve("normal_force", x, law.force(phase, deflection), label, color,
+              dash="solid" if number % 2 == 0 else "dash")
+        for number, ((label, phase), color) in enumerate(zip(chosen, colors, strict=True))
+    ]  # fmt: skip
+    level: Trace = {"dash": "dot", "width": 1}
+    traces.append(curve("normal_force", x[[0, -1]], [load] * 2, "working load", MUTED, **level))
+    hover = f"%{{y:.4g}} {newton} at %{{x:.4g}} {display_unit('deflection')}"
+    marks = points(
+        "normal_force", displayed("deflection", working), np.full(working.size, load),
+        "deflection under it", "", size=9, symbol="circle", showlegend=False,
+        hovertemplate=f"{hover}<extra>working load</extra>",
+    )  # fmt: skip
+    marks["marker"] = {"color": colors, "size": 9}
     low, high = (rounded("deflection", float(at(working))) for at in (np.min, np.max))
-    return stack(
-        f"The working load of {rounded('normal_force', load)} deflects the mesh by {low} to {high}",
-        axis_label("deflection", "Approach along the line of action"),
-        [from_zero(axis_label("normal_force"), [*traces, marks], 1.6)],
-        {"hovermode": "closest"},
-    )
+    title = f"The working load of {rounded('normal_force', load)} deflects the mesh by"
+    panel = from_zero(axis_label("normal_force"), [*traces, marks], 1.6)
+    label = axis_label("deflection", "Approach along the line of action")
+    return stack(f"{title} {low} to {high}", label, [panel], {"hovermode": "closest"})

@@ -2,13 +2,25 @@
 
 from __future__ import annotations
 
+from itertools import product
+from textwrap import wrap
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from tribodyn.drawing import drawing
 from tribodyn.plot.theme.panels import Panel, stack
-from tribodyn.plot.theme.style import INK, PAIR_COLORS, PINION, WHEEL, Trace, figure, line
+from tribodyn.plot.theme.style import (
+    INK,
+    PAIR_COLORS,
+    PINION,
+    WHEEL,
+    Trace,
+    bars,
+    figure,
+    heat,
+    line,
+)
 from tribodyn.study.pipeline.summary_labels import in_a_sentence
 from tribodyn.study.studies.friction_claims import DRIVING, HELD
 
@@ -45,32 +57,25 @@ def _curves(experiment: FrictionExperiment, name: str) -> list[Trace]:
     """One curve per setting over the mean friction coefficient of all laws."""
     absolute = name == _EFFECTS[-1][0]
     values = experiment[name] if absolute else 100.0 * experiment.change(name)
+    hover = f"%{{text}}<br>%{{x:.3f}}: %{{y:.4g}} {'N' if absolute else '%'}"
     traces = []
-    for row, driving in enumerate(DRIVING):
-        for column, torque in enumerate(HELD):
-            mu = experiment["mean_friction_coefficient"][row, column]
-            order = np.argsort(mu)
-            color = (PINION, WHEEL)[row]
-            curve = line(
+    for (row, driving), (column, torque) in product(enumerate(DRIVING), enumerate(HELD)):
+        mu = experiment["mean_friction_coefficient"][row, column]
+        order, color, name = np.argsort(mu), (PINION, WHEEL)[row], f"{driving}, {torque}"
+        traces.append(
+            line(
                 mu[order],
                 values[row, column][order],
-                f"{driving}, {torque}",
+                name,
                 color,
                 dash=_DASHES[column],
                 width=1.2,
+                mode="lines+markers",
+                text=[experiment.rubbing[k].name for k in order],
+                marker={"symbol": _SYMBOLS[column], "size": 7, "color": color},
+                hovertemplate=f"{hover}<extra>{name}</extra>",
             )
-            text = [experiment.rubbing[k].name for k in order]
-            hover = f"%{{text}}<br>%{{x:.3f}}: %{{y:.4g}} {'N' if absolute else '%'}"
-            marker = {"symbol": _SYMBOLS[column], "size": 7, "color": color}
-            traces.append(
-                {
-                    **curve,
-                    "mode": "lines+markers",
-                    "text": text,
-                    "marker": marker,
-                    "hovertemplate": f"{hover}<extra>{curve['name']}</extra>",
-                }
-            )
+        )
     return traces
 
 
@@ -130,23 +135,19 @@ def friction_claims(experiment: FrictionExperiment) -> Any:
     ]
     holds = np.array([each for _, each in judged]).reshape(len(judged), -1)
     settings = [f"{d}<br>{h.replace(' torque', '<br>torque')}" for d in DRIVING for h in HELD]
-    heat = {
-        "type": "heatmap", "x": settings, "z": holds.astype(float), "zmin": 0.0, "zmax": 1.0,
-        "y": [_wrapped(statement) for statement, _ in judged], "showscale": False, "xgap": 3,
-        "ygap": 3, "colorscale": _VERDICTS, "text": np.where(holds, "holds", "fails"),
-        "texttemplate": "%{text}", "textfont": {"color": INK},
-        "hovertemplate": "%{y}<br>%{x}: %{text}<extra></extra>",
-    }  # fmt: skip
+    statements = ["<br>".join(wrap(statement, 44)) for statement, _ in judged]
+    verdicts = heat(
+        settings, statements, holds.astype(float), _VERDICTS, "%{y}<br>%{x}: %{text}", zmin=0.0,
+        zmax=1.0, showscale=False, xgap=3, ygap=3, text=np.where(holds, "holds", "fails"),
+        texttemplate="%{text}", textfont={"color": INK},
+    )  # fmt: skip
     everywhere = int(holds.all(axis=1).sum())
     somewhere = int(holds.any(axis=1).sum()) - everywhere
     title = f"Claims that always hold: {everywhere} of {len(judged)}; in some settings: {somewhere}"
     axes = {"yaxis": {"autorange": "reversed"}, "xaxis": {"side": "top"}}
     margin = {"t": 150, "l": 70, "r": 24, "b": 30}
-    return figure(
-        title,
-        [heat],
-        {"height": 190 + 56 * len(judged), "margin": margin, **axes, "hovermode": "closest"},
-    )
+    layout = {"height": 190 + 56 * len(judged), "margin": margin, "hovermode": "closest"}
+    return figure(title, [verdicts], {**layout, **axes})
 
 
 @drawing(
@@ -166,19 +167,13 @@ def friction_harmonics(experiment: FrictionExperiment) -> Any:
     variants = experiment.nearest()
     colors, panels = (PINION, WHEEL, *PAIR_COLORS), []
     for row, driving in enumerate(DRIVING):
-        bars = [
-            {
-                "type": "bar",
-                "x": list(range(1, _HARMONICS + 1)),
-                "y": change[:, row, column, k],
-                "name": experiment.rubbing[k].name,
-                "marker": {"color": colors[n % len(colors)]},
-                "showlegend": row == 0,
-                "hovertemplate": "%{y:.3g} %",
-            }
+        groups = [
+            bars(list(range(1, _HARMONICS + 1)), change[:, row, column, k],
+                 experiment.rubbing[k].name, colors[n % len(colors)], "%{y:.3g} %",
+                 showlegend=row == 0)
             for n, k in enumerate(variants)
-        ]
-        panels.append(Panel(f"Change, the<br>{driving} [%]", bars))
+        ]  # fmt: skip
+        panels.append(Panel(f"Change, the<br>{driving} [%]", groups))
     part = change[:, :, column, variants]
     order, driver, place = np.unravel_index(int(np.nanargmax(np.abs(part))), part.shape)
     title = (
@@ -186,9 +181,3 @@ def friction_harmonics(experiment: FrictionExperiment) -> Any:
         f"({DRIVING[driver]}, {experiment.rubbing[variants[int(place)]].name})"
     )
     return stack(title, "Mesh harmonic", panels, {"hovermode": "closest", "barmode": "group"})
-
-
-def _wrapped(statement: str) -> str:
-    from textwrap import wrap
-
-    return "<br>".join(wrap(statement, 44))

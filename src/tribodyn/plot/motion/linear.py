@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from tribodyn.drawing import drawing
+from tribodyn.plot.theme.curves import curve, curves, points
 from tribodyn.plot.theme.labels import axis_label, display_unit, displayed, rounded, significant
 from tribodyn.plot.theme.panels import Panel, event_lines, stack
 from tribodyn.plot.theme.style import (
@@ -16,6 +17,7 @@ from tribodyn.plot.theme.style import (
     TOTAL,
     WHEEL,
     Trace,
+    bars,
     line,
     translucent,
 )
@@ -35,20 +37,16 @@ _THIN, _THICK = 1.0, 4.0
 def _bars(labels: list[str], shares: dict[str, Any]) -> list[Trace]:
     visible = {name: part for name, part in shares.items() if np.max(part, initial=0.0) > _LEAST}
     return [
-        {
-            "type": "bar",
-            "x": labels,
-            "y": 100.0 * np.asarray(share),
-            "name": name,
-            "marker": {
-                "color": _COLORS[number % len(_COLORS)],
-                # more bars than colours: the next ones are hatched
-                "pattern": {"shape": _HATCHES[number // len(_COLORS) % len(_HATCHES)]},
-            },
-            "hovertemplate": f"%{{y:.1f}} % at %{{x}}<extra>{name}</extra>",
-        }
+        bars(labels, 100.0 * np.asarray(share), name, _fill(number),
+             f"%{{y:.1f}} % at %{{x}}<extra>{name}</extra>")
         for number, (name, share) in enumerate(visible.items())
-    ]
+    ]  # fmt: skip
+
+
+def _fill(number: int) -> dict[str, Any]:
+    """Colour of bars; where there are more bars than colours, the next ones are hatched."""
+    pattern = {"shape": _HATCHES[number // len(_COLORS) % len(_HATCHES)]}
+    return {"color": _COLORS[number % len(_COLORS)], "pattern": pattern}
 
 
 def _strained(modes: NaturalModes) -> dict[str, Any]:
@@ -88,16 +86,13 @@ def mode_shapes(modes: NaturalModes) -> Any:
         )
     else:
         title = f"{len(labels)} natural frequencies"
-    axis = {"range": [0.0, 100.0]}
-    return stack(
-        title,
-        f"Mode: natural frequency [{unit}]",
-        [
-            Panel("Kinetic energy [%]", _bars(labels, moving), axis),
-            Panel("Strain energy [%]", _bars(labels, strained), axis),
-        ],
-        {"barmode": "stack", "xaxis": {"type": "category"}, "hovermode": "closest"},
-    )
+    kinds = (("Kinetic", moving), ("Strain", strained))
+    panels = [
+        Panel(f"{kind} energy [%]", _bars(labels, shares), {"range": [0.0, 100.0]})
+        for kind, shares in kinds
+    ]
+    layout = {"barmode": "stack", "xaxis": {"type": "category"}, "hovermode": "closest"}
+    return stack(title, f"Mode: natural frequency [{unit}]", panels, layout)
 
 
 def _title(diagram: Campbell) -> str:
@@ -112,16 +107,17 @@ def _title(diagram: Campbell) -> str:
 
 def _modes(diagram: Campbell, speed: Any, top: float) -> list[Trace]:
     """Lines of the modes; those above the plotted range have no legend entry."""
-    unit, traces = display_unit("frequency"), []
+    traces = []
     for column in range(diagram.frequency.shape[1]):
         share = float(np.mean(diagram.contact_share[:, column]))
         name = f"mode {diagram.first_mode + column}"
         color = PAIR_COLORS[column % len(PAIR_COLORS)]
-        values = displayed("frequency", diagram.frequency[:, column])
+        values = diagram.frequency[:, column]
         width = _THIN + (_THICK - _THIN) * share
         color = color if share > _LEAST else translucent(MUTED, 0.45)  # the mesh cannot excite it
-        trace = line(speed, values, name, color, unit=unit, width=width)
-        traces.append({**trace, "showlegend": bool(np.min(values) <= top and share > _LEAST)})
+        in_key = bool(np.min(displayed("frequency", values)) <= top and share > _LEAST)
+        style: Trace = {"width": width, "showlegend": in_key}
+        traces.append(curve("frequency", speed, values, name, color, **style))
     return traces
 
 
@@ -135,8 +131,13 @@ def _rising(diagram: Campbell, speed: Any, top: float) -> list[Trace]:
         if visible.size:
             texts[visible[-1]] = str(order)
         name, unit = f"harmonic {order}", display_unit("frequency")
-        rising = line(speed, values, name, MUTED, unit=unit, dash="dash", width=1.0)
-        traces.append({**rising, "mode": "lines+text", "text": texts, "textposition": "top left"})
+        style: Trace = {
+            "dash": "dash",
+            "width": 1.0,
+            "mode": "lines+text",
+            "textposition": "top left",
+        }
+        traces.append(line(speed, values, name, MUTED, unit=unit, text=texts, **style))
     return traces
 
 
@@ -144,24 +145,15 @@ def _met(diagram: Campbell) -> list[Trace]:
     if not diagram.resonances:
         return []
     met = diagram.resonances
-    facts = [[resonance.order, 100.0 * resonance.contact_share] for resonance in met]
-    return [
-        {
-            "type": "scatter",
-            "mode": "markers",
-            "x": displayed("speed", np.array([resonance.speed for resonance in met])),
-            "y": displayed("frequency", np.array([resonance.frequency for resonance in met])),
-            "name": "resonance",
-            "marker": {
-                "color": WHEEL,
-                "size": 6.0 + 10.0 * np.array([resonance.contact_share for resonance in met]),
-            },
-            "customdata": facts,
-            "hovertemplate": "harmonic %{customdata[0]}, %{y:.5g} "
-            f"{display_unit('frequency')}, mesh %{{customdata[1]:.0f}} %"
-            "<extra>resonance</extra>",
-        }
-    ]
+    hover = f"harmonic %{{customdata[0]}}, %{{y:.5g}} {display_unit('frequency')}, mesh "
+    dots = points(
+        "frequency", displayed("speed", np.array([each.speed for each in met])),
+        np.array([each.frequency for each in met]), "resonance", WHEEL, size=6.0, symbol="circle",
+        customdata=[[each.order, 100.0 * each.contact_share] for each in met],
+        hovertemplate=f"{hover}%{{customdata[1]:.0f}} %<extra>resonance</extra>",
+    )  # fmt: skip
+    size = 6.0 + 10.0 * np.array([each.contact_share for each in met])
+    return [{**dots, "marker": {"color": WHEEL, "size": size}}]
 
 
 @drawing(
@@ -184,12 +176,9 @@ def campbell(diagram: Campbell) -> Any:
     traces = [*_modes(diagram, speed, top), *_rising(diagram, speed, top), *_met(diagram)]
     now = diagram.operating_speed
     marks = [] if now is None else [("operation", float(displayed("speed", now)))]
-    return stack(
-        _title(diagram),
-        axis_label("speed"),
-        [Panel(axis_label("frequency"), traces, axis, height=1.8)],
-        {"hovermode": "closest", **event_lines(marks)},
-    )
+    panel = Panel(axis_label("frequency"), traces, axis, height=1.8)
+    layout = {"hovermode": "closest", **event_lines(marks)}
+    return stack(_title(diagram), axis_label("speed"), [panel], layout)
 
 
 @drawing(
@@ -208,32 +197,21 @@ def forced_response(response: ForcedResponse) -> Any:
     contact = response.contact[0]
     top = int(np.argmax(force))
     logarithmic = {"type": "log", "exponentformat": "power"}
-    motions = [
-        line(
-            x,
-            displayed(name, np.abs(values[:, contact])),
-            label,
-            color,
-            unit=display_unit(name),
-            dash=dash,
-        )
-        for name, values, label, color, dash in (
-            ("transmission_error", response.transmission_error, "approach", TOTAL, "solid"),
-            ("deflection", response.deflection, "compression", PAIR_COLORS[0], "dash"),
-        )
-    ]
-    forces = [
-        line(
-            x, displayed("mesh_force", force), "mesh force", TOTAL, unit=display_unit("mesh_force")
-        )
-    ]
-    error = rounded("deflection", float(response.error))
-    return stack(
-        f"An error of {error} causes up to {rounded('mesh_force', float(force[top]))} at "
-        f"{rounded('frequency', float(response.frequency[top]))}",
-        axis_label("frequency"),
-        [
-            Panel(axis_label("mesh_force", "Mesh force"), forces, logarithmic),
-            Panel(axis_label("transmission_error", "Amplitude"), motions, logarithmic),
-        ],
+    motions = (
+        ("approach", "transmission_error", response.transmission_error, TOTAL, "solid"),
+        ("compression", "deflection", response.deflection, PAIR_COLORS[0], "dash"),
     )
+    amplitudes = [
+        curve(quantity, x, np.abs(values[:, contact]), label, color, dash=dash)
+        for label, quantity, values, color, dash in motions
+    ]
+    panels = [
+        curves("mesh_force", "Mesh force", x, [("mesh force", force, TOTAL)], logarithmic),
+        Panel(axis_label("transmission_error", "Amplitude"), amplitudes, logarithmic),
+    ]
+    title = (
+        f"An error of {rounded('deflection', float(response.error))} causes up to "
+        f"{rounded('mesh_force', float(force[top]))} at "
+        f"{rounded('frequency', float(response.frequency[top]))}"
+    )
+    return stack(title, axis_label("frequency"), panels)

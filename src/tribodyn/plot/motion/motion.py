@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from tribodyn.drawing import Sketch, drawing
 from tribodyn.nomenclature import GEARS
 from tribodyn.plot.mesh.cycle import CYCLES, cycles, mesh_events
+from tribodyn.plot.theme.curves import extremes
 from tribodyn.plot.theme.labels import axis_label, display_unit, displayed, significant
 from tribodyn.plot.theme.panels import Panel, event_lines, stack
 from tribodyn.plot.theme.style import PAIR_COLORS, PINION, TOTAL, WHEEL, Trace, button_row, line
@@ -43,18 +44,6 @@ def _ends(values: Array) -> NDArray[np.intp]:
     right = left + 2
     jumps = np.abs(values[right[:-1]] - values[left[1:]]) > _JUMP * np.ptp(values)
     return np.sort(np.concatenate((left, right[:-1][jumps], right[-1:])))
-
-
-def _extremes(values: Array) -> NDArray[np.intp]:
-    """Indices of the minimum and maximum of every group, so that thinning preserves peaks."""
-    count = len(values)
-    if count <= _MAX_SAMPLES:
-        return np.arange(count)
-    width = -(-2 * count // _MAX_SAMPLES)
-    folded = np.append(values, np.full(-count % width, values[-1])).reshape(-1, width)
-    picked = np.stack((folded.argmin(axis=1), folded.argmax(axis=1)), axis=1)
-    starts = np.arange(len(folded))[:, None] * width
-    return np.unique(np.minimum(picked + starts, count - 1))
 
 
 class Motion:
@@ -133,8 +122,8 @@ class Motion:
         displayed_values, fine = displayed(name, values), self._response.fine
         if not self.periodic:
             last = self._last()
-            early = _extremes(displayed_values[:last])
-            late = last + _extremes(displayed_values[last:])
+            early = extremes(displayed_values[:last], _MAX_SAMPLES)
+            late = last + extremes(displayed_values[last:], _MAX_SAMPLES)
             samples = np.concatenate((early, late))
             return displayed("time", fine.time)[samples], displayed_values[samples]
         samples = _ends(displayed_values)
@@ -199,18 +188,11 @@ def result_comparison(comparison: ResultComparison) -> Any:
     names = {"dynamic_transmission_error": "transmission_error", "mesh_force": "mesh_force"}
     for quantity, name in names.items():
         traces = [
-            motion.line(
-                quantity,
-                getattr(motion, name),
-                title,
-                _COLORS[i % len(_COLORS)],
-                width=1.8,
-                dash=_DASHES[i // len(_COLORS)],
-            )
+            motion.line(quantity, getattr(motion, name), title, _COLORS[i % len(_COLORS)],
+                        width=1.8, dash=_DASHES[i // len(_COLORS)], showlegend=not panels)
             for i, (motion, title) in enumerate(zip(motions, comparison.names, strict=True))
-        ]
-        traces_with_legend = [{**trace, "showlegend": not panels} for trace in traces]
-        panels.append(Panel(axis_label(quantity), traces_with_legend))
+        ]  # fmt: skip
+        panels.append(Panel(axis_label(quantity), traces))
     changed = ", ".join(comparison.values) or "nothing"
     layout = motions[0].layout()
     if any(each.case.gears != comparison.results[0].case.gears for each in comparison.results):

@@ -7,10 +7,11 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from tribodyn.drawing import drawing
+from tribodyn.plot.theme.curves import extremes
 from tribodyn.plot.theme.labels import readable, scaled, significant, unit_of
 from tribodyn.plot.theme.panels import Panel, stack
 from tribodyn.plot.theme.style import MUTED, PAIR_COLORS, PINION, TOTAL, WHEEL, Trace, line
-from tribodyn.types import Array, Index
+from tribodyn.types import Array
 
 if TYPE_CHECKING:
     from tribodyn.dynamics import AdaptiveSolution, Response
@@ -18,17 +19,6 @@ if TYPE_CHECKING:
 _COLORS = (PINION, WHEEL, *PAIR_COLORS, TOTAL, MUTED)
 #: Most curves of a panel, and most points of a curve.
 _CURVES, _POINTS = 8, 4000
-
-
-def _extremes(values: Array) -> Index:
-    """Indices of the minimum and maximum of every group of samples of a curve."""
-    if values.size <= _POINTS:
-        return np.arange(values.size)
-    length = -(-values.size // (_POINTS // 2))
-    starts = np.arange(0, values.size, length)
-    parts = [values[a : a + length] for a in starts]
-    ends = [(a + np.argmin(p), a + np.argmax(p)) for a, p in zip(starts, parts, strict=True)]
-    return np.unique(np.array(ends).ravel())
 
 
 def _panel(quantity: str, unit: str, time: Array, columns: dict[str, Array]) -> list[Panel]:
@@ -39,18 +29,9 @@ def _panel(quantity: str, unit: str, time: Array, columns: dict[str, Array]) -> 
     factor, display_unit = scaled(np.stack(list(chosen.values())), unit)
     curves: list[Trace] = []
     for color, (name, values) in zip(_COLORS, chosen.items(), strict=False):
-        samples = _extremes(values)
+        at, style = extremes(values, _POINTS), Trace(unit=readable(display_unit), width=1.4)
         label = name.replace("_", " ")
-        curves.append(
-            line(
-                time[samples],
-                factor * values[samples],
-                label,
-                color,
-                unit=readable(display_unit),
-                width=1.4,
-            )
-        )
+        curves.append(line(time[at], factor * values[at], label, color, **style))
     left_out = len(columns) - len(chosen)
     more = f"<br>(and {left_out} more)" if left_out else ""
     return [Panel(f"{quantity} [{readable(display_unit)}]{more}", curves)]
@@ -87,13 +68,9 @@ def response(motion: Response) -> Any:
         *_panel("Contact force", "N", time, by_contact(force)),
         *_panel("Compression", "m", time, by_contact(motion.deflection)),
         *_panel("Acceleration", "m/s^2", time, _coordinates(names, motion.acceleration, "m")),
-        *_panel(
-            "Angular acceleration",
-            "rad/s^2",
-            time,
-            _coordinates(names, motion.acceleration, "rad"),
-        ),
-    ]
+        *_panel("Angular acceleration", "rad/s^2", time,
+                _coordinates(names, motion.acceleration, "rad")),
+    ]  # fmt: skip
     kind = "Steady motion" if motion.floquet_multipliers.size else "Transient"
     cycles = "1 mesh cycle" if motion.periods == 1 else f"{motion.periods} mesh cycles"
     title = f"{kind} over {cycles} at {significant(motion.mesh_frequency)} Hz"
@@ -122,9 +99,8 @@ def adaptive_solution(solution: AdaptiveSolution) -> Any:
         *_panel("Rotation", "rad", time, _coordinates(names, solution.position, "rad")),
         *_panel("Step", "s", time, {"step": steps}),
     ]
-    return stack(
+    title = (
         f"{solution.steps} steps at a relative tolerance of {solution.rtol:.1g}, "
-        f"{solution.rejections} repeated, {solution.crossings} changes of side",
-        label,
-        panels,
+        f"{solution.rejections} repeated, {solution.crossings} changes of side"
     )
+    return stack(title, label, panels)

@@ -15,7 +15,7 @@ from tribodyn.plot.motion.motion import Motion, no_translation
 from tribodyn.plot.motion.time_histories import GEARS, directions, two_line_label
 from tribodyn.plot.theme.labels import axis_label, display_unit, displayed, rounded, significant
 from tribodyn.plot.theme.panels import Panel, event_lines, stack
-from tribodyn.plot.theme.style import MUTED, TOP, TOTAL, Trace, button_row
+from tribodyn.plot.theme.style import MUTED, TOP, TOTAL, Trace, bars, button_row
 from tribodyn.types import Array
 
 if TYPE_CHECKING:
@@ -58,17 +58,9 @@ def _panel(
     for name, color, signal in signals:
         spectrum = _spectrum(result, signal)
         hover = f"%{{y:.4g}} {unit} at %{{customdata:.5g}} {hertz}<extra>{name}</extra>"
-        traces.append(
-            {
-                "type": "bar",
-                "x": spectrum.order,
-                "y": displayed(quantity, spectrum.amplitude),
-                "name": name,
-                "marker": {"color": color},
-                "customdata": displayed("frequency", spectrum.frequency),
-                "hovertemplate": hover,
-            }
-        )
+        heights = displayed(quantity, spectrum.amplitude)
+        at = displayed("frequency", spectrum.frequency)
+        traces.append(bars(spectrum.order, heights, name, color, hover, customdata=at))
     return Panel(axis_label(quantity, label), traces)
 
 
@@ -90,10 +82,10 @@ def _gear_panels(result: Result, quantity: str) -> list[Panel]:
 
 def _strongest(panels: Iterable[Panel]) -> str:
     """Name the mesh harmonic with the largest amplitude in the first curves of some panels."""
-    bars = max((panel.traces[0] for panel in panels), key=lambda curve: float(np.max(curve["y"])))
-    top = int(np.argmax(bars["y"]))
-    frequency = significant(float(bars["customdata"][top]))
-    return f"{bars['x'][top]:g} ({frequency} {display_unit('frequency')})"
+    tallest = max((panel.traces[0] for panel in panels), key=lambda bar: float(np.max(bar["y"])))
+    top = int(np.argmax(tallest["y"]))
+    frequency = significant(float(tallest["customdata"][top]))
+    return f"{tallest['x'][top]:g} ({frequency} {display_unit('frequency')})"
 
 
 def _natural(result: Result, last: float) -> tuple[dict[str, Any], list[Trace]]:
@@ -107,8 +99,8 @@ def _natural(result: Result, last: float) -> tuple[dict[str, Any], list[Trace]]:
             places.append((str(number), place))
             name = f"{number}: {rounded('frequency', float(hertz))}"
             style = {"color": MUTED, "width": 1, "dash": "dot"}
-            legend.append({"type": "scatter", "mode": "lines", "x": [None], "y": [None],
-                           "name": name, "line": style})  # fmt: skip
+            entry = {"type": "scatter", "mode": "lines", "x": [None], "y": [None]}
+            legend.append({**entry, "name": name, "line": style})
     lines, groups = event_lines(places), list[list[tuple[str, float]]]()
     for mark in places:
         if groups and mark[1] - groups[-1][0][1] < _APART * last:
@@ -180,14 +172,10 @@ def _decades(panel: Panel) -> list[float]:
 )
 def spectrum(result: Result) -> Any:
     """Draw the mesh harmonics of the transmission error and of the accelerations."""
-    error = Motion(result).transmission_error
+    quantity, error = "dynamic_transmission_error", Motion(result).transmission_error
+    rows = [("transmission error", TOTAL, error)]
     panels = [
-        _panel(
-            result,
-            "dynamic_transmission_error",
-            "Transmission error",
-            [("transmission error", TOTAL, error)],
-        ),
+        _panel(result, quantity, "Transmission error", rows),
         *_gear_panels(result, "acceleration"),
     ]
     title = f"Mesh harmonic {_strongest(panels[:1])} is the strongest in the transmission error"

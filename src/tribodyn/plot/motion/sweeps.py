@@ -8,9 +8,26 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from tribodyn.drawing import drawing
-from tribodyn.plot.theme.labels import axis_label, displayed, engineering, readable, rounded
+from tribodyn.plot.theme.labels import (
+    axis_label,
+    displayed,
+    engineering,
+    label_with,
+    readable,
+    rounded,
+)
 from tribodyn.plot.theme.panels import ROUNDING, Panel, stack
-from tribodyn.plot.theme.style import MUTED, PAIR_COLORS, PINION, WHEEL, Trace, figure, line, marked
+from tribodyn.plot.theme.style import (
+    MUTED,
+    PAIR_COLORS,
+    PINION,
+    WHEEL,
+    Trace,
+    figure,
+    heat,
+    line,
+    marked,
+)
 from tribodyn.study.pipeline.summary_figures import figure_of
 from tribodyn.study.pipeline.summary_labels import in_a_sentence, in_words
 from tribodyn.units import convert
@@ -43,8 +60,8 @@ def _speed_curves(sweep: SpeedSweep, values: Any, unit: str) -> list[Trace]:
         color, dash = _WAYS[direction]
         # The broader curve is drawn first, so that both are visible where they agree.
         width = 3.0 if direction == "up" else 1.6
-        label = _WORDS[direction]
-        traces.append(line(speed, values[number], label, color, unit=unit, dash=dash, width=width))
+        style: Trace = {"unit": unit, "dash": dash, "width": width}
+        traces.append(line(speed, values[number], _WORDS[direction], color, **style))
     return traces
 
 
@@ -62,10 +79,10 @@ def _jumps(sweep: SpeedSweep, values: Any, unit: str) -> list[Trace]:
         row = sweep.directions.index(jump.direction)
         at = [int(np.argmin(np.abs(sweep.mesh_frequency - f))) for f in (jump.before, jump.after)]
         x = _places(sweep)[at]
-        curve = line(x, values[row][at], "jump", MUTED, unit=unit, dash="dot", width=1.2)
         marker = {"symbol": "arrow", "angleref": "previous", "size": [0, 11], "color": MUTED}
-        mode = {"mode": "lines+markers", "marker": marker, "showlegend": number == 0}
-        traces.append({**curve, **mode, "legendgroup": "jump"})
+        style: Trace = {"unit": unit, "dash": "dot", "width": 1.2, "marker": marker}
+        style |= {"mode": "lines+markers", "showlegend": number == 0, "legendgroup": "jump"}
+        traces.append(line(x, values[row][at], "jump", MUTED, **style))
     return traces
 
 
@@ -119,18 +136,14 @@ def speed_sweep(sweep: SpeedSweep, *, signal: str | None = None) -> Any:
         *_dots(sweep, rms, list(~sweep.stable), "not stable", PAIR_COLORS[3], "x"),
         *_dots(sweep, rms, several, "several mesh cycles", PAIR_COLORS[0], "diamond-open"),
     ]
+    levels, ranges = (
+        [*_speed_curves(sweep, values, display_unit), *_jumps(sweep, values, display_unit)]
+        for values in (rms, span)
+    )
+    label = f"Alternating rms of<br>{signal_label} [{display_unit}]"
     panels = [
-        Panel(
-            f"Alternating rms of<br>{signal_label} [{display_unit}]",
-            [*_speed_curves(sweep, rms, display_unit), *_jumps(sweep, rms, display_unit), *marks],
-            top,
-            1.3,
-        ),
-        Panel(
-            f"Range [{display_unit}]",
-            [*_speed_curves(sweep, span, display_unit), *_jumps(sweep, span, display_unit)],
-            top,
-        ),
+        Panel(label, [*levels, *marks], top, 1.3),
+        Panel(f"Range [{display_unit}]", ranges, top),
     ]
     loss = 100.0 * sweep.contact_loss.max(axis=-1, initial=0.0)
     if np.any(loss > 0.0):
@@ -146,8 +159,7 @@ def _key_label(name: str) -> str:
 
 def axis_text(axis: Axis) -> str:
     """Label of an axis with its unit."""
-    unit = readable(axis.display_unit)
-    return f"{_key_label(axis.name)} [{unit}]" if unit else _key_label(axis.name)
+    return label_with(_key_label(axis.name), axis.display_unit)
 
 
 def value_text(axis: Axis, value: Any) -> str:
@@ -184,21 +196,14 @@ def _case_title(study: Sweep, name: str, values: Any, unit: str) -> str:
 
 def _marked(x: Any, y: Any, failed: Any, name: str, color: str, unit: str) -> list[Trace]:
     """A curve with a cross at its minimum for every failed run."""
-    curve = {**line(x, y, name, color, unit=unit), "mode": "lines+markers", "marker": {"size": 5}}
+    curve = line(x, y, name, color, unit=unit, mode="lines+markers", marker={"size": 5})
     lost = np.array([bool(text) for text in failed])
     if not lost.any():
         return [curve]
     foot = float(np.nanmin(y)) if np.any(np.isfinite(y)) else 0.0
-    cross = {
-        "type": "scatter",
-        "mode": "markers",
-        "x": np.asarray(x)[lost],
-        "y": np.full(int(lost.sum()), foot),
-        "name": "failed",
-        "text": list(failed[lost]),
-        "marker": {"symbol": "x", "size": 8, "color": MUTED},
-        "hovertemplate": "%{text}<extra>failed</extra>",
-    }
+    feet, hover = np.full(int(lost.sum()), foot), "%{text}<extra>failed</extra>"
+    cross = marked(np.asarray(x)[lost], feet, "failed", MUTED, size=8, symbol="x",
+                   text=list(failed[lost]), hovertemplate=hover)  # fmt: skip
     return [curve, cross]
 
 
@@ -217,27 +222,13 @@ def _case_curves(study: Sweep, values: Any, unit: str) -> list[Trace]:
 
 def _map(study: Sweep, values: Any, label: str, unit: str, title: str) -> Any:
     first, second = study.axes
-    heat = {
-        "type": "heatmap",
-        "x": first.display_values(),
-        "y": second.display_values(),
-        "z": values.T,
-        "colorscale": "Viridis",
-        "colorbar": {"title": {"text": label, "side": "right"}},
-        "text": study.failed.T,
-        "hoverongaps": True,
-        "hovertemplate": f"%{{x}}, %{{y}}<br>%{{z:.5g}} {unit} %{{text}}<extra></extra>",
-    }
-    return figure(
-        title,
-        [heat],
-        {
-            "height": 460,
-            "hovermode": "closest",
-            "xaxis": {"title": {"text": axis_text(first)}},
-            "yaxis": {"title": {"text": axis_text(second)}},
-        },
-    )
+    cells = heat(
+        first.display_values(), second.display_values(), values.T, "Viridis",
+        f"%{{x}}, %{{y}}<br>%{{z:.5g}} {unit} %{{text}}", text=study.failed.T, hoverongaps=True,
+        colorbar={"title": {"text": label, "side": "right"}},
+    )  # fmt: skip
+    axes = {f"{k}axis": {"title": {"text": axis_text(a)}} for k, a in (("x", first), ("y", second))}
+    return figure(title, [cells], {"height": 460, "hovermode": "closest", **axes})
 
 
 @drawing(
@@ -267,7 +258,7 @@ def sweep(study: Sweep, figure: str = "rms_mesh_force") -> Any:
     values, unit = _values(study, figure)
     title = _case_title(study, figure, values, unit)
     curves = int(np.prod(values.shape[1:]))
-    label = f"{in_words(figure)} [{unit}]" if unit else in_words(figure)
+    label = label_with(in_words(figure), unit)
     if curves > _CURVES and values.ndim == 2 and all(axis.numeric for axis in study.axes):
         return _map(study, values, label, unit, title)
     panel = Panel(label, _case_curves(study, values, unit), height=1.6)

@@ -8,9 +8,10 @@ import numpy as np
 
 from tribodyn.drawing import drawing
 from tribodyn.plot.signals.lines import strongest_lines
+from tribodyn.plot.theme.curves import curves
 from tribodyn.plot.theme.labels import axis_label, display_unit, displayed, rounded
 from tribodyn.plot.theme.panels import Panel, Row, stack, stack_rows
-from tribodyn.plot.theme.style import PINION, TOTAL, WHEEL, line, translucent
+from tribodyn.plot.theme.style import PINION, TOTAL, WHEEL, line, stems, translucent
 
 if TYPE_CHECKING:
     from tribodyn.faults import TurningMesh
@@ -64,8 +65,6 @@ def turning_motion(motion: TurningMotion) -> Any:
     )
     top = float(size.max())
     floor = top * 10.0**-_DECADES
-    stems = np.stack([place, place, np.full(place.size, np.nan)], axis=1).ravel()
-    heights = np.stack([np.full(place.size, floor), size, np.full(place.size, np.nan)], axis=1)
     axis = {
         "type": "log",
         "exponentformat": "power",
@@ -76,7 +75,7 @@ def turning_motion(motion: TurningMotion) -> Any:
     error_label = axis_label("static_transmission_error", "At rest")
     at_rest = line(rest_turns[::rest_step], static[::rest_step], "at rest", PINION, unit=error_unit)
     force_curve = line(turns[::step], force[::step], "mesh force", TOTAL, unit=unit, width=1.2)
-    orders = line(stems, heights.ravel(), "orders", WHEEL, unit=error_unit, width=1.2)
+    orders = line(*stems(place, size, floor), "orders", WHEEL, unit=error_unit, width=1.2)
     spectrum = Panel(axis_label("static_transmission_error", "In motion"), [orders], axis)
     rows = [
         Row(x_label, Panel(error_label, [at_rest])),
@@ -84,10 +83,7 @@ def turning_motion(motion: TurningMotion) -> Any:
         Row("Order of the pinion", spectrum, marks=mesh_orders),
     ]
     swing = rounded("mesh_force", float(np.ptp(motion.mesh_force)))
-    return stack_rows(
-        f"The mesh force varies by {swing} over {motion.cycles} mesh cycles",
-        rows,
-    )
+    return stack_rows(f"The mesh force varies by {swing} over {motion.cycles} mesh cycles", rows)
 
 
 @drawing(
@@ -103,27 +99,13 @@ def turning_motion(motion: TurningMotion) -> Any:
 )
 def turning_mesh(mesh: TurningMesh) -> Any:
     """Draw transmission error and stiffness over the mesh cycles, and the load along the face."""
-    curves = (
+    parts = (
         ("static_transmission_error", mesh.transmission_error, "Error at rest", PINION),
         ("mesh_stiffness_tangent", mesh.mesh_stiffness_tangent, "Stiffness", WHEEL),
     )
     rows = [
-        Row(
-            "Mesh cycles",
-            Panel(
-                axis_label(quantity, name),
-                [
-                    line(
-                        mesh.phase,
-                        displayed(quantity, values),
-                        name.lower(),
-                        color,
-                        unit=display_unit(quantity),
-                    )
-                ],
-            ),
-        )
-        for quantity, values, name, color in curves
+        Row("Mesh cycles", curves(quantity, name, mesh.phase, [(name.lower(), values, color)]))
+        for quantity, values, name, color in parts
     ]
     if mesh.face_position.size > 1:
         rows.append(_load_along_face(mesh))
@@ -159,17 +141,12 @@ def wear_depth(wear: Wear) -> Any:
         ("Pinion", wear.depth_pinion, PINION),
         ("Wheel", wear.depth_wheel, WHEEL),
     ):
-        curves = [
-            line(
-                wear.place,
-                displayed("wear_depth", depth[step]),
-                f"{wear.turns[step]:.3g} turns",
-                translucent(color, 0.25 + 0.75 * step / (len(depth) - 1)),
-                unit=display_unit("wear_depth"),
-            )
+        steps = [
+            (f"{wear.turns[step]:.3g} turns", depth[step],
+             translucent(color, 0.25 + 0.75 * step / (len(depth) - 1)))
             for step in range(1, len(depth))
-        ]
-        panels.append(Panel(axis_label("wear_depth", gear), curves))
+        ]  # fmt: skip
+        panels.append(curves("wear_depth", gear, wear.place, steps))
     deepest = rounded("wear_depth", float(max(wear.depth_pinion.max(), wear.depth_wheel.max())))
     title = f"The flanks lose up to {deepest} in {wear.turns[-1]:.3g} turns of the pinion"
     return stack(title, "Place on the used flank", panels)

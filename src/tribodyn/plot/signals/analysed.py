@@ -10,7 +10,7 @@ from tribodyn.drawing import drawing
 from tribodyn.plot.signals.lines import spectrum_panel, strongest_lines
 from tribodyn.plot.signals.maps import amplitude_label, with_unit
 from tribodyn.plot.signals.recorded import outline
-from tribodyn.plot.theme.labels import axis_label, displayed, readable, significant
+from tribodyn.plot.theme.labels import axis_label, displayed, label_with, readable, significant
 from tribodyn.plot.theme.panels import Panel, Row, from_zero, stack, stack_rows
 from tribodyn.plot.theme.style import MUTED, PINION, TOTAL, line
 from tribodyn.types import Array
@@ -31,7 +31,7 @@ def _signal_panel(analysis: SignalAnalysis) -> Panel:
         line(*outline(analysis.time, analysis.signal), "signal", TOTAL, unit=unit, width=1.0),
         line(*outline(analysis.time, analysis.envelope), "envelope", PINION, unit=unit, width=1.0),
     ]
-    return Panel(f"{analysis.channel} [{unit}]" if unit else analysis.channel, curves, height=1.2)
+    return Panel(label_with(analysis.channel, unit), curves, height=1.2)
 
 
 def _speed(analysis: SignalAnalysis) -> tuple[Array, Array] | None:
@@ -65,13 +65,12 @@ def signal_analysis(analysis: SignalAnalysis) -> Any:
     """Draw signal, spectrum, envelope spectrum and orders in stacked panels."""
     hertz = axis_label("frequency")
     reach = visible_frequency(analysis)
+    envelope = spectrum_panel(analysis.envelope_spectrum, reach)
     rows = [
         Row("Time [s]", _signal_panel(analysis)),
         Row(hertz, spectrum_panel(analysis.spectrum)),
         Row(
-            axis_label("frequency", "Frequency of the envelope"),
-            spectrum_panel(analysis.envelope_spectrum, reach),
-            {"range": [0.0, reach]},
+            axis_label("frequency", "Frequency of the envelope"), envelope, {"range": [0.0, reach]}
         ),
     ]
     if analysis.orders is not None:
@@ -108,13 +107,12 @@ def signal_history(analysis: SignalAnalysis) -> Any:
         ends = {"range": [middle - margin, middle + margin]}
         panels.append(Panel(axis_label("speed"), [curve], ends, 0.6))
     numbers = analysis.figures()
-    return stack(
+    title = (
         f"{significant(numbers['duration'], 4)} s: alternating rms "
         f"{with_unit(numbers['alternating_rms'], analysis.unit)}, crest factor "
-        f"{significant(numbers['crest_factor'])}, kurtosis {significant(numbers['kurtosis'])}",
-        "Time [s]",
-        panels,
+        f"{significant(numbers['crest_factor'])}, kurtosis {significant(numbers['kurtosis'])}"
     )
+    return stack(title, "Time [s]", panels)
 
 
 def visible_frequency(analysis: SignalAnalysis) -> float:

@@ -8,12 +8,22 @@ import numpy as np
 
 from tribodyn.drawing import drawing
 from tribodyn.plot.signals.lines import strongest_lines
-from tribodyn.plot.signals.maps import amplitude_label
+from tribodyn.plot.signals.maps import amplitude_label, color_bar
 from tribodyn.plot.signals.recorded import outline
-from tribodyn.plot.signals.revolution import finer
+from tribodyn.plot.signals.revolution import finer, over_a_turn
 from tribodyn.plot.theme.labels import axis_label, readable, significant
 from tribodyn.plot.theme.panels import Panel, event_lines, from_zero, stack
-from tribodyn.plot.theme.style import MUTED, PINION, TOTAL, WHEEL, Trace, line, marked
+from tribodyn.plot.theme.style import (
+    GREY_ZERO,
+    MUTED,
+    PINION,
+    TOTAL,
+    WHEEL,
+    Trace,
+    heat,
+    line,
+    marked,
+)
 from tribodyn.types import Array
 
 if TYPE_CHECKING:
@@ -24,8 +34,6 @@ if TYPE_CHECKING:
 _SCALE = [[0.0, "#ffffff"], [0.3, "#c6dbef"], [0.6, "#6baed6"], [0.8, "#2171b5"], [1.0, "#08306b"]]
 #: Height of a map over that of a curve, and most columns and rows of one.
 _MAP, _MOST = 1.8, 480
-
-_ZERO = {"zeroline": True, "zerolinecolor": "#c5ccd3"}
 
 
 @drawing(
@@ -43,17 +51,15 @@ def narrowband_demodulation(demodulation: NarrowbandDemodulation) -> Any:
     angle = 360.0 * np.arange(size.size) / size.size
     lowest = int(np.argmin(phase))
     panels = [
-        Panel("Amplitude [%]", [line(angle, size, "amplitude", TOTAL, unit="%")], _ZERO),
-        Panel("Phase [rad]", [line(angle, phase, "phase", PINION, unit="rad")], _ZERO),
+        Panel("Amplitude [%]", [line(angle, size, "amplitude", TOTAL, unit="%")], GREY_ZERO),
+        Panel("Phase [rad]", [line(angle, phase, "phase", PINION, unit="rad")], GREY_ZERO),
     ]
-    return stack(
+    title = (
         f"Mesh harmonic {demodulation.harmonic}: amplitude {significant(float(size.min()))} to "
         f"{significant(float(size.max()))} %, phase lags most at "
-        f"{significant(float(angle[lowest]))}°, by {significant(float(-phase[lowest]))} rad",
-        "Angle of the shaft [°]",
-        panels,
-        {"xaxis": {"range": [0.0, 360.0], "dtick": 45}},
+        f"{significant(float(angle[lowest]))}°, by {significant(float(-phase[lowest]))} rad"
     )
+    return over_a_turn(title, panels)
 
 
 @drawing(
@@ -85,31 +91,22 @@ def cepstrum(result: Cepstrum, *, shortest: float = 0.0) -> Any:
     top, size = result.peak(start, longest)
     beyond = result.quefrency >= start
     quefrency, values = outline(result.quefrency[beyond], result.cepstrum[beyond])
+    largest = np.array([1e3 * top]), np.array([size])
     curves = [
         line(1e3 * quefrency, values, "cepstrum", TOTAL, width=1.0),
-        marked(
-            np.array([1e3 * top]), np.array([size]), "largest", WHEEL, size=8, symbol="circle-open"
-        ),
+        marked(*largest, "largest", WHEEL, size=8, symbol="circle-open"),
     ]
-    return stack(
+    title = (
         f"Largest peak {significant(size)} at {significant(1e3 * top, 4)} ms: lines every "
-        f"{significant(1.0 / top, 4)} Hz",
-        "Quefrency [ms]",
-        [Panel("Cepstrum", curves, {"zeroline": True, "zerolinecolor": "#c5ccd3"}, 1.4)],
+        f"{significant(1.0 / top, 4)} Hz"
     )
+    return stack(title, "Quefrency [ms]", [Panel("Cepstrum", curves, GREY_ZERO, 1.4)])
 
 
 def _heatmap(x: Array, y: Array, values: Array, title: str, hover: str, top: float) -> Trace:
     """Map of values from zero, with its colour bar."""
-    return {
-        "type": "heatmap", "x": x, "y": y, "z": np.round(values, 4), "zmin": 0.0, "zmax": top,
-        "colorscale": _SCALE, "showlegend": False,
-        "hovertemplate": f"{hover}: %{{z:.3g}}<extra></extra>",
-        "colorbar": {
-            "title": {"text": title, "side": "top", "font": {"size": 13, "color": MUTED}},
-            "len": 0.62, "y": 1.0, "yanchor": "top", "thickness": 14, "x": 1.01, "xanchor": "left",
-        },
-    }  # fmt: skip
+    more = {"zmin": 0.0, "zmax": top, "colorbar": color_bar(title)}
+    return heat(x, y, np.round(values, 4), _SCALE, f"{hover}: %{{z:.3g}}", **more)
 
 
 @drawing(
@@ -138,33 +135,21 @@ def kurtogram(result: Kurtogram) -> Any:
         rows.append(above[(np.arange(columns) * count) // columns] if count <= columns else wide)
     low, high = result.band
     best = int(result.splits[result.best])
-    heatmap = _heatmap(
-        frequency,
-        np.arange(float(counts.size)),
-        np.array(rows),
-        "kurtosis",
-        "%{x:.5g} Hz",
-        max(float(result.kurtosis.max()), 0.1),
-    )
+    levels, most = np.arange(float(counts.size)), max(float(result.kurtosis.max()), 0.1)
+    heatmap = _heatmap(frequency, levels, np.array(rows), "kurtosis", "%{x:.5g} Hz", most)
     title = (
         f"Most impulsive from {significant(low)} to {significant(high)} Hz (one of {best} bands): "
         f"kurtosis {significant(float(result.kurtosis[result.best]))}"
     )
-    axis = {
-        "tickvals": np.arange(counts.size).tolist(),
-        "ticktext": [str(count) for count in counts],
-        "autorange": "reversed",
-        "showgrid": False,
-    }
+    axis: Trace = {"tickvals": np.arange(counts.size).tolist(), "autorange": "reversed"}
+    axis |= {"ticktext": [str(count) for count in counts], "showgrid": False}
     row = float(np.searchsorted(counts, best))
     corners = np.array([low, high, high, low, low]), row + 0.5 * np.array([-1, -1, 1, 1, -1])
     frame = [line(*corners, "most impulsive", WHEEL, width=2.0)] if result.significant else []
-    return stack(
-        title if result.significant else "No band is more impulsive than noise",
-        axis_label("frequency"),
-        [Panel("Number of bands", [heatmap, *frame], axis, _MAP)],
-        {"hovermode": "closest", "showlegend": False},
-    )
+    title = title if result.significant else "No band is more impulsive than noise"
+    panel = Panel("Number of bands", [heatmap, *frame], axis, _MAP)
+    layout = {"hovermode": "closest", "showlegend": False}
+    return stack(title, axis_label("frequency"), [panel], layout)
 
 
 @drawing(
@@ -188,14 +173,8 @@ def cyclic_coherence(result: CyclicCoherence) -> Any:
     ]
     mean = result.enhanced_envelope_spectrum()
     largest = int(np.argmax(mean))
-    heatmap = _heatmap(
-        alpha[top],
-        result.frequency,
-        most,
-        "coherence",
-        "%{y:.5g} Hz modulated with %{x:.5g} Hz",
-        max(float(most.max()), result.threshold),
-    )
+    hover, end = "%{y:.5g} Hz modulated with %{x:.5g} Hz", max(float(most.max()), result.threshold)
+    heatmap = _heatmap(alpha[top], result.frequency, most, "coherence", hover, end)
     limit = result.noise_limit()
     curves = [
         line(alpha, mean, "mean", TOTAL, width=1.2),
@@ -203,15 +182,10 @@ def cyclic_coherence(result: CyclicCoherence) -> Any:
     ]
     title = f"Most coherent modulation at {significant(float(alpha[largest]), 4)} Hz: mean "
     title += f"{significant(float(mean[largest]))}, noise up to {significant(limit)}"
-    return stack(
-        title if mean[largest] > limit else "No modulation is more coherent than noise",
-        "Frequency of the modulation [Hz]",
-        [
-            Panel("Carrier [Hz]", [heatmap], {"showgrid": False}, _MAP),
-            from_zero("Mean coherence", curves),
-        ],
-        {"hovermode": "closest"},
-    )
+    title = title if mean[largest] > limit else "No modulation is more coherent than noise"
+    carriers = Panel("Carrier [Hz]", [heatmap], {"showgrid": False}, _MAP)
+    panels = [carriers, from_zero("Mean coherence", curves)]
+    return stack(title, "Frequency of the modulation [Hz]", panels, {"hovermode": "closest"})
 
 
 @drawing(
@@ -242,18 +216,16 @@ def sideband_cursors(cursors: SidebandCursors) -> Any:
         ("in the noise", ~cursors.clear, "circle-open"),
     ):
         if rows.any():
-            heights = np.maximum(cursors.amplitude[rows], least)
-            curves.append(
-                marked(cursors.order[rows], heights, name, WHEEL, size=8, symbol=symbol, unit=unit)
-            )
+            heights, style = np.maximum(cursors.amplitude[rows], least), Trace(size=8, unit=unit)
+            curves.append(marked(cursors.order[rows], heights, name, WHEEL, symbol=symbol, **style))
     names = [f"{k:+d}" if k else "carrier" for k in cursors.number]
     marks = zip(names, cursors.order, strict=True)
     top = cursors.strongest
     axis = {"type": "log", "exponentformat": "power"}
-    return stack(
+    title = (
         f"Order {significant(cursors.carrier, 4)}: strongest sideband {cursors.number[top]:+d} at "
-        f"{significant(float(cursors.order[top]), 4)}, {cursors.level[top]:.1f} dB",
-        "Order [cycles per revolution]",
-        [Panel(amplitude_label(cursors.unit), curves, axis, 1.5)],
-        {"hovermode": "closest", "xaxis": {"range": [low, high]}, **event_lines(marks)},
+        f"{significant(float(cursors.order[top]), 4)}, {cursors.level[top]:.1f} dB"
     )
+    panel = Panel(amplitude_label(cursors.unit), curves, axis, 1.5)
+    layout = {"hovermode": "closest", "xaxis": {"range": [low, high]}, **event_lines(marks)}
+    return stack(title, "Order [cycles per revolution]", [panel], layout)

@@ -7,9 +7,19 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from tribodyn.drawing import drawing
-from tribodyn.plot.theme.labels import readable, scaled, significant
+from tribodyn.plot.theme.labels import label_with, readable, scaled, significant
 from tribodyn.plot.theme.panels import Panel, Row, stack_rows
-from tribodyn.plot.theme.style import MUTED, PAIR_COLORS, PINION, TOTAL, WHEEL, Trace, line, marked
+from tribodyn.plot.theme.style import (
+    MUTED,
+    PAIR_COLORS,
+    PINION,
+    TOTAL,
+    WHEEL,
+    Trace,
+    between,
+    line,
+    marked,
+)
 from tribodyn.types import Array
 
 if TYPE_CHECKING:
@@ -22,24 +32,14 @@ _POINTS, _HARMONICS, _SHARE = 2000, 12, 0.95
 _LIGHT, _DARK = "rgba(0, 114, 178, 0.16)", "rgba(0, 114, 178, 0.45)"
 
 
-def _area(x: Array, low: Array, high: Array, name: str, color: str) -> list[Trace]:
-    """Filled area between two curves."""
-    edge = {"mode": "lines", "line": {"width": 0}, "hoverinfo": "skip", "type": "scatter", "x": x}
-    return [
-        {**edge, "y": low, "showlegend": False},
-        {**edge, "y": high, "fill": "tonexty", "fillcolor": color, "name": name},
-    ]
-
-
 def _curve(result: CaseEnsemble, signal: str, x: Array) -> tuple[list[Trace], str]:
     """Mean over the variants, its confidence band and the band of the variants."""
     band, spread = result.band(signal), result.spread(signal, _SHARE)
     factor, unit = scaled(band.mean, band.unit)
+    name, (low, high) = f"{band.level:.0%} band of the mean", spread
     traces = [
-        *_area(x, factor * spread[0], factor * spread[1], f"{_SHARE:.0%} of the variants", _LIGHT),
-        *_area(
-            x, factor * band.low, factor * band.high, f"{band.level:.0%} band of the mean", _DARK
-        ),
+        *between(x, factor * low, factor * high, f"{_SHARE:.0%} of the variants", _LIGHT),
+        *between(x, factor * band.low, factor * band.high, name, _DARK),
         line(x, factor * band.mean, "mean", TOTAL, unit=unit),
     ]
     return traces, unit
@@ -110,21 +110,14 @@ def surrogate(result: Surrogate) -> Any:
         color = _COLORS[number % len(_COLORS)]
         ends = factor * np.array([true.min(), true.max()])
         half = factor * float(result.band[number])
-        points = marked(
-            factor * true[chosen],
-            factor * predicted[chosen],
-            "held-out rows",
-            color,
-            size=4,
-            symbol="circle",
-            unit=unit,
-        )
+        place, style = (factor * true[chosen], factor * predicted[chosen]), Trace(symbol="circle")
+        points = marked(*place, "held-out rows", color, size=4, unit=unit, **style)
         traces = [points, line(ends, ends, "exact", TOTAL, width=1.2)]
         if np.isfinite(half):
             for sign, in_legend in ((1.0, True), (-1.0, False)):
                 edge = line(ends, ends + sign * half, f"{result.level:.0%} band", MUTED, dash="dot")
                 traces.append({**edge, "showlegend": in_legend})
-        label = str(name).replace("_", " ") + (f" [{unit}]" if unit not in ("", "1") else "")
+        label = label_with(str(name).replace("_", " "), unit)
         rows.append(Row(f"Computed {label}", Panel("Predicted", traces)))
         qualities.append(
             f"{str(name).replace('_', ' ')} {result.errors[str(name)].determination:.4f}"

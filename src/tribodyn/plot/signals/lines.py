@@ -13,12 +13,13 @@ from tribodyn.plot.theme.labels import (
     axis_label,
     display_unit,
     displayed,
+    label_with,
     readable,
     rounded,
     significant,
 )
 from tribodyn.plot.theme.panels import Panel, event_lines, from_zero, stack
-from tribodyn.plot.theme.style import MUTED, PINION, TOTAL, WHEEL, Trace, line, marked
+from tribodyn.plot.theme.style import MUTED, PINION, TOTAL, WHEEL, Trace, bars, line, marked
 from tribodyn.signals.spectrum import distinct_peaks
 from tribodyn.types import Array
 
@@ -49,18 +50,14 @@ def spectrum_panel(spectrum: SignalSpectrum, to: float | None = None) -> Panel:
     unit = readable(spectrum.value_unit)
     curve = line(frequency, size, "spectrum", TOTAL, unit=unit, width=1.2)
     if spectrum.scaling == "amplitude":
-        return from_zero(
-            amplitude_label(spectrum.value_unit), [curve, *_peaks(spectrum, unit)], 1.4
-        )
+        traces = [curve, *_peaks(spectrum, unit)]
+        return from_zero(amplitude_label(spectrum.value_unit), traces, 1.4)
     scaling = "Mean square" if spectrum.scaling == "power" else "Spectral density"
     top = float(np.log10(size.max())) if size.max() > 0.0 else 0.0
     low = float(np.log10(max(size[size > 0.0].min(initial=1.0), 1e-300)))
-    axis = {
-        "type": "log",
-        "exponentformat": "power",
-        "range": [max(low, top - _DECADES) - 0.2, top + 0.3],
-    }
-    return Panel(f"{scaling} [{unit}]" if unit else scaling, [curve], axis, 1.4)
+    axis: Trace = {"type": "log", "exponentformat": "power"}
+    axis["range"] = [max(low, top - _DECADES) - 0.2, top + 0.3]
+    return Panel(label_with(scaling, unit), [curve], axis, 1.4)
 
 
 def _peaks(spectrum: SignalSpectrum, unit: str) -> list[Trace]:
@@ -70,16 +67,10 @@ def _peaks(spectrum: SignalSpectrum, unit: str) -> list[Trace]:
     peaks = [each for each in peaks if each.amplitude > _LEAST * peaks[0].amplitude]
     if not peaks:
         return []
-    points = marked(
-        np.array([each.frequency for each in peaks]),
-        np.array([each.amplitude for each in peaks]),
-        "largest peaks",
-        WHEEL,
-        size=8,
-        symbol="circle-open",
-        unit=unit,
-    )
-    return [{**points, "hovertemplate": f"%{{x:.6g}} Hz: %{{y:.4g}} {unit}<extra></extra>"}]
+    place, size = np.array([(each.frequency, each.amplitude) for each in peaks]).T
+    hover = f"%{{x:.6g}} Hz: %{{y:.4g}} {unit}<extra></extra>"
+    style: Trace = {"symbol": "circle-open", "hovertemplate": hover}
+    return [marked(place, size, "largest peaks", WHEEL, size=8, **style)]
 
 
 @drawing(
@@ -112,12 +103,8 @@ def signal_spectrum(
     layout: dict[str, Any] = {"hovermode": "closest", **event_lines(marks)}
     if to is not None:
         layout["xaxis"] = {"range": [0.0, to]}
-    return stack(
-        spectrum_title(spectrum),
-        axis_label("frequency"),
-        [spectrum_panel(spectrum, to)],
-        layout,
-    )
+    panels = [spectrum_panel(spectrum, to)]
+    return stack(spectrum_title(spectrum), axis_label("frequency"), panels, layout)
 
 
 def spectrum_title(spectrum: SignalSpectrum) -> str:
@@ -182,32 +169,21 @@ def sidebands(lines: Sidebands) -> Any:
         ("sidebands", lines.number != 0, PINION),
     ):
         hover = f"line %{{customdata:d}} at %{{x:.6g}} Hz: %{{y:.4g}} {unit}<extra></extra>"
-        traces.append(
-            {
-                "type": "bar",
-                "x": lines.frequency[chosen],
-                "y": lines.amplitude[chosen],
-                "width": width,
-                "name": name,
-                "marker": {"color": color},
-                "customdata": lines.number[chosen],
-                "hovertemplate": hover,
-            }
-        )
-    return stack(
+        place, more = lines.frequency[chosen], Trace(customdata=lines.number[chosen], width=width)
+        traces.append(bars(place, lines.amplitude[chosen], name, color, hover, **more))
+    title = (
         f"Around {significant(lines.carrier, 4)} Hz: amplitude modulation "
         f"{significant(100.0 * lines.amplitude_modulation)} %, phase modulation "
-        f"{significant(lines.phase_modulation)} rad",
-        axis_label("frequency"),
-        [from_zero(amplitude_label(lines.unit), traces, 1.4)],
-        {"hovermode": "closest", "bargap": 0.0},
+        f"{significant(lines.phase_modulation)} rad"
     )
+    panel = from_zero(amplitude_label(lines.unit), traces, 1.4)
+    layout = {"hovermode": "closest", "bargap": 0.0}
+    return stack(title, axis_label("frequency"), [panel], layout)
 
 
 def _over_speed(speed: Array, values: Array, name: str, unit: str) -> Trace:
-    curve = line(displayed("speed", speed), values, name, TOTAL, unit=readable(unit))
-    points = {"mode": "lines+markers"} if speed.size < 40 else {}
-    return {**curve, **points}
+    mode = "lines+markers" if speed.size < 40 else "lines"
+    return line(displayed("speed", speed), values, name, TOTAL, unit=readable(unit), mode=mode)
 
 
 @drawing(
@@ -222,18 +198,12 @@ def _over_speed(speed: Array, values: Array, name: str, unit: str) -> Trace:
 def order_cut(cut: OrderCut) -> Any:
     """Draw the amplitude of an order over the speed."""
     top = int(np.argmax(cut.amplitude))
-    return stack(
+    title = (
         f"Order {cut.order:.4g} reaches {with_unit(float(cut.amplitude[top]), cut.unit)} at "
-        f"{rounded('speed', float(cut.speed[top]), 4)}",
-        axis_label("speed"),
-        [
-            from_zero(
-                amplitude_label(cut.unit),
-                [_over_speed(cut.speed, cut.amplitude, f"order {cut.order:.4g}", cut.unit)],
-                1.4,
-            )
-        ],
+        f"{rounded('speed', float(cut.speed[top]), 4)}"
     )
+    curve = _over_speed(cut.speed, cut.amplitude, f"order {cut.order:.4g}", cut.unit)
+    return stack(title, axis_label("speed"), [from_zero(amplitude_label(cut.unit), [curve], 1.4)])
 
 
 @drawing(
@@ -250,21 +220,12 @@ def overall_level(level: OverallLevel) -> Any:
     curve = _over_speed(level.speed, level.rms, "level", level.unit)
     hover = f"%{{y:.4g}} {unit} at %{{x:.5g}} {display_unit('speed')}, after %{{customdata:.4g}} s"
     curve |= {"customdata": level.time, "hovertemplate": f"{hover}<extra></extra>"}
-    loudest = marked(
-        displayed("speed", level.speed[[top]]),
-        level.rms[[top]],
-        "largest",
-        MUTED,
-        size=9,
-        symbol="circle-open",
-        unit=unit,
-    )
-    label = f"Alternating rms [{unit}]" if unit else "Alternating rms"
+    place, style = displayed("speed", level.speed[[top]]), Trace(symbol="circle-open", unit=unit)
+    loudest = marked(place, level.rms[[top]], "largest", MUTED, size=9, **style)
     curves = [{**each, "showlegend": False} for each in (curve, loudest)]
-    return stack(
+    title = (
         f"Highest level at {rounded('speed', float(level.speed[top]), 4)}: "
-        f"{with_unit(float(level.rms[top]), level.unit)} rms",
-        axis_label("speed"),
-        [from_zero(label, curves, 1.4)],
-        {"hovermode": "closest"},
+        f"{with_unit(float(level.rms[top]), level.unit)} rms"
     )
+    panel = from_zero(label_with("Alternating rms", unit), curves, 1.4)
+    return stack(title, axis_label("speed"), [panel], {"hovermode": "closest"})

@@ -12,12 +12,13 @@ from tribodyn.plot.theme.labels import (
     axis_label,
     display_unit,
     displayed,
+    label_with,
     readable,
     rounded,
     significant,
 )
 from tribodyn.plot.theme.panels import Panel, from_zero, stack
-from tribodyn.plot.theme.style import GRID, INK, MUTED, PINION, TOTAL, WHEEL, line
+from tribodyn.plot.theme.style import GRID, INK, MUTED, PINION, TOTAL, WHEEL, Trace, heat, line
 from tribodyn.types import Array
 
 if TYPE_CHECKING:
@@ -43,12 +44,10 @@ def with_unit(value: float, unit: str) -> str:
 
 def amplitude_label(unit: str) -> str:
     """Label an axis of amplitudes."""
-    return f"Amplitude [{readable(unit)}]" if unit else "Amplitude"
+    return label_with("Amplitude", unit)
 
 
-def amplitude_heatmap(
-    x: Array, y: Array, amplitude: Array, unit: str, hover: str
-) -> dict[str, Any]:
+def amplitude_heatmap(x: Array, y: Array, amplitude: Array, unit: str, hover: str) -> Trace:
     """Describe a map of amplitudes with a logarithmic colour scale."""
     rows, columns = (-(-size // _MOST) for size in amplitude.shape)
     across, along = np.arange(0, x.size, columns), np.arange(0, y.size, rows)
@@ -56,30 +55,21 @@ def amplitude_heatmap(
     largest = float(most.max()) or 1.0
     decades = np.log10(np.maximum(most / largest, 10.0**-_DECADES))
     ticks = np.arange(-_DECADES, 1)
-    return {
-        "type": "heatmap",
-        "x": np.add.reduceat(x, across) / np.diff(np.append(across, x.size)),
-        "y": np.add.reduceat(y, along) / np.diff(np.append(along, y.size)),
-        "z": np.round(decades, 3),
-        "zmin": -_DECADES,
-        "zmax": 0,
-        "customdata": most,
-        "colorscale": _SCALE,
-        "colorbar": {
-            **_BAR,
-            "title": {
-                "text": f"[{readable(unit)}]" if unit else "",
-                "side": "top",
-                "font": {"size": 13, "color": MUTED},
-            },
-            "tickvals": ticks.tolist(),
-            "ticktext": [significant(largest * 10.0**tick, 2) for tick in ticks.tolist()],
-            "outlinecolor": GRID,
-            "tickfont": {"color": INK},
-        },
-        "hovertemplate": f"{hover}: %{{customdata:.3g}} {readable(unit)}<extra></extra>",
-        "showlegend": False,
-    }
+    title = label_with("", unit).strip()
+    scale = {**color_bar(title), "tickvals": ticks.tolist(), "outlinecolor": GRID}
+    scale["ticktext"] = [significant(largest * 10.0**tick, 2) for tick in ticks.tolist()]
+    scale["tickfont"] = {"color": INK}
+    return heat(
+        np.add.reduceat(x, across) / np.diff(np.append(across, x.size)),
+        np.add.reduceat(y, along) / np.diff(np.append(along, y.size)),
+        np.round(decades, 3), _SCALE, f"{hover}: %{{customdata:.3g}} {readable(unit)}",
+        zmin=-_DECADES, zmax=0, customdata=most, colorbar=scale,
+    )  # fmt: skip
+
+
+def color_bar(title: str) -> dict[str, Any]:
+    """Colour bar beside the map at the top of a figure."""
+    return {**_BAR, "title": {"text": title, "side": "top", "font": {"size": 13, "color": MUTED}}}
 
 
 @drawing(
@@ -94,32 +84,18 @@ def spectrogram(result: Spectrogram) -> Any:
     """Draw amplitudes over time and frequency, and the rms over time."""
     number, block = result.strongest()
     frequency, moment = float(result.frequency[number]), float(result.time[block])
+    place, hover = (result.time, result.frequency[1:]), "%{y:.5g} Hz at %{x:.4g} s"
+    surface = amplitude_heatmap(*place, result.amplitude[1:], result.unit, hover)
+    rms = line(result.time, result.rms(), "rms", TOTAL, unit=readable(result.unit))
     panels = [
-        Panel(
-            axis_label("frequency"),
-            [
-                amplitude_heatmap(
-                    result.time,
-                    result.frequency[1:],
-                    result.amplitude[1:],
-                    result.unit,
-                    "%{y:.5g} Hz at %{x:.4g} s",
-                )
-            ],
-            height=MAP_HEIGHT,
-        ),
-        from_zero(
-            f"Rms [{readable(result.unit)}]" if result.unit else "Rms",
-            [line(result.time, result.rms(), "rms", TOTAL, unit=readable(result.unit))],
-        ),
+        Panel(axis_label("frequency"), [surface], height=MAP_HEIGHT),
+        from_zero(label_with("Rms", result.unit), [rms]),
     ]
-    return stack(
+    title = (
         f"Strongest at {significant(frequency)} Hz after {significant(moment)} s: "
-        f"{with_unit(float(result.amplitude[number, block]), result.unit)}",
-        "Time [s]",
-        panels,
-        {"hovermode": "closest"},
+        f"{with_unit(float(result.amplitude[number, block]), result.unit)}"
     )
+    return stack(title, "Time [s]", panels, {"hovermode": "closest"})
 
 
 def strongest_orders(result: OrderMap) -> list[float]:
@@ -167,16 +143,10 @@ def order_map(result: OrderMap) -> Any:
         place, result.order, result.amplitude, result.unit, f"order %{{y:.4g}} at %{{x:.4g}} {unit}"
     )
     cuts = [
-        line(
-            place,
-            result.cut(order).amplitude,
-            f"order {order:.4g}",
-            color,
-            unit=readable(result.unit),
-            dash=dash,
-        )
+        line(place, result.cut(order).amplitude, f"order {order:.4g}", color, dash=dash,
+             unit=readable(result.unit))
         for order, (color, dash) in zip(orders, _CUTS, strict=False)
-    ]
+    ]  # fmt: skip
     title = "No order stands out"
     if orders:
         first = result.cut(orders[0])
@@ -220,24 +190,17 @@ def waterfall(result: OrderMap | Spectrogram) -> Any:
     for level, (k, name) in enumerate(zip(chosen, names, strict=True)):
         height = np.maximum.reduceat(result.amplitude[:, k], groups)
         color, width = (WHEEL, 2.2) if k == block else (INK, 1.0)
-        curve = line(across, level + height * (_REACH / (peak or 1.0)), name, color, width=width)
         hover = f"%{{x:.4g}}: %{{customdata:.3g}} {unit}".rstrip() + f"<extra>{name}</extra>"
-        traces.append({**curve, "customdata": height, "hovertemplate": hover, "showlegend": False})
+        style: Trace = {"width": width, "hovertemplate": hover, "showlegend": False}
+        values = level + height * (_REACH / (peak or 1.0))
+        traces.append(line(across, values, name, color, customdata=height, **style))
     ticks = np.unique(np.linspace(0, chosen.size - 1, 6).round().astype(int))
     what = f"order {place[number]:.4g}" if by_order else f"{significant(float(place[number]))} Hz"
-    axis = {
-        "tickvals": ticks.tolist(),
-        "ticktext": [names[k] for k in ticks],
-        "showgrid": False,
-        "tickfont": {"color": MUTED},
-    }
-    label = "Speed" if by_order else "Time"
-    return stack(
-        f"The highest peak is {with_unit(peak, result.unit)}, {what} at {_when(result, block)}",
-        x_label,
-        [Panel(label, traces, axis, height=2.6)],
-        {"hovermode": "closest"},
-    )
+    axis = {"tickvals": ticks.tolist(), "ticktext": [names[k] for k in ticks], "showgrid": False}
+    axis["tickfont"] = {"color": MUTED}
+    panel = Panel("Speed" if by_order else "Time", traces, axis, height=2.6)
+    title = f"The highest peak is {with_unit(peak, result.unit)}, {what} at {_when(result, block)}"
+    return stack(title, x_label, [panel], {"hovermode": "closest"})
 
 
 def _when(result: OrderMap | Spectrogram, block: int) -> str:

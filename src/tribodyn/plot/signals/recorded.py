@@ -11,7 +11,7 @@ from tribodyn.drawing import drawing
 from tribodyn.measurement import Comparison, OrderSpectrum, Recording, TrackedOrders
 from tribodyn.plot.signals.lines import strongest_lines
 from tribodyn.plot.signals.maps import amplitude_label, with_unit
-from tribodyn.plot.theme.labels import readable, significant
+from tribodyn.plot.theme.labels import label_with, readable, significant
 from tribodyn.plot.theme.panels import Panel, event_lines, from_zero, stack
 from tribodyn.plot.theme.style import MUTED, PAIR_COLORS, PINION, TOTAL, Trace, line, marked
 from tribodyn.types import Array
@@ -36,14 +36,10 @@ def recording(recording: Recording) -> Any:
     for name in names[:_PANELS]:
         time, values = outline(recording.time, recording[name])
         unit = recording.units[name]
-        panels.append(Panel(_label(name, unit), [line(time, values, name, TOTAL, unit=unit)]))
+        panels.append(Panel(label_with(name, unit), [line(time, values, name, TOTAL, unit=unit)]))
     left_out = f"; {len(names) - _PANELS} more channels" if len(names) > _PANELS else ""
     channels = ", ".join(names[:_NAMED]) + (" and others" if len(names) > _NAMED else "")
     return stack(f"{recording.duration:.4g} s of {channels}{left_out}", "Time [s]", panels)
-
-
-def _label(name: str, unit: str) -> str:
-    return f"{name} [{readable(unit)}]" if unit else name
 
 
 def outline(time: Array, values: Array) -> tuple[Array, Array]:
@@ -81,13 +77,12 @@ def order_spectrum(spectrum: OrderSpectrum, *, marks: Iterable[tuple[str, float]
     top = 1 + int(np.argmax(spectrum.amplitudes[1:]))
     order, size = strongest_lines(spectrum.orders[1:], spectrum.amplitudes[1:])
     curve = line(order, size, "amplitude", TOTAL, unit=spectrum.unit, width=1.2)
-    return stack(
+    title = (
         f"Order {significant(float(spectrum.orders[top]), 4)} is the strongest: "
-        f"{with_unit(float(spectrum.amplitudes[top]), spectrum.unit)}",
-        "Order [cycles per revolution]",
-        [from_zero(amplitude_label(spectrum.unit), [curve], 1.4)],
-        event_lines(marks),
+        f"{with_unit(float(spectrum.amplitudes[top]), spectrum.unit)}"
     )
+    panel = from_zero(amplitude_label(spectrum.unit), [curve], 1.4)
+    return stack(title, "Order [cycles per revolution]", [panel], event_lines(marks))
 
 
 @drawing(
@@ -108,16 +103,13 @@ def tracked_orders(tracked: TrackedOrders) -> Any:
     row, column = np.unravel_index(int(np.argmax(tracked.amplitude)), tracked.amplitude.shape)
     rpm = np.gradient(tracked.angle, tracked.time) * 30.0 / np.pi
     speed = line(*outline(tracked.time, rpm), "speed", TOTAL, unit="rpm")
-    return stack(
+    title = (
         f"Order {tracked.order[row]:g} reaches "
         f"{with_unit(float(tracked.amplitude[row, column]), tracked.unit)} at "
-        f"{significant(float(rpm[column]), 4)} rpm",
-        "Time [s]",
-        [
-            from_zero(amplitude_label(tracked.unit), curves, 1.4),
-            from_zero("Speed [rpm]", [speed], 0.8),
-        ],
+        f"{significant(float(rpm[column]), 4)} rpm"
     )
+    amplitudes = from_zero(amplitude_label(tracked.unit), curves, 1.4)
+    return stack(title, "Time [s]", [amplitudes, from_zero("Speed [rpm]", [speed], 0.8)])
 
 
 @drawing(
@@ -144,31 +136,13 @@ def comparison(comparison: Comparison) -> Any:
         harmonic, amplitude = lines.computed[0] / comparison.mesh_frequency, lines.computed[1]
         inside = (harmonic > 0.0) & (harmonic < top)
         gain = f", gain {comparison.gains[name]:.4g}{' fitted' if comparison.fitted else ''}"
-        panels.append(
-            from_zero(
-                f"{name} [{readable(unit)}]",
-                [
-                    line(*curve, "measured", MUTED, unit=unit, width=1.2),
-                    marked(
-                        harmonic[inside],
-                        amplitude[inside],
-                        f"computed{gain}",
-                        PINION,
-                        size=9,
-                        symbol="circle-open",
-                        unit=unit,
-                    ),
-                ],
-                1.2,
-            )
-        )
+        measured = line(*curve, "measured", MUTED, unit=unit, width=1.2)
+        place, style = (harmonic[inside], amplitude[inside]), Trace(symbol="circle-open")
+        computed = marked(*place, f"computed{gain}", PINION, size=9, unit=unit, **style)
+        panels.append(from_zero(f"{name} [{readable(unit)}]", [measured, computed], 1.2))
         ends.append(top)
-    return stack(
-        _comparison_title(comparison),
-        _mesh_axis(comparison),
-        panels,
-        {"xaxis": {"range": [0.0, max(ends)]}, "hovermode": "closest"},
-    )
+    layout = {"xaxis": {"range": [0.0, max(ends)]}, "hovermode": "closest"}
+    return stack(_comparison_title(comparison), _mesh_axis(comparison), panels, layout)
 
 
 def _comparison_title(comparison: Comparison) -> str:

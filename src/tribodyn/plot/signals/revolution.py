@@ -6,11 +6,11 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from tribodyn.drawing import drawing
+from tribodyn.drawing import Sketch, drawing
 from tribodyn.plot.signals.maps import with_unit
-from tribodyn.plot.theme.labels import readable
+from tribodyn.plot.theme.labels import label_with, readable
 from tribodyn.plot.theme.panels import Panel, stack
-from tribodyn.plot.theme.style import FILLS, PINION, TOTAL, WHEEL, Trace, line
+from tribodyn.plot.theme.style import FILLS, GREY_ZERO, PINION, TOTAL, WHEEL, between, line
 from tribodyn.types import Array
 
 if TYPE_CHECKING:
@@ -43,43 +43,34 @@ def finer(values: Array) -> Array:
 def synchronous_average(average: SynchronousAverage) -> Any:
     """Draw mean revolution, residual and difference over the angle of the shaft."""
     unit = readable(average.unit)
-
-    def label(quantity: str) -> str:
-        return f"{quantity} [{unit}]" if unit else quantity
-
     mean = finer(average.signal)
     angle = 360.0 * np.arange(mean.size) / mean.size
     error = 2.0 * np.interp(angle, np.degrees(average.angle), average.scatter, period=360.0)
-    edge: Trace = {"type": "scatter", "mode": "lines", "line": {"width": 0}, "hoverinfo": "skip"}
-    band = [
-        {**edge, "x": angle, "y": mean + error, "showlegend": False, "name": "standard error"},
-        {**edge, "x": angle, "y": mean - error, "fill": "tonexty", "fillcolor": FILLS[PINION],
-         "name": "2 standard errors"},
-    ]  # fmt: skip
-    residual, difference = finer(average.residual()), finer(average.difference())
-    curve = line(angle, mean, "mean revolution", PINION, unit=unit, width=1.4)
-    zero = {"zeroline": True, "zerolinecolor": "#c5ccd3"}
-    panels = [
-        Panel(label("Mean"), [*band, curve], height=1.2),
-        Panel(
-            label("Residual"),
-            [line(angle, residual, "residual", TOTAL, unit=unit, width=1.4)],
-            zero,
-        ),
-        Panel(
-            label("Difference"),
-            [line(angle, difference, "difference", WHEEL, unit=unit, width=1.4)],
-            zero,
-        ),
-    ]
+    band = between(angle, mean + error, mean - error, "2 standard errors", FILLS[PINION])
+    band[0]["name"] = "standard error"
+    difference = finer(average.difference())
+    rows: tuple[tuple[Any, ...], ...] = (
+        ("Mean revolution", mean, PINION, {}, 1.2),
+        ("Residual", finer(average.residual()), TOTAL, GREY_ZERO, 1.0),
+        ("Difference", difference, WHEEL, GREY_ZERO, 1.0),
+    )
+    panels: list[Panel] = []
+    for name, values, color, axis, height in rows:
+        trace = line(angle, values, name.lower(), color, unit=unit, width=1.4)
+        traces = [trace] if panels else [*band, trace]
+        panels.append(Panel(label_with(name.split()[0], unit), traces, axis, height))
     swing, bump = float(np.ptp(mean)), float(np.abs(difference).max())
     place, tooth = average.local_place()
     of_tooth = f", tooth {tooth} of {average.teeth}" if average.difference_is_clear else ""
-    return stack(
+    title = (
         f"{average.revolutions} revolutions: {with_unit(swing, average.unit)} peak to peak, "
         f"difference up to {with_unit(bump, average.unit)} "
-        f"about {np.degrees(place):.0f}°{of_tooth}",
-        "Angle of the shaft [°]",
-        panels,
-        {"xaxis": {"range": [0.0, 360.0], "dtick": 45}},
+        f"about {np.degrees(place):.0f}°{of_tooth}"
     )
+    return over_a_turn(title, panels)
+
+
+def over_a_turn(title: str, panels: list[Panel]) -> Sketch:
+    """Stack panels over the angle of a shaft."""
+    axis = {"range": [0.0, 360.0], "dtick": 45}
+    return stack(title, "Angle of the shaft [°]", panels, {"xaxis": axis})

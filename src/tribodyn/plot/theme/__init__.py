@@ -4,6 +4,7 @@
 module      contents
 ==========  ===================================================================
 ``style``   colours with fixed roles, fonts, grids, curves, buttons
+``curves``  curves of quantities in their display units, panels of them
 ``panels``  stacked panels with a common axis or one axis each, event lines
 ``labels``  axis labels, display units and rounding of values
 ==========  ===================================================================

@@ -26,8 +26,12 @@ def readable(unit: str) -> str:
 def axis_label(name: str, label: str | None = None) -> str:
     """Label an axis with a quantity and its display unit."""
     label = quantity_label(name) if label is None else label
-    unit = display_unit(name)
-    return f"{label} [{unit}]" if unit else label
+    return label_with(label, display_unit(name))
+
+
+def label_with(label: str, unit: str) -> str:
+    """Label with a unit as it is printed, if there is one."""
+    return label if unit in ("", "-", "1") else f"{label} [{readable(unit)}]"
 
 
 def quantity_label(name: str) -> str:
@@ -91,4 +95,4 @@ def parameter_axis(name: str, values: Any, unit: str) -> tuple[Array, str]:
     label = label[:1].upper() + label[1:]
     factor, display = scaled(values, unit)
     values_in_display_unit = factor * np.asarray(values, dtype=float)
-    return values_in_display_unit, label if display in ("", "-", "1") else f"{label} [{display}]"
+    return values_in_display_unit, label_with(label, display)

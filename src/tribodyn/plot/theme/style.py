@@ -1,4 +1,4 @@
-"""Style of all figures: colours with fixed roles, fonts, grids, curves, buttons.
+"""Style of all figures: colours with fixed roles, fonts, grids, curves, bars, maps, buttons.
 
 The colours are those of Okabe and Ito, which remain distinguishable under the
 common forms of colour blindness; curves that share a panel differ in dash as well.
@@ -9,7 +9,10 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Any
 
+import numpy as np
+
 from tribodyn.drawing import Sketch
+from tribodyn.types import Array
 
 #: One curve as plotly describes it.
 Trace = dict[str, Any]
@@ -18,11 +21,15 @@ FONT = "system-ui, -apple-system, 'Segoe UI', Roboto, 'Helvetica Neue', Arial, s
 INK = "#1f2933"
 MUTED = "#6b7785"
 GRID = "#e4e8ec"
+#: Axis that marks its zero.
+GREY_ZERO = {"zeroline": True, "zerolinecolor": "#c5ccd3"}
 #: Fixed roles, so that a colour means the same thing in every figure.
 PINION = "#0072B2"
 WHEEL = "#D55E00"
 TOTAL = INK
 PAIR_COLORS = ("#009E73", "#CC79A7", "#56B4E9", "#E69F00")
+#: Colours of maps of values, from the smallest to the largest.
+HEAT = [[0.0, "#f2f6fa"], [0.5, "#56B4E9"], [0.75, PINION], [1.0, WHEEL]]
 #: Light fill that goes with a line colour.
 FILLS = {PINION: "rgba(0, 114, 178, 0.14)", WHEEL: "rgba(213, 94, 0, 0.14)"}
 #: Pixels above and below the panels of a figure.
@@ -105,8 +112,9 @@ def line(
     unit: str = "",
     dash: str = "solid",
     width: float = 2.0,
-) -> dict[str, Any]:
-    """Describe one curve whose hover text carries its unit."""
+    **more: Any,
+) -> Trace:
+    """Describe one curve whose hover text carries its unit; ``more`` are properties of plotly."""
     # plotly leaves points out by default, which draws smooth curves as polygons.
     every = {"simplify": False} if len(x) <= _MOST_POINTS else {}
     return {
@@ -117,7 +125,35 @@ def line(
         "name": name,
         "line": {"color": color, "dash": dash, "width": width, **every},
         "hovertemplate": f"%{{y:.4g}} {unit}".rstrip() + f"<extra>{name}</extra>",
+        **more,
     }
+
+
+def between(x: Any, low: Any, high: Any, name: str, fill: str, **more: Any) -> list[Trace]:
+    """Fill between two curves; ``more`` are properties of the filled one."""
+    edge = {"type": "scatter", "mode": "lines", "line": {"width": 0}, "hoverinfo": "skip", "x": x}
+    lower = {**edge, "y": low, "showlegend": False, "name": name}
+    return [lower, {**edge, "y": high, "fill": "tonexty", "fillcolor": fill, "name": name, **more}]
+
+
+def bars(x: Any, y: Any, name: str, color: Any, hover: str, **more: Any) -> Trace:
+    """Describe bars; ``hover`` is the template of their hover text."""
+    marker = color if isinstance(color, dict) else {"color": color}
+    return {"type": "bar", "x": x, "y": y, "name": name, "marker": marker,
+            "hovertemplate": hover, **more}  # fmt: skip
+
+
+def heat(x: Any, y: Any, z: Any, colors: Any, hover: str, **more: Any) -> Trace:
+    """Describe a map of values; ``hover`` is the template of its hover text."""
+    return {"type": "heatmap", "x": x, "y": y, "z": z, "colorscale": colors,
+            "hovertemplate": f"{hover}<extra></extra>", "showlegend": False, **more}  # fmt: skip
+
+
+def stems(x: Array, y: Array, foot: float = 0.0) -> tuple[Array, Array]:
+    """Points of vertical lines from a foot up to each value, with gaps between them."""
+    gap = np.full(len(x), np.nan)
+    feet = np.full(len(x), foot)
+    return np.stack((x, x, gap), axis=1).ravel(), np.stack((feet, y, gap), axis=1).ravel()
 
 
 def translucent(color: str, opacity: float) -> str:
@@ -169,10 +205,10 @@ def player(
 
 
 def marked(
-    x: Any, y: Any, name: str, color: str, *, size: float, symbol: str, unit: str = ""
+    x: Any, y: Any, name: str, color: str, *, size: float, symbol: str, unit: str = "", **more: Any
 ) -> Trace:
     """Describe marked points whose hover text carries their unit."""
-    points = line(x, y, name, color, unit=unit)
-    del points["line"]
     marker = {"size": size, "symbol": symbol, "color": color}
-    return {**points, "mode": "markers", "marker": marker}
+    points = line(x, y, name, color, unit=unit, mode="markers", marker=marker, **more)
+    del points["line"]
+    return points
