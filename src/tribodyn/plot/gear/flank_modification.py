@@ -17,9 +17,10 @@ from tribodyn.gear import (
 )
 from tribodyn.plot.gear.path import pair_letters, roll_angle_of, roll_label
 from tribodyn.plot.mesh.cycle import RUN
+from tribodyn.plot.theme.curves import curve
 from tribodyn.plot.theme.labels import axis_label, display_unit, displayed, rounded
 from tribodyn.plot.theme.panels import Panel, Row, stack_rows
-from tribodyn.plot.theme.style import PINION, TOTAL, WHEEL, Trace, line
+from tribodyn.plot.theme.style import PINION, TOTAL, WHEEL, Trace, bars
 from tribodyn.types import Array
 
 if TYPE_CHECKING:
@@ -58,9 +59,8 @@ def _flank_gap_of_gear(pair: SpurPair, name: str, radius: Array, face: Array) ->
 
 def _curves(x: Array, parts: dict[str, Array]) -> list[Trace]:
     styles = {"pinion": (PINION, "solid"), "wheel": (WHEEL, "solid"), "both": (TOTAL, "dot")}
-    unit = display_unit("flank_gap")
     return [
-        line(x, displayed("flank_gap", gap), name, styles[name][0], unit=unit, dash=styles[name][1])
+        curve("flank_gap", x, gap, name, styles[name][0], dash=styles[name][1])
         for name, gap in parts.items()
     ]
 
@@ -103,24 +103,16 @@ def _lead(pair: SpurPair) -> Row:
 
 
 def _pitch(pair: SpurPair) -> Row:
-    unit, bars = display_unit("cumulative_pitch_deviation"), []
+    unit, traces = display_unit("cumulative_pitch_deviation"), list[Trace]()
     for name, color in (("pinion", PINION), ("wheel", WHEEL)):
         gear = getattr(pair, name)
         if gear.modification.changes_pitch:
             places = displayed("cumulative_pitch_deviation", tooth_positions(gear))
-            bars.append(
-                {
-                    "type": "bar",
-                    "x": np.arange(abs(gear.teeth)),
-                    "y": places,
-                    "name": name,
-                    "marker": {"color": color},
-                    "hovertemplate": f"%{{y:.4g}} {unit}<extra>{name}, tooth %{{x}}</extra>",
-                    "showlegend": True,
-                }
-            )
+            hover = f"%{{y:.4g}} {unit}<extra>{name}, tooth %{{x}}</extra>"
+            teeth = np.arange(abs(gear.teeth))
+            traces.append(bars(teeth, places, name, color, hover, showlegend=True))
     label = axis_label("cumulative_pitch_deviation", "Cumulative pitch")
-    return Row("Tooth", Panel(label, bars, height=0.8), {"showgrid": False})
+    return Row("Tooth", Panel(label, traces, height=0.8), {"showgrid": False})
 
 
 def _run_out(pair: SpurPair) -> Row:
@@ -128,11 +120,9 @@ def _run_out(pair: SpurPair) -> Row:
     for name, color in (("pinion", PINION), ("wheel", WHEEL)):
         modification = getattr(pair, name).modification
         if modification.run_out:
-            gap = displayed(
-                "flank_gap", -0.5 * modification.run_out * np.cos(turn - modification.run_out_phase)
-            )
-            trace = line(displayed("angle", turn), gap, name, color, unit=display_unit("flank_gap"))
-            traces.append({**trace, "showlegend": True})
+            gap = -0.5 * modification.run_out * np.cos(turn - modification.run_out_phase)
+            x = displayed("angle", turn)
+            traces.append(curve("flank_gap", x, gap, name, color, showlegend=True))
     return Row(
         axis_label("angle", "Rotation of each gear"),
         Panel(axis_label("flank_gap", "Gap from run-out"), traces, height=0.8),

@@ -33,11 +33,10 @@ def heat_balance(balance: HeatBalance) -> Any:
     top = max(float(celsius.max()), ambient + 1.0)
     ends = np.array([ambient, top + 0.1 * (top - ambient)])
     given_off = balance.heat_transfer * (ends - ambient)
-    loss = line(celsius[order], balance.power_loss[order], "loss of the gearbox", WHEEL, unit="W")
-    state = marked(
-        celsius[-1:], balance.power_loss[-1:], "balance", TOTAL, size=11, symbol="circle-open",
-        unit="W",
-    )  # fmt: skip
+    loss = line(celsius[order], balance.power_loss[order], "loss of the gearbox", WHEEL, unit="W",
+                mode="lines+markers")  # fmt: skip
+    state = marked(celsius[-1:], balance.power_loss[-1:], "balance", TOTAL, size=11, unit="W",
+                   symbol="circle-open")  # fmt: skip
     number, unit = engineering(float(balance.power_loss[-1]), "W", 4)
     settled = f"Gears and oil settle at {significant(float(celsius[-1]), 4)} °C"
     label, gears = "Temperature of gears and oil", []
@@ -49,28 +48,13 @@ def heat_balance(balance: HeatBalance) -> Any:
             f"{significant(float(warm[-1]), 4)} °C,"
         )
         rising = np.argsort(warm, kind="stable")
-        loss_of_teeth, color = balance.gear_power_loss, PAIR_COLORS[0]
+        teeth, color = balance.gear_power_loss, PAIR_COLORS[0]
+        rise, name = np.array([celsius[-1], warm[-1]]), "heat from the gears to the oil"
         gears = [
-            line(warm[rising], loss_of_teeth[rising], "loss of the teeth", color, unit="W"),
-            line(
-                np.array([celsius[-1], warm[-1]]), np.array([0.0, loss_of_teeth[-1]]),
-                "heat from the gears to the oil", color, unit="W", dash="dash",
-            ),
-        ]  # fmt: skip
-    return stack(
-        f"{settled} with a loss of {number} {unit}",
-        axis_label("temperature", label),
-        [
-            from_zero(
-                axis_label("power", "Power"),
-                [
-                    {**loss, "mode": "lines+markers"},
-                    line(ends, given_off, "dissipated heat", PINION, unit="W", dash="dash"),
-                    state,
-                    *gears,
-                ],
-                1.4,
-            )
-        ],
-        {"hovermode": "closest"},
-    )
+            line(warm[rising], teeth[rising], "loss of the teeth", color, unit="W"),
+            line(rise, np.array([0.0, teeth[-1]]), name, color, unit="W", dash="dash"),
+        ]
+    dissipated = line(ends, given_off, "dissipated heat", PINION, unit="W", dash="dash")
+    panel = from_zero(axis_label("power", "Power"), [loss, dissipated, state, *gears], 1.4)
+    title = f"{settled} with a loss of {number} {unit}"
+    return stack(title, axis_label("temperature", label), [panel], {"hovermode": "closest"})

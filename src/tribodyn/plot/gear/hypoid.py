@@ -149,17 +149,12 @@ def _error(contact: ToothContact) -> Panel:
     pitch = 360.0 / contact.flanks.blank.teeth_wheel
     turn, error = np.degrees(contact.rotation), 1e6 * contact.angular_transmission_error
     inner = ~contact.on_edge if np.any(~contact.on_edge) else np.ones(len(turn), bool)
-    curves = [
-        line(
-            turn[inner] + pair * pitch,
-            error[inner],
-            "this pair" if pair == 0 else f"pair {'before' if pair < 0 else 'after'}",
-            PINION if pair == 0 else PAIR_COLORS[pair],
-            unit="µrad",
-            dash="solid" if pair == 0 else "dot",
-        )
-        for pair in _PAIRS
-    ]
+    curves = []
+    for pair in _PAIRS:
+        name = "this pair" if pair == 0 else f"pair {'before' if pair < 0 else 'after'}"
+        color, dash = (PINION, "solid") if pair == 0 else (PAIR_COLORS[pair], "dot")
+        x = turn[inner] + pair * pitch
+        curves.append(line(x, error[inner], name, color, unit="µrad", dash=dash))
     low = float(error[contact.leads].min())
     span = max(float(np.ptp(error[contact.leads])), 1e-3)
     return Panel("Wheel ahead [µrad]", curves, {"range": [low - 1.5 * span, low + 1.4 * span]})
@@ -279,15 +274,8 @@ def _body(flanks: HypoidFlanks, gear: str) -> Trace:
         place[axis], place[(axis + 1) % 3] = along[end], share * radius[end]
         rows.append(_rotated(place, axis, np.linspace(0.0, 2.0 * np.pi, _ROUND)))
     x, y, z = np.moveaxis(_placed(np.array(rows), flanks, gear), -1, 0)
-    return {
-        "type": "surface",
-        "x": x,
-        "y": y,
-        "z": z,
-        "showscale": False,
-        "colorscale": [[0.0, MUTED], [1.0, MUTED]],
-        "hoverinfo": "skip",
-    }
+    plain = {"showscale": False, "colorscale": [[0.0, MUTED], [1.0, MUTED]], "hoverinfo": "skip"}
+    return {"type": "surface", "x": x, "y": y, "z": z, **plain}
 
 
 def _scene(eye: tuple[float, float, float], **axes: str) -> dict[str, Any]:
@@ -340,27 +328,13 @@ def ease_off(flanks: HypoidFlanks) -> Any:
     y, gap = flanks.across * 1e3, flanks.gap * 1e6
     colors = [[0.0, "#f2f6fa"], [1.0, PINION]]
     hover = "along %{x:.4g} mm, across %{y:.4g} mm: %{z:.4g} µm<extra></extra>"
-    surface: Trace = {
-        "type": "surface",
-        "x": x,
-        "y": y,
-        "z": gap,
-        "colorscale": colors,
-        "hovertemplate": hover,
-        "colorbar": {"title": {"text": "Gap [µm]"}, "thickness": 14},
-        "name": "ease-off",
-    }
+    surface: Trace = {"type": "surface", "x": x, "y": y, "z": gap, "name": "ease-off"}
+    surface |= {"colorscale": colors, "hovertemplate": hover}
+    surface["colorbar"] = {"title": {"text": "Gap [µm]"}, "thickness": 14}
     inside = flanks.active
-    dots: Trace = {
-        "type": "scatter3d",
-        "mode": "markers",
-        "x": x[inside],
-        "y": y[inside],
-        "z": gap[inside],
-        "marker": {"size": 1.6, "color": INK},
-        "name": "on both flanks",
-        "hoverinfo": "skip",
-    }
+    dots: Trace = {"type": "scatter3d", "mode": "markers", "name": "on both flanks"}
+    dots |= {"x": x[inside], "y": y[inside], "z": gap[inside], "hoverinfo": "skip"}
+    dots["marker"] = {"size": 1.6, "color": INK}
     most = float(np.max(gap[inside], initial=0.0))
     title = f"Ease-off of up to {most:.3g} µm on the {flanks.side} flank"
     scene = _scene((-1.65, -1.9, 1.15), x="Along [mm]", y="Across [mm]", z="Gap [µm]")

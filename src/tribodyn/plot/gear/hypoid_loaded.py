@@ -9,7 +9,7 @@ import numpy as np
 from tribodyn.drawing import drawing
 from tribodyn.ehl.load_share import REGIME_LIMITS
 from tribodyn.plot.theme.panels import Panel, Row, from_zero, stack, stack_rows
-from tribodyn.plot.theme.style import INK, MUTED, PAIR_COLORS, PINION, TOTAL, WHEEL, Trace, line
+from tribodyn.plot.theme.style import HEAT, INK, MUTED, PAIR_COLORS, TOTAL, WHEEL, Trace, heat, line
 from tribodyn.types import Array
 
 if TYPE_CHECKING:
@@ -19,7 +19,6 @@ if TYPE_CHECKING:
 _GRID = (90, 45)
 #: Interpolated fraction of loaded cells above which a point belongs to the contact pattern.
 _PATTERN = 0.5
-_COLORS = [[0.0, "#f2f6fa"], [0.5, "#56B4E9"], [0.75, PINION], [1.0, WHEEL]]
 _ALONG = "Along the pitch cone of the wheel, towards the heel [mm]"
 _MADE_BY = "Call tribodyn.mesh.hypoid_loaded_contact."
 
@@ -34,8 +33,8 @@ def _outline(loaded: HypoidLoadedContact) -> Trace:
             for cells in (np.swapaxes(each, 0, 1) for each in (loaded.along, loaded.across))
         )
     ]
-    outline = line(ends[0], ends[1], "common flank", MUTED, unit="mm", dash="dash")
-    return outline | {"showlegend": False, "hoverinfo": "skip", "hovertemplate": None}
+    quiet: Trace = {"showlegend": False, "hoverinfo": "skip", "hovertemplate": None}
+    return line(ends[0], ends[1], "common flank", MUTED, dash="dash", **quiet)
 
 
 def _flank(
@@ -57,20 +56,10 @@ def _flank(
     if not carries.all():  # no interpolation across unloaded cells
         part = griddata(places, carries.astype(float), grid)
         field = np.where(part > _PATTERN, field, np.nan)
-    heat: Trace = {
-        "type": "heatmap",
-        "x": x,
-        "y": y,
-        "z": field,
-        "colorscale": _COLORS,
-        "name": name,
-        "colorbar": {"title": {"text": unit}, "thickness": 14, "y": bar[0], "len": bar[1]},
-        "hovertemplate": f"along %{{x:.3g}} mm, across %{{y:.3g}} mm: %{{z:.3g}} {unit}"
-        "<extra></extra>",
-        "showlegend": False,
-        "hoverongaps": False,
-    }
-    return [heat, _outline(loaded)]
+    scale = {"title": {"text": unit}, "thickness": 14, "y": bar[0], "len": bar[1]}
+    hover = f"along %{{x:.3g}} mm, across %{{y:.3g}} mm: %{{z:.3g}} {unit}"
+    more: Trace = {"name": name, "colorbar": scale, "hoverongaps": False}
+    return [heat(x, y, field, HEAT, hover, **more), _outline(loaded)]
 
 
 def _regimes(heat: Trace) -> Trace:

@@ -51,13 +51,12 @@ def hypoid_misalignment(study: MisalignmentStudy) -> Any:
         color, label = _COLORS[number % len(_COLORS)], _label(contact.misalignment)
         flank.append(pattern(contact, label, color))
         x, y = 1e3 * study.along[number], 1e3 * study.across[number]
-        flank.append(marked([x], [y], label, color, size=9, symbol="cross", unit="mm"))
-        flank[-1]["showlegend"] = False
+        more: Trace = {"unit": "mm", "showlegend": False}
+        flank.append(marked([x], [y], label, color, size=9, symbol="cross", **more))
         turn, error = np.degrees(contact.rotation), 1e6 * contact.angular_transmission_error
         leads = contact.leads
-        errors.append(line(turn[leads], error[leads] - error[leads].max(), label, color,
-                           unit="µrad"))  # fmt: skip
-        errors[-1]["showlegend"] = False
+        more["unit"], ahead = "µrad", error[leads] - error[leads].max()
+        errors.append(line(turn[leads], ahead, label, color, **more))
     rows = [
         Row(
             "Along the pitch cone of the wheel, towards the heel [mm]",

@@ -9,7 +9,7 @@ import numpy as np
 from tribodyn.drawing import drawing
 from tribodyn.plot.theme.labels import axis_label, display_unit, displayed, significant
 from tribodyn.plot.theme.panels import Panel, stack
-from tribodyn.plot.theme.style import FILLS, PINION, TOTAL, WHEEL, Trace, line, translucent
+from tribodyn.plot.theme.style import FILLS, PINION, TOTAL, WHEEL, Trace, between, line, translucent
 from tribodyn.types import Array
 
 if TYPE_CHECKING:
@@ -18,14 +18,10 @@ if TYPE_CHECKING:
 
 def _over_line(place: Array, values: Array, name: str, color: str, unit: str) -> list[Trace]:
     """Mean over each contact line with a band from minimum to maximum."""
-    edge = {"type": "scatter", "mode": "lines", "line": {"width": 0}, "hoverinfo": "skip"}
+    least, mean, most = (f(values, axis=1) for f in (np.nanmin, np.nanmean, np.nanmax))
     fill = FILLS.get(color, translucent(color, 0.12))
-    return [
-        {**edge, "x": place, "y": np.nanmin(values, axis=1), "showlegend": False, "name": name},
-        {**edge, "x": place, "y": np.nanmax(values, axis=1), "fill": "tonexty", "fillcolor": fill,
-         "showlegend": False, "name": name},
-        line(place, np.nanmean(values, axis=1), name, color, unit=unit),
-    ]  # fmt: skip
+    band = between(place, least, most, name, fill, showlegend=False)
+    return [*band, line(place, mean, name, color, unit=unit)]
 
 
 @drawing(
@@ -58,9 +54,8 @@ def hypoid_kinematics(motion: HypoidKinematics) -> Any:
         Panel("Radius of the gap [mm]", gap),
     ]
     low, high = (float(f(motion.sliding_speed)) for f in (np.nanmin, np.nanmax))
-    return stack(
+    title = (
         f"The flanks slide at {significant(low)} to {significant(high)} {speed} with the pinion at "
-        f"{significant(float(displayed('speed', motion.pinion_speed)), 4)} rpm",
-        "Rotation of the wheel [°]",
-        panels,
+        f"{significant(float(displayed('speed', motion.pinion_speed)), 4)} rpm"
     )
+    return stack(title, "Rotation of the wheel [°]", panels)

@@ -19,6 +19,7 @@ from tribodyn.plot.theme.style import (
     PINION,
     WHEEL,
     Trace,
+    color_bar,
     figure,
     line,
     translucent,
@@ -61,20 +62,12 @@ def _efficiency(gearbox: GearboxLosses) -> Row:
             "contours": {"showlabels": True, "labelfont": {"size": 10, "color": INK}},
             "line": {"width": 0.6, "color": MUTED},
             "showlegend": False,
-            "colorbar": {
-                "title": {"text": "[%]"},
-                "thickness": 14,
-                "x": 1.01,
-                "xanchor": "left",
-                "len": 0.45,
-                "y": 1.0,
-                "yanchor": "top",
-            },
+            "colorbar": {**color_bar("[%]"), "title": {"text": "[%]"}, "len": 0.45},
             "hovertemplate": "%{x:.4g} rpm, %{y:.4g} N·m: %{z:.5g} %<extra></extra>",
         }
         return Row(speed_label, Panel(torque_label, [surface], height=1.4))
     x, label = (torque, torque_label) if torque.size > 1 else (speed, speed_label)
-    curve = {**line(x, values.ravel(), "efficiency", INK, unit="%"), "mode": "lines+markers"}
+    curve = line(x, values.ravel(), "efficiency", INK, unit="%", mode="lines+markers")
     return Row(label, Panel("Efficiency [%]", [curve]))
 
 
@@ -88,8 +81,8 @@ def _loss_parts(gearbox: GearboxLosses) -> Row:
         power: Array = getattr(gearbox, part)
         values = power[-1] if over_speed else power[:, -1]
         if np.any(values):
-            curve = line(x, values, text, color, unit="W", width=1.0)
-            traces.append({**curve, "stackgroup": "loss", "fillcolor": color})
+            more: Trace = {"unit": "W", "width": 1.0, "stackgroup": "loss", "fillcolor": color}
+            traces.append(line(x, values, text, color, **more))
     torque = f"{displayed('torque', gearbox.pinion_torque)[-1]:.4g} N·m"
     label = axis_label(name, "Speed of the pinion" if over_speed else "Torque on the pinion")
     text = f"Loss under {torque} [W]" if over_speed else "Loss [W]"
@@ -105,20 +98,12 @@ def _bars(gearbox: GearboxLosses) -> Any:
         if powers[part]
     ]
     names, power, colors = zip(*rows[::-1], strict=True) if rows else ((), (), ())
-    bar = {
-        "type": "bar",
-        "orientation": "h",
-        "y": names,
-        "x": power,
-        "marker": {"color": colors},
-        "text": [_watts(value) for value in power],
-        "hoverinfo": "skip",
-    }
+    bar = {"type": "bar", "orientation": "h", "y": names, "x": power, "marker": {"color": colors}}
+    bar |= {"text": [_watts(value) for value in power], "hoverinfo": "skip"}
     title = f"Efficiency {_percent(gearbox.efficiency.item())}, loss {_watts(gearbox.total.item())}"
     x_axis = {"title": {"text": axis_label("power", "Loss")}, "rangemode": "tozero"}
-    return figure(
-        title, [bar], {"height": 160 + 40 * len(rows), "hovermode": False, "xaxis": x_axis}
-    )
+    layout = {"height": 160 + 40 * len(rows), "hovermode": False, "xaxis": x_axis}
+    return figure(title, [bar], layout)
 
 
 @drawing(
@@ -228,25 +213,15 @@ def friction_from_loss(measured: FrictionFromLoss) -> Any:
         rows = rows[np.argsort(torque[rows], kind="stable")]
         color = (PINION, WHEEL, *PAIR_COLORS)[number % 6]
         mu, symbol = measured.friction_coefficient[rows], _SYMBOLS[number % len(_SYMBOLS)]
-        curve = line(torque[rows], mu, f"{speed:g} rpm", color, width=1.2)
         shapes = [symbol if good else f"{symbol}-open" for good in sound[rows]]
         reach = measured.high[rows] - mu
-        traces.append(
-            {
-                **curve,
-                "mode": "lines+markers",
-                "customdata": [measured.verdict[row] for row in rows],
-                "marker": {"size": 9, "symbol": shapes, "color": color},
-                "error_y": {
-                    "type": "data",
-                    "array": reach,
-                    "color": color,
-                    "thickness": 1.4,
-                    "width": 5,
-                },
-                "hovertemplate": f"{speed:g} rpm: %{{y:.4g}}, %{{customdata}}<extra></extra>",
-            }
-        )
+        traces.append(line(
+            torque[rows], mu, f"{speed:g} rpm", color, width=1.2, mode="lines+markers",
+            customdata=[measured.verdict[row] for row in rows],
+            marker={"size": 9, "symbol": shapes, "color": color},
+            error_y={"type": "data", "array": reach, "color": color, "thickness": 1.4, "width": 5},
+            hovertemplate=f"{speed:g} rpm: %{{y:.4g}}, %{{customdata}}<extra></extra>",
+        ))  # fmt: skip
     good = int(sound.sum())
     panel = Panel(axis_label("friction_coefficient", "Friction coefficient"), traces, height=1.8)
     label = axis_label("torque", "Torque")

@@ -10,9 +10,10 @@ import numpy as np
 from tribodyn.drawing import drawing
 from tribodyn.plot.machine.orders import COLORS
 from tribodyn.plot.motion.sweeps import axis_text, value_text
-from tribodyn.plot.theme.labels import axis_label, display_unit, displayed, rounded
+from tribodyn.plot.theme.curves import FROM_ZERO, curves
+from tribodyn.plot.theme.labels import axis_label, displayed, rounded
 from tribodyn.plot.theme.panels import Panel, Row, event_lines, stack, stack_rows
-from tribodyn.plot.theme.style import MUTED, Trace, line, marked
+from tribodyn.plot.theme.style import MUTED, Trace, marked
 from tribodyn.study.machine.user_tables import PartsCase
 from tribodyn.study.pipeline.summary_labels import in_words
 from tribodyn.study.studies.sweep_result import OF_PARTS, level_keys
@@ -44,12 +45,8 @@ def _panels(x: Array, levels: Iterable[tuple[Sequence[str], Array]]) -> list[Pan
     for (quantity, label), (names, values) in zip(_PANELS, levels, strict=False):
         if not len(names):
             continue
-        unit, shown = display_unit(quantity), displayed(quantity, values)
-        traces = [
-            line(x, shown[:, k], name, COLORS[k % len(COLORS)], unit=unit)
-            for k, name in enumerate(names)
-        ]
-        panels.append(Panel(axis_label(quantity, label), traces, {"rangemode": "tozero"}))
+        rows = [(name, values[:, k], COLORS[k % len(COLORS)]) for k, name in enumerate(names)]
+        panels.append(curves(quantity, label, x, rows, FROM_ZERO))
     return panels
 
 
@@ -119,14 +116,12 @@ def machine_level_lines(study: MachineLevels) -> Any:
     for quantity, label, values in signals:
         if not values.shape[2]:
             continue
-        total, unit = np.sqrt((values**2).sum(axis=2)), display_unit(quantity)
-        shown, traces = displayed(quantity, total), []
+        total, rows = np.sqrt((values**2).sum(axis=2)), []
         for k, name in enumerate(study.line):
             mesh, _, harmonic = name.rpartition(" x ")
             dash = _DASHES[(int(harmonic) - 1) % len(_DASHES)]
-            color = COLORS[sources.index(mesh) % len(COLORS)]
-            traces.append(line(x, shown[:, k], name, color, unit=unit, dash=dash, width=1.6))
-        panels.append(Panel(axis_label(quantity, label), traces, {"rangemode": "tozero"}))
+            rows.append((name, total[:, k], COLORS[sources.index(mesh) % len(COLORS)], dash))
+        panels.append(curves(quantity, label, x, rows, FROM_ZERO, width=1.6))
         if np.any(np.isfinite(total)):
             at, top = np.unravel_index(int(np.nanargmax(total)), total.shape)
             largest = (
@@ -215,7 +210,7 @@ def machine_comparison(comparison: ResultComparison) -> Any:
             values = np.array([summary.get(name, np.nan) for name in names])
             bar = {"type": "bar", "x": parts, "y": displayed(quantity, values), "name": title}
             traces.append({**bar, "marker": {"color": COLORS[number % len(COLORS)]}})
-        rows.append(Row("", Panel(axis_label(quantity, label), traces, {"rangemode": "tozero"})))
+        rows.append(Row("", Panel(axis_label(quantity, label), traces, FROM_ZERO)))
     first, last = summaries[0], summaries[-1]
     shared = [n for *_, names, _ in _by_kind(keys) for n in names if first.get(n) and n in last]
     title = "No level differs"
@@ -255,7 +250,7 @@ def machine_ensemble(study: MachineEnsemble) -> Any:
         marks = marked(parts, shown[0], name, color, size=9, symbol="circle")
         bars = {"array": shown[2] - shown[0], "arrayminus": shown[0] - shown[1]}
         marks["error_y"] = {"type": "data", "symmetric": False, "width": 8, **bars}
-        rows.append(Row("", Panel(axis_label(quantity, label), [marks], {"rangemode": "tozero"})))
+        rows.append(Row("", Panel(axis_label(quantity, label), [marks], FROM_ZERO)))
         for name, centre, a, b in zip(names, middle, low, high, strict=True):
             text = f"{in_words(name)}: 95 % of the variants from {rounded(quantity, float(a))}"
             text = f"{text} to {rounded(quantity, float(b))}"

@@ -8,8 +8,8 @@ import numpy as np
 
 from tribodyn.drawing import drawing
 from tribodyn.plot.theme.labels import axis_label, display_unit, displayed, rounded
-from tribodyn.plot.theme.panels import ROUNDING, Panel, stack
-from tribodyn.plot.theme.style import INK, PAIR_COLORS, PINION, WHEEL, Trace
+from tribodyn.plot.theme.panels import ROUNDING, from_zero, stack
+from tribodyn.plot.theme.style import INK, PAIR_COLORS, PINION, WHEEL, Trace, marked, stems
 from tribodyn.types import Array
 
 if TYPE_CHECKING:
@@ -38,30 +38,13 @@ def _lines(motion: MachineMotion, quantity: str, amplitudes: Array) -> list[Trac
             continue
         color = INK if name == "several meshes" else COLORS[number % len(COLORS)]
         x, y = hertz[places], values[places]
-        stems_x = np.stack((x, x, np.full(x.size, np.nan)), axis=1).reshape(-1)
-        stems_y = np.stack((0.0 * y, y, np.full(y.size, np.nan)), axis=1).reshape(-1)
-        stems = {"type": "scatter", "mode": "lines", "x": stems_x, "y": stems_y}
-        traces.append(
-            {
-                **stems,
-                "line": {"color": color, "width": 2},
-                "hoverinfo": "skip",
-                "showlegend": False,
-            }
-        )
-        traces.append(
-            {
-                "type": "scatter",
-                "mode": "markers",
-                "x": x,
-                "y": y,
-                "name": name,
-                "marker": {"color": color, "size": 6},
-                "customdata": [labels[place] for place in places],
-                "hovertemplate": f"%{{y:.4g}} {unit} at %{{x:.6g}} {display_unit('frequency')}, "
-                "%{customdata}<extra></extra>",
-            }
-        )
+        upright = {"type": "scatter", "mode": "lines", "hoverinfo": "skip", "showlegend": False}
+        ends = dict(zip("xy", stems(x, y), strict=True))
+        traces.append({**upright, **ends, "line": {"color": color, "width": 2}})
+        facts = [labels[place] for place in places]
+        top = marked(x, y, name, color, size=6, symbol="circle", customdata=facts)
+        hover = f"%{{y:.4g}} {unit} at %{{x:.6g}} {display_unit('frequency')}, "
+        traces.append({**top, "hovertemplate": f"{hover}%{{customdata}}<extra></extra>"})
     return traces
 
 
@@ -93,9 +76,7 @@ def machine_orders(motion: MachineMotion) -> Any:
         if signal.shape[1]
     ]
     panels = [
-        Panel(
-            axis_label(quantity, label), _lines(motion, quantity, values), {"rangemode": "tozero"}
-        )
+        from_zero(axis_label(quantity, label), _lines(motion, quantity, values))
         for quantity, label, values in rows
     ]
     quantity, label, values = rows[-1]

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import cmath
 import math
+from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -11,9 +12,10 @@ import numpy as np
 from tribodyn.drawing import drawing
 from tribodyn.gear import gear_outline
 from tribodyn.plot.machine.orders import COLORS
-from tribodyn.plot.theme.labels import axis_label, display_unit, displayed, rounded
-from tribodyn.plot.theme.panels import ROUNDING, Panel, Row, stack, stack_rows
-from tribodyn.plot.theme.style import MUTED, PAIR_COLORS, PINION, WHEEL, Trace, figure, line
+from tribodyn.plot.theme.curves import curve, curves
+from tribodyn.plot.theme.labels import axis_label, displayed, rounded
+from tribodyn.plot.theme.panels import ROUNDING, Panel, Row, from_zero, stack, stack_rows
+from tribodyn.plot.theme.style import MUTED, PAIR_COLORS, PINION, WHEEL, Trace, figure, line, stems
 from tribodyn.types import Array, ComplexArray
 
 if TYPE_CHECKING:
@@ -139,38 +141,22 @@ def planetary_stage(result: PlanetaryResult | PlanetaryCase) -> Any:
 )
 def planetary_forces(motion: PlanetaryMotion) -> Any:
     """Draw the mesh forces of all planets and the motion of the sun over a mesh cycle."""
-    unit = display_unit("mesh_force")
     panels = []
     for mesh, force in (("Sun mesh", motion.sun_mesh_force), ("Ring mesh", motion.ring_mesh_force)):
-        traces = [
-            line(
-                motion.phase,
-                displayed("mesh_force", force[:, i]),
-                f"planet {i + 1}",
-                COLORS[i % len(COLORS)],
-                unit=unit,
-            )
-            for i in range(force.shape[1])
+        rows = [
+            (f"planet {i + 1}", each, COLORS[i % len(COLORS)]) for i, each in enumerate(force.T)
         ]
-        panels.append(Panel(axis_label("mesh_force", f"{mesh} force"), traces))
+        panels.append(curves("mesh_force", f"{mesh} force", motion.phase, rows))
     sun = motion.displacement[:, motion.member.index("sun"), :2]
     at = motion.mean(sun)
     size = float(np.abs(motion.displacement).max())
     mean = " and ".join(rounded("deflection", float(each)) for each in at)
-    label = axis_label("deflection", f"Sun, about x and y<br>of {mean}")
+    label = f"Sun, about x and y<br>of {mean}"
     if np.abs(at).max() <= ROUNDING * size:
-        label = axis_label("deflection", "Sun, about the centre")
-    curves = [
-        line(
-            motion.phase,
-            displayed("deflection", sun[:, k] - at[k]),
-            "xy"[k],
-            COLORS[k],
-            unit=display_unit("deflection"),
-        )
-        for k in range(2)
-    ]
-    panels.append(Panel(label, curves, size=float(displayed("deflection", size))))
+        label = "Sun, about the centre"
+    orbit = [("xy"[k], sun[:, k] - at[k], COLORS[k]) for k in range(2)]
+    panel = curves("deflection", label, motion.phase, orbit)
+    panels.append(replace(panel, size=float(displayed("deflection", size))))
     peak = float(motion.sun_mesh_force.max())
     load = float(motion.mean(motion.sun_mesh_force).mean())
     still = np.ptp(sun, axis=0).max() <= ROUNDING * size
@@ -198,18 +184,12 @@ def ring_sensor(signal: RingSensorSignal) -> Any:
     for harmonic in (1, 2):
         lines = signal.sidebands(harmonic, _SIDEBANDS)
         order = np.array(list(lines), dtype=float) + harmonic * teeth
-        height = displayed("mesh_force", np.array(list(lines.values())))
-        nothing = np.full(order.size, np.nan)
-        x = np.stack([order, order, nothing], axis=1).ravel()
-        y = np.stack([0.0 * order, height, nothing], axis=1).ravel()
-        unit = display_unit("mesh_force")
-        label = axis_label("mesh_force", f"Harmonic {harmonic}")
-        rows = line(x, y, "lines", COLORS[0], unit=unit)
-        mark = line(np.full(2, float(harmonic * teeth)), np.array([0.0, height.max()]),
-                    "harmonic", MUTED, unit=unit)  # fmt: skip
-        mark["line"] = {**mark["line"], "dash": "dot"}
-        panels.append(Row("Order of the carrier relative to the ring",
-                          Panel(label, [mark, rows], {"rangemode": "tozero"})))  # fmt: skip
+        height = np.array(list(lines.values()))
+        rows = curve("mesh_force", *stems(order, height), "lines", COLORS[0])
+        ends = np.full(2, float(harmonic * teeth)), np.array([0.0, height.max()])
+        mark = curve("mesh_force", *ends, "harmonic", MUTED, dash="dot")
+        panel = from_zero(axis_label("mesh_force", f"Harmonic {harmonic}"), [mark, rows])
+        panels.append(Row("Order of the carrier relative to the ring", panel))
     first = signal.sidebands(1, _SIDEBANDS)
     largest = max(first, key=lambda m: first[m])
     hertz = (teeth + largest) * signal.carrier_frequency

@@ -135,32 +135,14 @@ def pitch_diameter(machine: Machine, gear: str) -> float:
 
 def _area(points: tuple[Array, Array], color: str, fill: str, text: str) -> Trace:
     """Filled outline with a text."""
-    return {
-        "type": "scatter",
-        "mode": "lines",
-        "x": points[0],
-        "y": points[1],
-        "fill": "toself",
-        "hoveron": "fills",
-        "hoverinfo": "text",
-        "showlegend": False,
-        "line": {"color": color, "width": 1.2},
-        "fillcolor": fill,
-        "text": text,
-    }
+    hover = {"hoveron": "fills", "hoverinfo": "text", "text": text}
+    return {**_strokes(points, color, 1.2), "fill": "toself", "fillcolor": fill, **hover}
 
 
 def _strokes(points: tuple[Array, Array], color: str, width: float) -> Trace:
     """Lines without a text."""
-    return {
-        "type": "scatter",
-        "mode": "lines",
-        "x": points[0],
-        "y": points[1],
-        "line": {"color": color, "width": width},
-        "hoverinfo": "skip",
-        "showlegend": False,
-    }
+    style = {"line": {"color": color, "width": width}, "hoverinfo": "skip", "showlegend": False}
+    return {"type": "scatter", "mode": "lines", "x": points[0], "y": points[1], **style}
 
 
 def _box(left: float, right: float, low: float, high: float) -> tuple[list[float], list[float]]:

@@ -84,28 +84,19 @@ def _section(diagram: Bifurcation, parameter: Any, factor: float, unit: str) -> 
             name = "step-limited, not physical" if grey else _WORDS[branch]
             color = _STEP_LIMITED if grey else _COLORS[branch]
             x = np.repeat(parameter[chosen], rows.shape[1])
-            trace = line(x, factor * rows.ravel(), name, color, unit=unit)
             # Small points on large ones show coinciding branches.
-            size = 5 if branch != "down" else 3
-            traces.append({**trace, "mode": "markers", "marker": {"size": size, "color": color}})
+            marker = {"size": 5 if branch != "down" else 3, "color": color}
+            more: Trace = {"unit": unit, "mode": "markers", "marker": marker}
+            traces.append(line(x, factor * rows.ravel(), name, color, **more))
     return traces
 
 
 def _curves(diagram: Bifurcation, parameter: Any, values: Any, unit: str) -> list[Trace]:
+    style: Trace = {"unit": unit, "width": 1.6, "showlegend": False}
+    dashes = ["dot" if branch == "down" else "solid" for branch in diagram.branches]
     return [
-        {
-            **line(
-                parameter,
-                values[number],
-                _WORDS[branch],
-                _COLORS[branch],
-                unit=unit,
-                dash="dot" if branch == "down" else "solid",
-                width=1.6,
-            ),
-            "showlegend": False,
-        }
-        for number, branch in enumerate(diagram.branches)
+        line(parameter, row, _WORDS[branch], _COLORS[branch], dash=dash, **style)
+        for branch, row, dash in zip(diagram.branches, values, dashes, strict=True)
     ]
 
 
@@ -254,24 +245,13 @@ def continuation(branch: Branch) -> Any:
     critical = [float(np.abs(p.floquet_multipliers[0])) for p in branch.special_points]
     name = _quantity_of(branch)
     ends = [float(x.min()), float(x.max())]
-    return stack(
-        _branch_title(branch),
-        axis_label(name) if name else branch.name,
-        [
-            from_zero(
-                f"Alternating rms of {branch.signals[0]} [{unit}]",
-                [*_parts(branch, x, rms, unit), *_points(branch, special, unit, True)],
-                1.4,
-            ),
-            from_zero(
-                "Largest multiplier",
-                [
-                    *_parts(branch, x, largest, ""),
-                    {**line(ends, [1.0, 1.0], "limit", MUTED, dash="dot"), "hoverinfo": "skip"},
-                    *_points(branch, critical, "", False),
-                ],
-            ),
-        ],
-        # A branch that turns back has several values at the same parameter.
-        {"hovermode": "closest"},
-    )
+    limit = line(ends, [1.0, 1.0], "limit", MUTED, dash="dot", hoverinfo="skip")
+    orbits = [*_parts(branch, x, rms, unit), *_points(branch, special, unit, True)]
+    growth = [*_parts(branch, x, largest, ""), limit, *_points(branch, critical, "", False)]
+    panels = [
+        from_zero(f"Alternating rms of {branch.signals[0]} [{unit}]", orbits, 1.4),
+        from_zero("Largest multiplier", growth),
+    ]
+    label = axis_label(name) if name else branch.name
+    # A branch that turns back has several values at the same parameter.
+    return stack(_branch_title(branch), label, panels, {"hovermode": "closest"})

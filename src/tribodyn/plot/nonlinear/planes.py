@@ -18,7 +18,7 @@ from tribodyn.plot.theme.labels import (
     unit_of,
 )
 from tribodyn.plot.theme.panels import Panel, Row, stack_rows
-from tribodyn.plot.theme.style import PAIR_COLORS, PINION, WHEEL, figure
+from tribodyn.plot.theme.style import PAIR_COLORS, PINION, WHEEL, Trace, figure, heat
 
 if TYPE_CHECKING:
     from tribodyn.analysis import Basins, ParameterMap
@@ -63,20 +63,9 @@ def _plane(plane: Basins, x: Any, y: Any) -> dict[str, Any]:
     scale = _stepped(colors)
     texts = ["no attractor", *(f"attractor {n + 1}" for n in range(count))]
     label = np.clip(plane.attractor, -1, None).T
-    return {
-        "type": "heatmap",
-        "x": x,
-        "y": y,
-        "z": label,
-        "zmin": -1.5,
-        "zmax": count - 0.5,
-        "colorscale": scale,
-        "showscale": False,
-        "opacity": 0.85,
-        "text": np.array(texts)[label + 1],
-        "hovertemplate": "%{x:.4g}, %{y:.4g}: %{text}<extra></extra>",
-        "showlegend": False,
-    }
+    names = np.array(texts)[label + 1]
+    hover, ends = "%{x:.4g}, %{y:.4g}: %{text}", {"zmin": -1.5, "zmax": count - 0.5}
+    return heat(x, y, label, scale, hover, showscale=False, opacity=0.85, text=names, **ends)
 
 
 def _component(plane: Basins, number: int, axis: int) -> Any:
@@ -87,6 +76,12 @@ def _component(plane: Basins, number: int, axis: int) -> Any:
     base, velocity = name.removesuffix("_velocity"), name.endswith("_velocity")
     column = plane.names.index(base)
     return (each.velocity if velocity else each.position)[:, column]
+
+
+def _states(x: Any, y: Any, name: str, **marker: Any) -> Trace:
+    """Marks of states with a name in the legend."""
+    marks = {"type": "scatter", "mode": "markers", "x": x, "y": y}
+    return {**marks, "name": name, "marker": {"size": 11, **marker}}
 
 
 def _plane_axis(name: str, values: Any, unit: str) -> tuple[Array, str]:
@@ -120,34 +115,13 @@ def basins(plane: Basins) -> Any:
     factor, unit = scaled([each.rms for each in plane.attractors], unit_of(plane.signal))
     traces = [_plane(plane, x, y)]
     for number in range(len(plane.attractors)):
-        color = _COLORS[number % len(_COLORS)]
-        traces.append(
-            {
-                "type": "scatter",
-                "mode": "markers",
-                "x": factors[0] * _component(plane, number, 0),
-                "y": factors[1] * _component(plane, number, 1),
-                "name": _name(plane, number, factor, unit),
-                "marker": {
-                    "symbol": "x",
-                    "size": 11,
-                    "color": color,
-                    "line": {"color": "white", "width": 1.5},
-                },
-            }
-        )
+        x_states, y_states = (factors[k] * _component(plane, number, k) for k in (0, 1))
+        marker: Trace = {"symbol": "x", "line": {"color": "white", "width": 1.5}}
+        marker["color"] = _COLORS[number % len(_COLORS)]
+        traces.append(_states(x_states, y_states, _name(plane, number, factor, unit), **marker))
     if plane.unresolved:
         name = f"no attractor: {100.0 * plane.unresolved:.2g} %"
-        traces.append(
-            {
-                "type": "scatter",
-                "mode": "markers",
-                "x": [None],
-                "y": [None],
-                "name": name,
-                "marker": {"symbol": "square", "size": 11, "color": _NOWHERE},
-            }
-        )
+        traces.append(_states([None], [None], name, symbol="square", color=_NOWHERE))
     layout = {
         "xaxis": {"title": {"text": x_label}, "range": [float(x[0]), float(x[-1])]},
         "yaxis": {"title": {"text": y_label}, "range": [float(y[0]), float(y[-1])]},
@@ -182,16 +156,8 @@ def _class(survey: ParameterMap) -> Any:
 
 
 def _heat(x: Any, y: Any, z: Any, hover: str, **more: Any) -> dict[str, Any]:
-    return {
-        "type": "heatmap",
-        "x": x,
-        "y": y,
-        "z": np.asarray(z).T,
-        "colorscale": _SCALE,
-        "hovertemplate": f"%{{x:.5g}}, %{{y:.4g}}: {hover}<extra></extra>",
-        "showlegend": False,
-        **more,
-    }
+    colors = more.pop("colorscale", _SCALE)
+    return heat(x, y, np.asarray(z).T, colors, f"%{{x:.5g}}, %{{y:.4g}}: {hover}", **more)
 
 
 def _range(rms: Any) -> dict[str, float]:
@@ -206,17 +172,10 @@ def _range(rms: Any) -> dict[str, float]:
 def _periods(survey: ParameterMap, x: Any, y: Any) -> dict[str, Any]:
     scale = _stepped([color for _, color in _PERIODS])
     ticks = {"tickvals": list(range(len(_PERIODS))), "ticktext": [text for text, _ in _PERIODS]}
-    return _heat(
-        x,
-        y,
-        _class(survey),
-        "period %{customdata[0]}, %{customdata[1]}",
-        zmin=-0.5,
-        zmax=len(_PERIODS) - 0.5,
-        colorscale=scale,
-        colorbar=ticks,
-        customdata=np.dstack((survey.period.T, survey.verdict.T)),
-    )
+    facts = np.dstack((survey.period.T, survey.verdict.T))
+    more = {"zmin": -0.5, "zmax": len(_PERIODS) - 0.5, "colorscale": scale, "colorbar": ticks}
+    hover = "period %{customdata[0]}, %{customdata[1]}"
+    return _heat(x, y, _class(survey), hover, customdata=facts, **more)
 
 
 def _map_title(survey: ParameterMap) -> str:

@@ -8,7 +8,7 @@ import numpy as np
 
 from tribodyn.drawing import drawing
 from tribodyn.plot.signals.lines import strongest_lines
-from tribodyn.plot.signals.maps import amplitude_label, color_bar
+from tribodyn.plot.signals.maps import amplitude_label
 from tribodyn.plot.signals.recorded import outline
 from tribodyn.plot.signals.revolution import finer, over_a_turn
 from tribodyn.plot.theme.labels import axis_label, readable, significant
@@ -20,6 +20,7 @@ from tribodyn.plot.theme.style import (
     TOTAL,
     WHEEL,
     Trace,
+    color_bar,
     heat,
     line,
     marked,

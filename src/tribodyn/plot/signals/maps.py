@@ -18,7 +18,18 @@ from tribodyn.plot.theme.labels import (
     significant,
 )
 from tribodyn.plot.theme.panels import Panel, from_zero, stack
-from tribodyn.plot.theme.style import GRID, INK, MUTED, PINION, TOTAL, WHEEL, Trace, heat, line
+from tribodyn.plot.theme.style import (
+    GRID,
+    INK,
+    MUTED,
+    PINION,
+    TOTAL,
+    WHEEL,
+    Trace,
+    color_bar,
+    heat,
+    line,
+)
 from tribodyn.types import Array
 
 if TYPE_CHECKING:
@@ -31,7 +42,6 @@ _DECADES = 3
 MAP_HEIGHT = 1.9
 #: Most cells along each side, about the number of pixels of a panel.
 _MOST = 480
-_BAR = {"len": 0.62, "y": 1.0, "yanchor": "top", "thickness": 14, "x": 1.01, "xanchor": "left"}
 _CUTS = ((TOTAL, "solid"), (PINION, "dash"), (WHEEL, "dot"))
 #: Most spectra, most points of each, and the height of the largest peak in spacings.
 _CURVES, _POINTS, _REACH = 40, 600, 6.0
@@ -65,11 +75,6 @@ def amplitude_heatmap(x: Array, y: Array, amplitude: Array, unit: str, hover: st
         np.round(decades, 3), _SCALE, f"{hover}: %{{customdata:.3g}} {readable(unit)}",
         zmin=-_DECADES, zmax=0, customdata=most, colorbar=scale,
     )  # fmt: skip
-
-
-def color_bar(title: str) -> dict[str, Any]:
-    """Colour bar beside the map at the top of a figure."""
-    return {**_BAR, "title": {"text": title, "side": "top", "font": {"size": 13, "color": MUTED}}}
 
 
 @drawing(

@@ -149,6 +149,12 @@ def heat(x: Any, y: Any, z: Any, colors: Any, hover: str, **more: Any) -> Trace:
             "hovertemplate": f"{hover}<extra></extra>", "showlegend": False, **more}  # fmt: skip
 
 
+def color_bar(title: str) -> dict[str, Any]:
+    """Colour bar beside the map at the top of a figure."""
+    place = {"len": 0.62, "y": 1.0, "yanchor": "top", "thickness": 14, "x": 1.01, "xanchor": "left"}
+    return {**place, "title": {"text": title, "side": "top", "font": {"size": 13, "color": MUTED}}}
+
+
 def stems(x: Array, y: Array, foot: float = 0.0) -> tuple[Array, Array]:
     """Points of vertical lines from a foot up to each value, with gaps between them."""
     gap = np.full(len(x), np.nan)
