@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from dataclasses import replace
 from types import SimpleNamespace
 from typing import Any
 
@@ -10,7 +11,8 @@ import numpy as np
 import pytest
 
 from tribodyn import plot
-from tribodyn.plot.machine.levels import _title
+from tribodyn.losses.gearbox import PARTS
+from tribodyn.plot.machine.levels import _title, levels_text
 from tribodyn.plot.motion.spectra import _strongest
 from tribodyn.plot.motion.sweeps import _case_title
 from tribodyn.plot.theme.panels import Panel, stack
@@ -142,3 +144,75 @@ def test_largest_level_of_the_parts_is_where_the_title_says() -> None:
     values = np.array([[1.0, 4.0], [np.nan, 2.0], [7.0, 3.0]])
     title = _title([(("first", "second"), values)], ["10 rpm", "20 rpm", "30 rpm"])
     assert title == "Mesh first has the largest level at 30 rpm: 7.00 N"
+
+
+def said(name: str, subject: Any) -> str:
+    """Caption of a figure of a subject."""
+    figure: Any = plot.FIGURES[name]
+    return str(figure.caption if isinstance(figure.caption, str) else figure.caption(subject))
+
+
+def test_captions_of_machines_name_the_parts_that_they_have() -> None:
+    motion = machine((90.0, 204.0), (900.0, 4000.0))
+    for name in ("machine_orders", "machine_forces"):
+        assert "bearing" not in said(name, motion)
+        assert "housing" not in said(name, motion)
+    radial = np.zeros((CLOCK.size, 1, 6))
+    held = replace(motion, bearing=("A",), bearing_force=radial)
+    assert "bearings" in said("machine_orders", held)
+    assert "radial force" in said("machine_forces", held)
+    assert "mesh whose harmonic" not in said("machine_orders", machine((90.0,), (900.0,)))
+    assert levels_text(("first",), ("first",), (), ()) == (
+        "Levels without the mean: mesh forces (rms) and transmission errors (peak to peak)."
+    )
+
+
+def test_of_many_parts_those_that_vary_least_are_named_as_left_out() -> None:
+    count = 11
+    force = np.arange(1.0, count + 1.0) * WAVE[:, None]
+    names = tuple(f"m{k}" for k in range(count))
+    base = machine((1.0,), (0.0,))
+    motion = replace(base, mesh=names, mesh_force=force, cycles=np.arange(1, count + 1))
+    figure = plot.machine_forces(motion)
+    drawn = [trace.name for trace in figure.data]
+    assert drawn == [f"m{k}" for k in reversed(range(count - len(drawn), count))]
+    assert f"{count - len(drawn)} meshes that vary less" in said("machine_forces", motion)
+
+
+def test_a_relief_that_lowers_nothing_is_not_said_to_lower() -> None:
+    study = SimpleNamespace(
+        face_position=np.linspace(-5e-3, 5e-3, 3), torque=np.array([50.0]),
+        face_load_after=np.ones((1, 3)), face_load_before=np.ones((1, 3)), crowning=0.0,
+        lead_slope=0.0, face_load_factor_before=np.array([1.2]),
+        face_load_factor_after=np.array([1.2]),
+    )  # fmt: skip
+    title = plot.FIGURES["lead_optimum"].draw(study).layout["title"]["text"]
+    assert title.endswith("do not lower the greatest face load factor of 1.2")
+    study.face_load_factor_after = np.array([1.1])
+    title = plot.FIGURES["lead_optimum"].draw(study).layout["title"]["text"]
+    assert title.endswith("lower the greatest face load factor from 1.2 to 1.1")
+
+
+def test_captions_of_responses_name_what_is_drawn() -> None:
+    portrait = SimpleNamespace(gap=-1.0)
+    assert "backlash" not in said("phase_portrait", portrait)
+    assert "backlash" in said("phase_portrait", SimpleNamespace(gap=1e-4))
+    fixed = SimpleNamespace(free_rotation=np.array([False, False]))
+    assert "Free rotation" not in said("lyapunov", fixed)
+    branch = SimpleNamespace(stable=np.array([True, True]), special=lambda kind: [])
+    assert "Dashed" not in said("continuation", branch)
+    assert "turns back" not in said("continuation", branch)
+    sweep = SimpleNamespace(branches=("up",), verdicts=dict)
+    assert "coexist" not in said("bifurcation", sweep)
+    assert "Grey" not in said("bifurcation", sweep)
+
+
+def test_losses_of_one_point_or_of_teeth_alone_are_described_as_such() -> None:
+    parts = dict.fromkeys(PARTS, np.zeros((2, 2)))
+    teeth = SimpleNamespace(
+        **{**parts, "gear": np.ones((2, 2))}, total=np.ones((2, 2)), pinion_speed=np.ones(2),
+        pinion_torque=np.ones(2),
+    )  # fmt: skip
+    assert "Only the loss of the teeth" in said("losses", teeth)
+    assert "seals" not in said("losses", teeth)
+    assert "Above" not in said("losses", SimpleNamespace(total=np.ones((1, 1))))

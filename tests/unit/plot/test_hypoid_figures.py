@@ -93,6 +93,7 @@ def test_figures_under_load_show_their_figures():
             rubbed = hypoid_friction(loaded, 314.0, lubricant=oil, composite_roughness=roughness)
         figure = rubbed.plot_friction()
         assert [each.name for each in figure.data if "flank" not in each.name] == names
+        assert "inf" not in figure.layout.title.text  # smooth flanks have a film, no ratio
 
 
 def test_figures_of_other_results_are_refused(contact):

@@ -293,6 +293,11 @@ def test_tip_relief_map_has_amount_across_and_length_upwards() -> None:
     assert "6.00 µm to 2.00 µm" in figure.layout.title.text
 
 
+def test_a_relief_without_effect_is_not_said_to_lower_the_variation() -> None:
+    title = FIGURES["tip_relief_map"](relief(objective=6e-6)).layout.title.text
+    assert title.endswith("does not lower the variation of 6.00 µm")
+
+
 def test_an_optimum_at_the_edge_is_reported() -> None:
     figure = FIGURES["tip_relief_map"]
     assert isinstance(figure, Drawing)

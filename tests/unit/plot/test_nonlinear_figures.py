@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -30,6 +32,18 @@ def test_plane_of_starts_has_one_colour_for_each_attractor():
     assert figure.layout.yaxis.title.text == "Q0 velocity [m/s]"
     assert figure.layout.title.text.startswith("2 attractors coexist")
     assert basin_plane.to_xarray()["share"].values.sum() == pytest.approx(1.0)
+
+
+def test_states_without_an_attractor_are_not_said_to_reach_it():
+    plane = basins(
+        hysteresis_system(), BEAT, between=((-3.0, 3.0), (-2.0, 2.0)), points=(3, 3), steps=64,
+        verdict=False,
+    )  # fmt: skip
+    reached = np.where(plane.attractor == 0, 0, -1)
+    lone = replace(plane, attractors=plane.attractors[:1], attractor=reached)
+    title = lone.plot().layout.title.text
+    assert title.startswith(f"{100.0 * plane.attractors[0].share:.3g} % of the initial states")
+    assert "All" not in title
 
 
 def test_map_shows_period_rms_and_loss():

@@ -135,8 +135,8 @@ def usual_films(film: Array) -> dict[str, Any]:
 @drawing(
     "film_transient",
     heading="Film over time",
-    caption="Load, film and maximum pressure of a contact whose load, radius and speed change. "
-    "The squeeze effect delays the thinning of the film where the load rises.",
+    caption="Load, film and maximum pressure of a contact over time. Where the load rises, the "
+    "squeeze effect delays the thinning of the film.",
     of="TransientLineContact",
     made_by="Call tribodyn.ehl.solve_transient_line_contact and its plot method.",
 )

@@ -87,7 +87,7 @@ def film_temperature(solution: Any) -> Any:
     "film_temperature_over_time",
     heading="Temperature of the film over time",
     caption="Film, highest temperature of the oil and of both surfaces, and friction of a contact "
-    "whose load, radius and speeds change.",
+    "over time.",
     of="ThermalTransientLineContact",
     made_by="Call tribodyn.ehl.solve_transient_line_contact with thermal=True and its plot method.",
 )

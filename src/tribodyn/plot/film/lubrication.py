@@ -156,8 +156,10 @@ _has_film = Need("central_film minimum_film", "The film model gives no film thic
     "film_over_operation",
     heading="Oil film over speed and torque",
     caption=lambda films: (
-        f"The minimum film {_where(films)}, over the speed for each torque. "
-        "Below, its ratio to the composite roughness: asperities touch below a ratio of 1."
+        f"The {'least central' if films.minimum_film is None else 'minimum'} film {_where(films)}, "
+        "over the speed for each torque."
+        + " Below, its ratio to the composite roughness: asperities touch below a ratio of 1."
+        * (films.film_ratio is not None)
     ),
     missing=_has_film,
     of="FilmOverOperation",

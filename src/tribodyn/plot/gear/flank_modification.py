@@ -130,12 +130,25 @@ def _run_out(pair: SpurPair) -> Row:
     )
 
 
+def _caption(pair: SpurPair) -> str:
+    rows = (
+        (pair.has_profile_modification, "The profile is shown at the middle of the face."),
+        (pair.has_lead_modification, "The lead is shown at the middle of the profile, relative to "
+         "the middle of the face."),
+        (pair.has_pitch_deviation, "Bars are the places of the teeth along the pitch circle."),
+        (pair.has_run_out, "Run-out moves all flanks of a gear once per turn."),
+    )  # fmt: skip
+    first = (
+        "Gap of the flanks where perfect involutes would touch: material is removed where the "
+        "curves are above zero."
+    )
+    return " ".join([first, *(text for deviates, text in rows if deviates)])
+
+
 @drawing(
     "flank_modification",
     heading="Flank modifications",
-    caption="Gap of the flanks where perfect involutes would touch: material is "
-    "removed where the curves are above zero. The profile is shown at the middle of the face, the "
-    "lead at the middle of the profile, relative to the middle of the face.",
+    caption=_caption,
     missing=_perfect,
     of=_HOLDERS,
     made_by=RUN,

@@ -19,9 +19,16 @@ if TYPE_CHECKING:
 @drawing(
     "heat_balance",
     heading="Heat balance",
-    caption="The loss at every computed temperature, and the straight line of the heat dissipated "
-    "to the surroundings. Gears and oil settle at the temperature at which they intersect. Gears "
-    "with a heat transfer to the oil are warmer than it, by the loss of their teeth over it.",
+    caption=lambda balance: (
+        "The loss at every computed temperature, and the straight line of the heat dissipated to "
+        "the surroundings. "
+        + (
+            "Gears and oil settle at the temperature at which they intersect."
+            if balance.gear_temperature is None
+            else "The oil settles at the temperature at which they intersect; the gears are warmer "
+            "by the loss of their teeth over the heat transfer to the oil."
+        )
+    ),
     of="HeatBalance",
     made_by="Use Result.heat of a case with lubricant.heat_transfer.",
 )

@@ -177,9 +177,12 @@ def hypoid_friction(friction: HypoidFriction) -> Any:
         Row(_ALONG, Panel(f"Across [mm], {each[0]}", flank_traces, {}, height=1.4))
         for each, flank_traces in zip(maps, traces, strict=True)
     ]
+    film = f"film ratio from {friction.minimum_film_ratio:.3g}"
+    if friction.composite_roughness == 0.0:
+        loads = loaded.cell_force > 0.0
+        film = f"film from {1e6 * friction.minimum_film[loads].min():.3g} µm"
     title = (
         f"Mean friction coefficient {friction.mean_friction_coefficient:.3g} at "
-        f"{friction.pinion_speed * 30.0 / np.pi:.4g} rpm, "
-        f"film ratio from {friction.minimum_film_ratio:.3g}"
+        f"{friction.pinion_speed * 30.0 / np.pi:.4g} rpm, {film}"
     )
     return stack_rows(title, rows, {"hovermode": "closest"})

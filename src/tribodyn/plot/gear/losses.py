@@ -106,12 +106,24 @@ def _bars(gearbox: GearboxLosses) -> Any:
     return figure(title, [bar], layout)
 
 
+def _caption(gearbox: GearboxLosses) -> str:
+    if gearbox.total.size == 1:
+        return "Parts of the loss at the operating point."
+    caption = "Above, the efficiency with all losses of the case; below, the parts of the loss"
+    if gearbox.pinion_speed.size > 1 < gearbox.pinion_torque.size:
+        caption += " over the speed, under the largest torque"
+    if not any(np.any(getattr(gearbox, part)) for part in PARTS if part != "gear"):
+        return f"{caption}. Only the loss of the teeth is computed."
+    idle = [part for part in ("seal", "churning", "windage") if np.any(getattr(gearbox, part))]
+    if not idle:
+        return f"{caption}, stacked."
+    return f"{caption}, stacked. Losses of seals and oil do not grow with the torque."
+
+
 @drawing(
     "losses",
     heading="Losses and efficiency",
-    caption="Above, the efficiency with all losses of the case; below, the stacked parts of the "
-    "loss. Tooth friction grows with torque and speed, losses of seals and oil grow with "
-    "the speed alone and dominate at low load.",
+    caption=_caption,
     of="GearboxLosses",
     made_by="Call tribodyn.loss_map(case) and its plot method.",
 )

@@ -50,6 +50,40 @@ def _panels(x: Array, levels: Iterable[tuple[Sequence[str], Array]]) -> list[Pan
     return panels
 
 
+def levels_text(*parts: Sequence[str]) -> str:
+    """Sentence that lists the levels of those kinds of parts that a machine has."""
+    names = ("mesh forces (rms)", "transmission errors (peak to peak)",
+             "radial bearing forces (rms)", "accelerations of the housing (rms)",
+             "load factors of the planets")  # fmt: skip
+    return f"Levels without the mean: {_listed(names, parts)}."
+
+
+def _of_all(*parts: Sequence[str]) -> str:
+    return _listed(("meshes", "bearings", "points of the housing"), parts)
+
+
+def _listed(names: Sequence[str], parts: Sequence[Sequence[str]]) -> str:
+    texts = [name for name, part in zip(names, parts, strict=False) if len(part)]
+    return " and ".join(filter(None, (", ".join(texts[:-1]), texts[-1])))
+
+
+def _swept(study: Sweep) -> str:
+    parts = [level_keys(study.figures, figure) for figure in OF_PARTS]
+    caption = levels_text(*parts)
+    if study.axes[0].key == "operation.speed":
+        caption += (
+            " Dotted lines are where a harmonic of a mesh meets a natural mode that strains it."
+        )
+    return caption + " Crosses are values that failed." * any(map(bool, study.failed))
+
+
+def _compared(comparison: ResultComparison) -> str:
+    keys = dict.fromkeys(key for result in comparison.results for key in result.summary())
+    kinds = {quantity: names for quantity, _, names, _ in _by_kind(keys)}
+    parts = [kinds.get(quantity, []) for quantity, _ in _PANELS]
+    return f"{levels_text(*parts)} At the operating point, one bar for each result."
+
+
 def _marks(met: Iterable[Resonance], x: Array | None = None) -> dict[str, Any]:
     """Vertical lines where a mesh meets a mode; of those too near to be named the strongest."""
     places: list[tuple[str, float]] = []
@@ -76,9 +110,12 @@ def _title(levels: Iterable[tuple[Sequence[str], Array]], x: Sequence[str]) -> s
 @drawing(
     "machine_levels",
     heading="Levels over the speed",
-    caption="Alternating mesh forces, transmission errors, radial bearing forces and accelerations "
-    "of the housing. Dotted lines are speeds at which a harmonic of a mesh meets a natural mode "
-    "that strains this mesh: the few with the largest amplitudes at the bearings.",
+    caption=lambda study: (
+        levels_text(study.mesh, study.mesh, study.bearing, study.node)
+        + " Dotted lines are speeds at which a harmonic of a mesh meets a natural mode that "
+        "strains this mesh: the few with the largest amplitudes at the "
+        f"{'bearings' if study.bearing else 'meshes'}." * bool(study.resonances)
+    ),
     of="MachineLevels",
     made_by="Call tribodyn.speed_sweep or tribodyn.run_up with a machine.",
 )
@@ -99,8 +136,10 @@ def machine_levels(study: MachineLevels) -> Any:
 @drawing(
     "machine_level_lines",
     heading="Which mesh causes the level",
-    caption="Amplitudes at the harmonics of each mesh over the speed, in the colour of the mesh; "
-    "for bearings and housing the root of the sum of the squares over all of them.",
+    caption=lambda study: (
+        "Amplitudes at the harmonics of each mesh over the speed, in the colour of the mesh: the "
+        f"root of the sum of the squares over all {_of_all(study.mesh, study.bearing, study.node)}."
+    ),
     of="MachineLevels",
     made_by="Call tribodyn.speed_sweep or tribodyn.run_up with a machine.",
 )
@@ -143,9 +182,7 @@ def _lack(study: Sweep) -> str:
 @drawing(
     "machine_sweep",
     heading="Levels of the parts",
-    caption="Alternating mesh forces, transmission errors, radial bearing forces and accelerations "
-    "of the housing. Over the speed, dotted lines are where a harmonic of a mesh meets a natural "
-    "mode that strains this mesh. Crosses are values that failed.",
+    caption=_swept,
     missing=_lack,
     of="Sweep",
     made_by='Call tribodyn.sweep(machine, "operation.speed", ("400 rpm", "3500 rpm"), 60).',
@@ -193,8 +230,7 @@ def _not_of_machines(comparison: ResultComparison) -> str:
 @drawing(
     "machine_comparison",
     heading="Levels of the parts",
-    caption="Alternating mesh forces, transmission errors, radial bearing forces and accelerations "
-    "of the housing at the operating point, one bar for each result.",
+    caption=_compared,
     missing=_not_of_machines,
     of="ResultComparison",
     made_by="tribodyn.compare_results",

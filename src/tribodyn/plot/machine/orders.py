@@ -54,12 +54,26 @@ def _total(motion: MachineMotion, signal: Array) -> Array:
     return np.asarray(np.sqrt((waves**2).reshape(len(waves), -1).sum(axis=1)))
 
 
+def _caption(motion: MachineMotion) -> str:
+    kinds = [
+        kind for kind, names in (("bearings", motion.bearing), ("housing", motion.node)) if names
+    ]
+    below = (
+        f" Below, what reaches {' and '.join(kinds)}: the root of the sum of the squares over all "
+        "of them and over all directions."
+    )
+    return (
+        "Amplitudes at the mesh harmonics: the alternating forces of the meshes."
+        + below * bool(kinds)
+        + " The colour names the mesh whose harmonic lies at that frequency."
+        * (len(motion.mesh) > 1)
+    )
+
+
 @drawing(
     "machine_orders",
     heading="Which mesh causes which line",
-    caption="Amplitudes at the mesh harmonics. Above, the alternating forces of the meshes; below, "
-    "what reaches bearings and housing: the root of the sum of the squares over all of them and "
-    "over all directions. The colour names the mesh whose harmonic lies at that frequency.",
+    caption=_caption,
     of=("MachineMotion", "MachineResult.motion"),
     made_by="Run a case with shafts: tribodyn.run.",
 )

@@ -36,9 +36,10 @@ def lead_optimum(study: LeadOptimum) -> Any:
         float(factors.max())
         for factors in (study.face_load_factor_before, study.face_load_factor_after)
     )
-    title = (
-        f"Crowning of {crowning} and a lead slope of {slope} lower the greatest face load factor "
-        f"from {first:.3g} to {last:.3g}"
-    )
+    title = f"Crowning of {crowning} and a lead slope of {slope}"
+    if last < first:
+        title += f" lower the greatest face load factor from {first:.4g} to {last:.4g}"
+    else:
+        title += f" do not lower the greatest face load factor of {first:.4g}"
     label = axis_label("face_position", "Position along the face from its middle")
     return stack(title, label, [from_zero("Load over its mean", traces, 1.6)])

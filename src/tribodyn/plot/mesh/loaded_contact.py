@@ -197,13 +197,28 @@ def _shares_over_cycles(contact: LoadedContact) -> list[Trace]:
     ]
 
 
+def _over_cycles_or_angle(contact: LoadedContact) -> str:
+    caption = (
+        "The transmission error is the approach of the loaded gears along the line of action; its "
+        "variation excites vibration. The secant stiffness is the load over the total deflection"
+    )
+    if several_cycles(contact):
+        return f"{caption}. The teeth differ: the curves repeat after {contact.mesh_cycles} cycles."
+    corner = (
+        "carries with a part of its face"
+        if contact.gear_pair.overlap_ratio
+        else ("has tip-corner contact")
+    )
+    return (
+        f"{caption}, the tangent stiffness applies to small vibration about the load. A pair that "
+        f"carries load before A or after E {corner}."
+    )
+
+
 @drawing(
     "loaded_contact",
     heading="Loaded tooth contact",
-    caption="The transmission error is the approach of the loaded gears along the line of action; "
-    "its variation excites vibration. The tangent stiffness applies to small vibration about the "
-    "load, the secant stiffness to the total deflection. A pair that carries load before A or "
-    "after E has tip-corner contact.",
+    caption=_over_cycles_or_angle,
     of="LoadedContact",
     made_by="Call tribodyn.loaded_contact(case) and its plot method.",
 )

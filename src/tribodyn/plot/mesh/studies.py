@@ -232,8 +232,11 @@ def tip_relief_map(study: TipReliefOptimum) -> Any:
     before, after = (
         rounded(_QUANTITY, value) for value in (study.objective_before, study.objective)
     )
+    effect = f"lowers the variation from {before} to {after}"
+    if not study.objective < study.objective_before:
+        effect = f"does not lower the variation of {before}"
     return stack_rows(
-        f"A tip relief of {amount} over {length} lowers the variation from {before} to {after}",
+        f"A tip relief of {amount} over {length} {effect}",
         [_map(study), _relief_swings(study), _relief_time_histories(study)],
         {"hovermode": "closest"},
     )
@@ -343,13 +346,14 @@ _WORDS = {
 )
 def coupling(coupled: Coupling) -> Any:
     """Draw the change of each quantity per iteration, and the converged load."""
-    curves = []
+    curves, changed = [], list[str]()
     for (name, label), color in zip(
         _WORDS.items(), (TOTAL, PINION, WHEEL, *PAIR_COLORS), strict=False
     ):
         change = getattr(coupled, name)
         if not change.any():
             continue
+        changed.append(label)
         positive = np.where(change > 0.0, change, np.nan)
         curves.append({**line(coupled.iteration, positive, label, color), "mode": "lines+markers"})
     ends = [float(coupled.iteration[0]), float(coupled.iteration[-1])]
@@ -357,8 +361,9 @@ def coupling(coupled: Coupling) -> Any:
     powers = {"type": "log", "exponentformat": "power", "dtick": 2}
     load = line(coupled.phase, coupled.loading, "load", PINION)
     passes, over = coupled.iteration.size, coupled.loading
+    changing = " and ".join(filter(None, (", ".join(changed[:-1]), *changed[-1:]))) or "all"
     title = (
-        f"Load, film, friction and stiffness converge after {passes} "
+        f"{changing[:1].upper()}{changing[1:]} converge after {passes} "
         f"iteration{'s' * (passes > 1)}; the mesh force is {over.min():.3g} to {over.max():.3g} "
         "times that of the torque"
     )

@@ -138,13 +138,32 @@ def _bifurcation_title(diagram: Bifurcation, parameter: Any, label: str) -> str:
     return "; ".join(parts[:2])  # the plot shows the rest
 
 
+def _bifurcation_caption(diagram: Bifurcation) -> str:
+    caption = (
+        "The compression of the mesh once per mesh cycle, at the same phase. One point is a period "
+        "of one mesh cycle, two points are a period of two cycles, a cloud is a non-periodic "
+        "response."
+    )
+    if {"up", "down"} <= set(diagram.branches):
+        caption += " Where the upward and the downward sweep differ, two responses coexist."
+    if diagram.verdicts().get("step-limited", 0):
+        caption += " Grey points vanish with a shorter time step: they are not physical."
+    return caption
+
+
+def _branch_caption(branch: Branch) -> str:
+    return (
+        "Amplitude of the periodic orbit over the parameter."
+        + " Dashed parts are unstable." * (not np.all(branch.stable))
+        + " Where the branch turns back, the response jumps." * bool(branch.special("fold"))
+        + " Below: the largest Floquet multiplier, the growth of a disturbance in one period."
+    )
+
+
 @drawing(
     "bifurcation",
     heading="Bifurcation diagram",
-    caption="The compression of the mesh once per mesh cycle, at the same phase. One "
-    "point is a period of one mesh cycle, two points are a period of two cycles, a "
-    "cloud is a non-periodic response. Where the upward and the downward sweep differ, two "
-    "responses coexist. Grey points vanish with a shorter time step: they are not physical.",
+    caption=_bifurcation_caption,
     of="Bifurcation",
     made_by='Call tribodyn.bifurcation(case, over="operation.speed", between=("400 '
     'rpm", "3500 rpm")) and its plot method.',
@@ -231,9 +250,7 @@ def _branch_title(branch: Branch) -> str:
 @drawing(
     "continuation",
     heading="Branch of periodic orbits",
-    caption="Amplitude of the periodic orbit over the parameter. Dashed parts are "
-    "unstable. Where the branch turns back, the response jumps. Below: the "
-    "largest Floquet multiplier, the growth of a disturbance in one period.",
+    caption=_branch_caption,
     of="Branch",
     made_by="Call tribodyn.dynamics.continuation(...) and its plot method.",
 )

@@ -35,9 +35,12 @@ _MAX_POINTS = 1500
 @drawing(
     "phase_portrait",
     heading="Phase portrait",
-    caption="Velocity over position of a coordinate, or of the compression of a contact. A "
-    "periodic response is a closed curve; the dots are its states at mesh phase 0. Dashed lines "
-    "are the limits of the backlash.",
+    caption=lambda portrait: (
+        f"Velocity over {'compression of a contact' if portrait.gap >= 0.0 else 'position'}. A "
+        "periodic response is a closed curve; the dots are its states at mesh phase 0."
+        + " Dashed lines are the limits of the backlash."
+        * bool(portrait.gap > 0.0)
+    ),
     of="PhasePortrait",
     made_by="Call tribodyn.analysis.phase_portrait(response) and its plot method.",
 )
@@ -199,10 +202,13 @@ def _exponent_title(spectrum: LyapunovExponents) -> str:
 @drawing(
     "lyapunov",
     heading="Lyapunov exponents",
-    caption="Mean growth rate of a small disturbance up to each mesh cycle. The band is the "
-    "standard error of the mean over these cycles, the dotted line the result. A largest exponent "
-    "that stays above zero means chaos. Free rotation of the drive train is not vibration: its "
-    "exponents are left out.",
+    caption=lambda spectrum: (
+        "Mean growth rate of a small disturbance up to each mesh cycle. The band is the standard "
+        "error of the mean over these cycles, the dotted line the result. A largest exponent that "
+        "stays above zero means chaos."
+        + " Free rotation of the drive train is not vibration: its exponents are left out."
+        * bool(np.any(spectrum.free_rotation))
+    ),
     of="LyapunovExponents",
     made_by="Call tribodyn.analysis.lyapunov_exponents(...) and its plot method.",
 )

@@ -136,8 +136,11 @@ def _basin_title(plane: Basins) -> str:
     count = len(plane.attractors)
     if not count:
         return "No initial state reaches a periodic orbit"
-    if count == 1:
+    if count == 1 and not plane.unresolved:
         return "All initial states reach the same attractor"
+    if count == 1:
+        share = f"{100.0 * plane.attractors[0].share:.3g} % of the initial states"
+        return f"{share} reach the same attractor, the others none"
     first = plane.attractors[0]
     factor, unit = scaled([each.rms for each in plane.attractors], unit_of(plane.signal))
     return (
