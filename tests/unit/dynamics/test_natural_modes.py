@@ -240,3 +240,32 @@ def test_result_as_a_dataset_and_in_one_line():
         modes.strain_share[:, -1].tolist()
     )
     assert repr(modes) == "NaturalModes(6 coordinates, 1 rigid, first 5276.47 Hz)"
+
+
+@pytest.mark.slow
+def test_many_contacts_over_many_phases_take_little_memory() -> None:
+    """No array has phases, contacts and two coordinates at once."""
+    import tracemalloc
+
+    from tribodyn.dynamics import Contact, LoadFriction, System
+    from tribodyn.dynamics.linear.natural_modes import linear_system
+
+    size, count = 24, 16
+    rows = np.random.default_rng(1).standard_normal((count, size))
+    contacts = [
+        Contact(row, lambda p: 1e8 * (1.2 + np.cos(2 * np.pi * p)), gap=1e-6, cycles=8)
+        for row in rows
+    ]
+    rubbing = LoadFriction(
+        direction=rows[0], coefficients=[0.05, 0.0, 0.0], load=1e3, contacts=range(count)
+    )
+    system = System(
+        np.eye(size), np.zeros((size, size)), 1e8 * np.eye(size), 1e3 * rows.sum(axis=0),
+        contacts, frictions=[rubbing],
+    )  # fmt: skip
+    tracemalloc.start()
+    linear_system(system)
+    peak = tracemalloc.get_traced_memory()[1]
+    tracemalloc.stop()
+    phases = 256 * 8 * 3
+    assert peak < 0.8 * 8 * phases * count * size**2

@@ -42,7 +42,7 @@ def warn_of_period(machine: Machine) -> None:
     )
     if turning:
         reason = "unequal teeth repeat with whole turns of their gears"
-        remedy = "Faults of one gear only shorten the period"
+        remedy = "Faults of one gear only, or a case of its stage alone, shorten the period"
     warn_of_steps(
         cycles,
         f"the meshes repeat together only after {cycles} cycles of mesh {fastest} "
