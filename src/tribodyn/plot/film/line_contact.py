@@ -185,16 +185,9 @@ def _pressure(solution: Any, scales: Scales) -> list[Trace]:
         line(x, y, "dry (Hertz)", MUTED, unit=unit, dash="dash"),
     ]
     if solution.spike_position is not None:
-        traces.append(
-            point(
-                scales.position * solution.spike_position,
-                scales.pressure * solution.spike_pressure,
-                f"spike {scales.pressure_text(solution.spike_pressure)}<br>(rises with the grid)",
-                PAIR_COLORS[1],
-                unit=unit,
-                symbol="diamond-open",
-            )
-        )
+        name = f"spike {scales.pressure_text(solution.spike_pressure)}<br>(rises with the grid)"
+        x, y = scales.position * solution.spike_position, scales.pressure * solution.spike_pressure
+        traces.append(point(x, y, name, PAIR_COLORS[1], unit=unit, symbol="diamond-open"))
     return traces
 
 
@@ -204,20 +197,12 @@ def _film(solution: Any, scales: Scales) -> list[Trace]:
         ("central", 0.0, solution.central_film, "circle-open"),
         ("minimum", place_of_minimum(solution), solution.minimum_film, "circle"),
     )
-    return [
-        _profile(solution, "film", scales, _MOST, "film", TOTAL),
-        *(
-            point(
-                scales.position * x,
-                scales.film * film,
-                f"{name} {scales.film_text(film, 4)}",
-                PAIR_COLORS[0],
-                unit=unit,
-                symbol=symbol,
-            )
-            for name, x, film, symbol in marks
-        ),
-    ]
+    places = [
+        point(scales.position * x, scales.film * film, f"{name} {scales.film_text(film, 4)}",
+              PAIR_COLORS[0], unit=unit, symbol=symbol)
+        for name, x, film, symbol in marks
+    ]  # fmt: skip
+    return [_profile(solution, "film", scales, _MOST, "film", TOTAL), *places]
 
 
 @drawing(
@@ -252,15 +237,13 @@ def line_contact(solution: Any, *, dimensionless: bool = False) -> Any:
     )
     view = {"range": [0.0, film_height([solution], [scales])]}
     marks = event_lines([("centre", 0.0), ("outlet", scales.position * solution.outlet)])
-    return stack(
-        f"The film is {center} thick in the centre and {least} at its thinnest",
-        scales.position_label,
-        [
-            from_zero(scales.pressure_label, _pressure(solution, scales)),
-            Panel(scales.film_label, _film(solution, scales), view),
-        ],
-        {"xaxis": {"range": list(scales.position * np.array(window(solution)))}, **marks},
-    )
+    panels = [
+        from_zero(scales.pressure_label, _pressure(solution, scales)),
+        Panel(scales.film_label, _film(solution, scales), view),
+    ]
+    title = f"The film is {center} thick in the centre and {least} at its thinnest"
+    axis = {"range": list(scales.position * np.array(window(solution)))}
+    return stack(title, scales.position_label, panels, {"xaxis": axis, **marks})
 
 
 def _style(number: int) -> dict[str, Any]:
@@ -296,12 +279,8 @@ def _films(rows: Sequence[tuple[Any, Scales, str]]) -> list[Trace]:
         style = _style(number)
         least = f"{name}: at least {scales.film_text(solution.minimum_film)}"
         traces.append(_profile(solution, "film", scales, _FEWER, least, **style))
-        mark = point(
-            scales.position * place_of_minimum(solution),
-            scales.film * solution.minimum_film,
-            name,
-            style["color"],
-        )
+        x, y = scales.position * place_of_minimum(solution), scales.film * solution.minimum_film
+        mark = point(x, y, name, style["color"])
         marks.append({**mark, "showlegend": False, "hoverinfo": "skip", "hovertemplate": None})
     return traces + marks
 

@@ -68,29 +68,18 @@ def _tooth(pair: CylindricalPair, tooth: int) -> Trace:
     angle = 2.0 * math.pi * tooth / pair.pinion.teeth + np.arctan2(-x, y)
     points = _in_space(pair, face, np.hypot(x, y), angle)
     color = [[0.0, PINION], [1.0, PINION]]
-    return {
-        "type": "surface",
-        **dict(zip("xyz", points, strict=True)),
-        "showscale": False,
-        "colorscale": color,
-        "hoverinfo": "skip",
-        "opacity": 0.7,
-        "lighting": {"ambient": 0.75, "diffuse": 0.5, "specular": 0.05},
-    }
+    light = {"ambient": 0.75, "diffuse": 0.5, "specular": 0.05}
+    style = {"showscale": False, "colorscale": color, "opacity": 0.7, "lighting": light}
+    skin = dict(zip("xyz", points, strict=True))
+    return {"type": "surface", **skin, **style, "hoverinfo": "skip"}
 
 
 def _curves(lines: list[Array], name: str, color: str, width: float) -> Trace:
     """Curves in space as one trace, with gaps between them."""
     gap = np.full((3, 1), np.nan)
     points = np.hstack([part for curve in lines for part in (curve, gap)] or [gap])
-    return {
-        "type": "scatter3d",
-        "mode": "lines",
-        **dict(zip("xyz", points, strict=True)),
-        "name": name,
-        "line": {"color": color, "width": width},
-        "hoverinfo": "name",
-    }
+    style = {"name": name, "line": {"color": color, "width": width}, "hoverinfo": "name"}
+    return {"type": "scatter3d", "mode": "lines", **dict(zip("xyz", points, strict=True)), **style}
 
 
 def _ends(pair: CylindricalPair, teeth: range) -> list[Array]:

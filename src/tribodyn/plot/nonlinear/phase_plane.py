@@ -64,21 +64,13 @@ def phase_portrait(portrait: PhasePortrait) -> Any:
     ]  # fmt: skip
     ends = [side * portrait.gap for side in (-1.0, 1.0)]
     dashed = {"color": MUTED, "dash": "dash", "width": 1}
+    upright = {"type": "line", "y0": 0, "y1": 1, "yref": "paper", "line": dashed}
     lines = [
-        {
-            "type": "line",
-            "x0": x_factor * end,
-            "x1": x_factor * end,
-            "y0": 0,
-            "y1": 1,
-            "yref": "paper",
-            "line": dashed,
-            "name": "backlash limit",
-            "showlegend": end > 0.0,
-        }
+        {**upright, "x0": x_factor * end, "x1": x_factor * end, "name": "backlash limit",
+         "showlegend": end > 0.0}
         for end in ends
         if portrait.gap > 0.0 and (end > 0.0 or portrait.position.min() < 0.0)
-    ]
+    ]  # fmt: skip
     x_label = (
         "Compression of the contact" if portrait.gap >= 0.0 else portrait.name.replace("_", " ")
     )
@@ -175,15 +167,10 @@ def poincare(section: PoincareSection, coordinate: int | str = 0) -> Any:
     last = section.period or 0
     visible = slice(-last, None) if last else slice(None)
     name_in_legend = "last points" if last else "points"
-    trace = {
-        "type": "scatter",
-        "mode": "markers",
-        "x": x[visible],
-        "y": y[visible],
-        "name": name_in_legend,
-        "marker": {"size": 9 if last else 3.5, "color": PINION if last else TOTAL},
-        "hovertemplate": f"%{{x:.5g}} {x_unit}, %{{y:.5g}} {y_unit}<extra></extra>",
-    }
+    marker = {"size": 9 if last else 3.5, "color": PINION if last else TOTAL}
+    trace = {"type": "scatter", "mode": "markers", "x": x[visible], "y": y[visible]}
+    trace |= {"name": name_in_legend, "marker": marker}
+    trace["hovertemplate"] = f"%{{x:.5g}} {x_unit}, %{{y:.5g}} {y_unit}<extra></extra>"
     along = f"{name.replace('_', ' ')} [{x_unit}]", _window(x[visible], float(np.abs(x).max()))
     across = f"its velocity [{y_unit}]", _window(y[visible], float(np.abs(y).max()))
     return _over_place(_section_title(section), [trace], along, across)

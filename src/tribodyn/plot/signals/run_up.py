@@ -156,29 +156,19 @@ def run_up(
     for color, order in zip(_COLORS, chosen, strict=False):
         for number, (part, dash) in enumerate(parts):
             cut = order_cut(run, order, signal, part=part)
-            trace = line(
-                displayed("speed", cut.speed),
-                factor * cut.amplitude,
-                f"order {order:g}",
-                color,
-                unit=unit,
-                dash=dash,
-                width=1.8,
-            )
-            cuts.append({**trace, "showlegend": number == 0, "legendgroup": f"{order:g}"})
+            style: Trace = {"unit": unit, "dash": dash, "width": 1.8, "legendgroup": f"{order:g}"}
+            x, style["showlegend"] = displayed("speed", cut.speed), number == 0
+            cuts.append(line(x, factor * cut.amplitude, f"order {order:g}", color, **style))
     peaks = resonances(run, signal, orders=chosen, part=parts[0][0])
     if peaks:
         cuts.append(_marks(_distinct(peaks)[:_NAMED], factor, unit))
     top = {"rangemode": "tozero"}
-    return stack(
-        _title(levels, peaks, unit, factor),
-        axis_label("speed"),
-        [
-            Panel(f"Alternating rms of<br>{label} [{unit}]", overall, top),
-            Panel(f"Amplitude [{unit}]", cuts, top, 1.5),
-        ],
-        {"hovermode": "closest"},
-    )
+    panels = [
+        Panel(f"Alternating rms of<br>{label} [{unit}]", overall, top),
+        Panel(f"Amplitude [{unit}]", cuts, top, 1.5),
+    ]
+    title = _title(levels, peaks, unit, factor)
+    return stack(title, axis_label("speed"), panels, {"hovermode": "closest"})
 
 
 def _over_frequency(orders: OrderMap, frequency: Array) -> Array:
@@ -208,17 +198,10 @@ def _orders(run: RunUp, speed: Array, top: float, several: bool) -> list[Trace]:
             continue
         texts = [""] * across.size
         texts[int(np.flatnonzero(visible)[-1])] = f"{order}×" if several else str(order)
-        curve = line(
-            displayed("speed", across[visible]),
-            values[visible],
-            f"mesh order {order}",
-            MUTED,
-            unit="Hz",
-            dash="dot",
-            width=0.8,
-        )
-        text = {"mode": "lines+text", "text": texts[: int(visible.sum())]}
-        traces.append({**curve, **text, "textposition": "top left", "showlegend": False})
+        style: Trace = {"unit": "Hz", "dash": "dot", "width": 0.8, "mode": "lines+text"}
+        style |= {"text": texts[: int(visible.sum())], "textposition": "top left"}
+        x, name = displayed("speed", across[visible]), f"mesh order {order}"
+        traces.append(line(x, values[visible], name, MUTED, showlegend=False, **style))
     return traces
 
 
@@ -301,31 +284,23 @@ def run_up_map(
         frequency = np.linspace(0.1 * run.profile.lowest, top, _ROWS)
         amplitude = _over_frequency(orders, frequency)[:, order]
         factor = 1e6 if unit == "m" else 1.0
-        surface = amplitude_heatmap(
-            displayed("speed", speed),
-            frequency,
-            factor * amplitude,
-            "um" if unit == "m" else unit,
-            "%{y:.5g} Hz at %{x:.4g}",
-        )
+        place, shown = (displayed("speed", speed), frequency), "um" if unit == "m" else unit
+        hover = "%{y:.5g} Hz at %{x:.4g}"
+        surface = amplitude_heatmap(*place, factor * amplitude, shown, hover)
         surfaces.append((float(amplitude.max()) or 1.0, surface))
         line_number, block = orders.strongest()
         if orders.amplitude[line_number, block] > loudest[0]:
-            turn = float(orders.speed[block]) / (2.0 * np.pi)
-            loudest = (
-                float(orders.amplitude[line_number, block]),
-                orders.order[line_number] * turn,
-            )
+            hertz = orders.order[line_number] * float(orders.speed[block]) / (2.0 * np.pi)
+            loudest = float(orders.amplitude[line_number, block]), hertz
         traces = [surface, *_orders(run, speed, top, True), *_modes(run, speed, top)]
         label = axis_label("frequency", f"Frequency, {part}" if len(parts) > 1 else "Frequency")
         panels.append(Panel(label, traces, {"range": [0.0, top]}, 1.6))
     _on_one_scale(surfaces)
     ends = displayed("speed", np.array([run.speed.min(), run.speed.max()])).tolist()
     level = significant((1e6 if unit == "m" else 1.0) * loudest[0])
-    return stack(
+    title = (
         f"Strongest line of the {quantity}: {level} {readable(display_unit)} at "
-        f"{significant(loudest[1], 4)} Hz",
-        axis_label("speed"),
-        panels,
-        {"hovermode": "closest", "xaxis": {"range": ends}},
+        f"{significant(loudest[1], 4)} Hz"
     )
+    layout = {"hovermode": "closest", "xaxis": {"range": ends}}
+    return stack(title, axis_label("speed"), panels, layout)
