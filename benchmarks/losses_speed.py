@@ -18,7 +18,8 @@ from tribodyn import load_case, loss_map, run
 from tribodyn.errors import ModelWarning
 from tribodyn.mesh.build import loaded_mesh
 from tribodyn.study.coupling import balanced_load
-from tribodyn.study.pipeline.tooth_contact import contact_settings, mesh_of
+from tribodyn.study.mesh_inputs import contact_settings
+from tribodyn.study.pipeline.tooth_contact import mesh_of
 
 _BOX = {
     "losses.pinion.bearing": "NJ 406", "losses.wheel.bearing": "NJ 406",

@@ -11,7 +11,7 @@ import tribodyn as td
 from tribodyn.errors import InputError
 from tribodyn.mesh.build import loaded_mesh
 from tribodyn.study.case.provenance import derived_values
-from tribodyn.study.pipeline.tooth_contact import contact_settings
+from tribodyn.study.mesh_inputs import contact_settings
 
 pytestmark = pytest.mark.filterwarnings("ignore::tribodyn.errors.ModelWarning")
 STEEL = 13.6e3

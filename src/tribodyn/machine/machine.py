@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Mapping
+from copy import copy
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from types import MappingProxyType
@@ -34,6 +35,9 @@ from tribodyn.machine.mesh import Mesh
 from tribodyn.machine.planetary.stage_parts import PlanetaryStage
 from tribodyn.machine.shaft import Coupling, Shaft
 from tribodyn.types import Array
+
+#: What follows from the loads and the laws of the meshes and bearings.
+_OF_LOADS = ("kinematics", "clock", "phases", "directions", "gear_loads")
 
 
 @dataclass(frozen=True)
@@ -157,6 +161,15 @@ class Machine:
         plural = {"mesh": "meshes"}
         parts = [f"{n} {k if n == 1 else plural.get(k, k + 's')}" for k, n in counts.items()]
         return f"Machine({', '.join(parts)})"
+
+    def _with(self, **groups: Mapping[str, Any]) -> Machine:
+        """Copy with other meshes or bearings in the same places, which need no check again."""
+        other = copy(self)
+        for name in _OF_LOADS:
+            vars(other).pop(name, None)
+        for group, parts in groups.items():
+            vars(other)[group] = MappingProxyType({**getattr(self, group), **parts})
+        return other
 
     @cached_property
     def graph(self) -> ShaftGraph:

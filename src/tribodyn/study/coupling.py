@@ -17,16 +17,12 @@ from tribodyn.errors import ComputationError, Problem, collected, warn
 from tribodyn.mesh.gears import column_of
 from tribodyn.nomenclature import GEARS
 from tribodyn.progress import Progress
-from tribodyn.study.case.to_models import mesh_law_of
+from tribodyn.study.mesh_inputs import MeshInputs, mesh_inputs
 from tribodyn.study.pipeline.assembly import geometry, whole_system
 from tribodyn.study.pipeline.computed import Coupling
 from tribodyn.study.pipeline.motion import motion_of
 from tribodyn.study.pipeline.response_series import mesh_force, one_sided_phase
-from tribodyn.study.pipeline.tooth_contact import (
-    contact_settings,
-    hypoid_friction_of,
-    mesh_of,
-)
+from tribodyn.study.pipeline.tooth_contact import hypoid_friction_of, mesh_of
 from tribodyn.types import Array
 
 if TYPE_CHECKING:
@@ -69,7 +65,7 @@ def coupled(
             changed = case if follow is None else follow(case, mesh)
             if changed != case:
                 nominal = mesh_of(changed, progress)
-            solved = _mesh_under_load(changed, nominal, loading)
+            solved = _mesh_under_load(mesh_inputs(changed), nominal, loading)
         rows.append((change, *_changes(mesh, solved), _viscosity_change(case, changed)))
         case, mesh = changed, solved
         if max(rows[-1]) < tolerance:
@@ -96,22 +92,21 @@ def coupled(
     return case, mesh, record
 
 
-def _mesh_under_load(case: Case, nominal: MeshTable, loading: Array) -> MeshTable:
+def _mesh_under_load(inputs: MeshInputs, nominal: MeshTable, loading: Array) -> MeshTable:
     """Compute the mesh under given forces; static errors stay those of the nominal torque."""
     from tribodyn.mesh.build import loaded_mesh
 
-    if case.hypoid_flanks is not None:
-        table = hypoid_friction_of(case, loading=loading).table()
+    if inputs.cylindrical is None:
+        table = hypoid_friction_of(inputs, loading=loading).table()
     else:
-        settings = contact_settings(case)
         table = loaded_mesh(
-            case.gear_pair,
-            settings,
-            case.operating_point,
-            force_law=mesh_law_of(case) == "force-law",
+            inputs.cylindrical,
+            inputs.settings,
+            (inputs.speed, inputs.torque),
+            force_law=inputs.law == "force-law",
             loading=loading,
-        ).table(settings)
-    if mesh_law_of(case) == "tangent":
+        ).table(inputs.settings)
+    if inputs.law == "tangent":
         # The tangent through force and deflection of each phase, at the nominal torque.
         missing_force = (1.0 - loading) * table.total_normal_force
         error = table.static_transmission_error + missing_force / table.mesh_stiffness_tangent

@@ -12,6 +12,7 @@ import tribodyn as td
 from known_hypoids import eased, random_blanks
 from tribodyn.errors import InputError, collected
 from tribodyn.mesh import hypoid_loaded_contact, hypoid_transmission_error_over_torque
+from tribodyn.study.mesh_inputs import mesh_inputs
 from tribodyn.study.pipeline.tooth_contact import hypoid_loaded_contact_of, mesh_of
 
 
@@ -62,7 +63,7 @@ def test_wrong_arguments_name_themselves() -> None:
     case = td.load_case("hypoid-mixed-ehl")
     with pytest.raises(InputError, match=r"phases = 8.*16"):
         td.harris_map(case, phases=8)
-    loaded = hypoid_loaded_contact_of(case, steps=16, cells=16)
+    loaded = hypoid_loaded_contact_of(mesh_inputs(case), steps=16, cells=16)
     for torque in (-5.0, 0.0, np.nan, []):
         with pytest.raises(InputError, match="torque"):
             hypoid_transmission_error_over_torque(loaded, torque)

@@ -81,26 +81,28 @@ def test_without_friction_nothing_follows():
 
 def test_light_loads_that_have_no_film_are_left_out(monkeypatch):
     from tribodyn.errors import ComputationError
+    from tribodyn.study.mesh_inputs import mesh_inputs
     from tribodyn.study.pipeline import tooth_contact
 
     case = tribodyn.load_case("fzg-roughness").replace({**DYNAMIC, "friction.law": "xu-2007"})
-    plain, refused = tooth_contact.mesh_of, []
+    plain, refused = tooth_contact.mesh_table, []
+    inputs = mesh_inputs(case)
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", ModelWarning)
-        nominal = plain(case)
-        friction_of_all = tooth_contact.load_friction_of(case, nominal)
+        nominal = plain(inputs)
+        friction_of_all = tooth_contact.load_friction_of(inputs, nominal)
 
-        def mesh_of(case, *, load, **_):
+        def mesh_table(inputs, *, load, **_):
             if load in refused:
                 raise ComputationError("the film is softer than the teeth")
-            return plain(case, load=load)
+            return plain(inputs, load=load)
 
-        monkeypatch.setattr(tooth_contact, "mesh_of", mesh_of)
+        monkeypatch.setattr(tooth_contact, "mesh_table", mesh_table)
         refused.append(0.12)
-        friction = tooth_contact.load_friction_of(case, nominal)
+        friction = tooth_contact.load_friction_of(inputs, nominal)
         refused.append(2.05)
         with pytest.raises(ComputationError):
-            tooth_contact.load_friction_of(case, nominal)
+            tooth_contact.load_friction_of(inputs, nominal)
     force = 1.2 * nominal.total_normal_force
     assert friction.value("friction_sum", 0.3, force) == pytest.approx(
         friction_of_all.value("friction_sum", 0.3, force), rel=1e-3

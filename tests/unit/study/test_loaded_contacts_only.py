@@ -13,6 +13,7 @@ from tribodyn.errors import ModelWarning, collected
 from tribodyn.mesh import MeshTable
 from tribodyn.plot import FIGURES
 from tribodyn.study.machine.run import MeshWarning, warn_of_meshes
+from tribodyn.study.mesh_inputs import mesh_inputs
 from tribodyn.study.pipeline.cautions import mesh_cautions
 from tribodyn.study.pipeline.tooth_contact import hypoid_friction_of, mesh_of
 
@@ -113,7 +114,7 @@ def test_the_advice_of_mixed_lubrication_follows_the_law(law: str, teeth: tuple[
 
 def test_the_caption_of_film_on_the_flank_names_the_lines_that_are_drawn() -> None:
     with collected():
-        rich = hypoid_friction_of(td.load_case("hypoid-mixed-ehl"))
+        rich = hypoid_friction_of(mesh_inputs(td.load_case("hypoid-mixed-ehl")))
     figure = FIGURES["hypoid_friction"]
     assert "full film lubrication everywhere" in figure.caption_of(rich)
     assert "lines at" not in figure.caption_of(rich)
@@ -121,7 +122,7 @@ def test_the_caption_of_film_on_the_flank_names_the_lines_that_are_drawn() -> No
         {"gears.composite_roughness": 0.2e-6, "operation.speed": "1500 rpm"}
     )
     with collected():
-        rubbed = hypoid_friction_of(thin)
+        rubbed = hypoid_friction_of(mesh_inputs(thin))
     assert "lines at 2 separate" in figure.caption_of(rubbed)
 
 

@@ -11,6 +11,7 @@ import tribodyn as td
 from tribodyn.errors import collected
 from tribodyn.gear import tooth_contact
 from tribodyn.mesh import MeshTable
+from tribodyn.study.mesh_inputs import mesh_inputs
 from tribodyn.study.pipeline.tooth_contact import (
     hypoid_loaded_contact_of,
     loaded_contact,
@@ -55,7 +56,10 @@ def mesh(case: Any, **options: Any) -> MeshTable:
 @pytest.mark.parametrize("changes", PAIRS.values(), ids=PAIRS)
 def test_a_hypoid_table_has_the_lag_of_its_loaded_contact(changes: dict[str, Any]) -> None:
     case = hypoid(**changes)
-    loaded, table = hypoid_loaded_contact_of(case, steps=16, cells=16), mesh(case, rehearsal=True)
+    loaded, table = (
+        hypoid_loaded_contact_of(mesh_inputs(case), steps=16, cells=16),
+        mesh(case, rehearsal=True),
+    )
     assert table.transmission_error_at_rest == pytest.approx(
         loaded.wheel_lever * loaded.loaded_rotation, rel=1e-12
     )

@@ -12,10 +12,11 @@ from tribodyn.errors import collected
 from tribodyn.model import Registry
 from tribodyn.nomenclature import GEARS
 from tribodyn.study.case.to_models import locate_errors, mesh_law_of, unused_lubricant
+from tribodyn.study.mesh_inputs import contact_settings
 from tribodyn.study.pipeline.assembly import geometry
 from tribodyn.study.pipeline.preview import operating_figures
 from tribodyn.study.pipeline.run import computed
-from tribodyn.study.pipeline.tooth_contact import contact_settings, mesh_of
+from tribodyn.study.pipeline.tooth_contact import mesh_of
 
 if TYPE_CHECKING:
     from tribodyn.mesh import MeshTable

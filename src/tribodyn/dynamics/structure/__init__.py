@@ -9,6 +9,7 @@ The public names are those of :mod:`tribodyn.dynamics`.
 | ``fzg12`` | the gear test rig with twelve coordinates |
 | ``helical12`` | two cylindrical gears that move and tilt in space, twelve coordinates |
 | ``hypoid14`` | a hypoid pair in space with engine and load, fourteen coordinates |
+| ``pair_contacts`` | contacts over the coordinates of both gears, whatever holds them |
 | ``shafts`` | drives of shafts, discs and several meshes |
 | ``force_law`` | contacts with a stiffness, a tangent or a force law |
 """

@@ -8,7 +8,7 @@ begins. The back flanks have the same law, mirrored at the middle of the backlas
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any, Literal, TypeVar, get_args
 
@@ -229,9 +229,17 @@ def follow_load(system: System, friction: MeshFriction) -> System:
     >>> [each.direction.tolist() for each in follow_load(pair, rubbing).frictions]
     [[1.0, 0.0], [0.0, -1.0]]
     """
+    contacts, frictions = with_load_friction(tuple(system.names), system.contacts, friction)
+    return replace(system, contacts=contacts, frictions=(*system.frictions, *frictions))
+
+
+def with_load_friction(
+    names: tuple[str, ...], contacts: Sequence[Contact], friction: MeshFriction
+) -> tuple[tuple[Contact, ...], tuple[LoadFriction, ...]]:
+    """Contacts of a mesh without friction, and its friction that follows their load."""
     events = tuple(friction.grid.event_phases)
-    everyone = tuple(range(len(system.contacts)))
-    frictions = [
+    everyone = tuple(range(len(contacts)))
+    frictions = tuple(
         LoadFriction(
             direction=direction,
             coefficients=friction.channel(name),
@@ -240,14 +248,14 @@ def follow_load(system: System, friction: MeshFriction) -> System:
             limit=friction.limit,
             events=events,
         )
-        for name, direction in _directions(tuple(system.names), friction).items()
+        for name, direction in _directions(names, friction).items()
         if direction.any()
-    ]
-    contacts = [
+    )
+    smooth = tuple(
         replace(contact, friction=None, events=tuple(sorted({*contact.events, *events})))
-        for contact in system.contacts
-    ]
-    return replace(system, contacts=contacts, frictions=(*system.frictions, *frictions))
+        for contact in contacts
+    )
+    return smooth, frictions
 
 
 def _directions(names: tuple[str, ...], friction: MeshFriction) -> dict[str, Array]:

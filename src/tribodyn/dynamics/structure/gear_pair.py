@@ -67,7 +67,6 @@ def gear_contact(
     damping_in_gap: bool,
 ) -> Contact:
     """Build the contact of one gear pair over the coordinates of its structure."""
-    require_between("backlash", backlash, 0.0, np.inf, "m")
     rows, supports = plane_rows(names), len(names) > len(TORSIONAL_NAMES)
     keep = slice(None) if supports else [2, 5]
     towards: Entry = _sign(driver) * (rows[0] + base_radius @ rows[2:])
@@ -79,13 +78,36 @@ def gear_contact(
     # In space the friction follows from its direction; the three sums describe a plane.
     if of_mesh is None and keep != [4, 10] and mesh.friction_sum is not None:
         rub = friction_direction(mesh, rows[1:])
+    return tooth_contact(
+        mesh,
+        towards,
+        rub,
+        mesh_damping=mesh_damping,
+        backlash=backlash,
+        error=error,
+        damping_in_gap=damping_in_gap,
+    )
+
+
+def tooth_contact(
+    mesh: MeshFunctions,
+    direction: Entry,
+    friction: Entry | None,
+    *,
+    mesh_damping: Entry,
+    backlash: float,
+    error: Entry,
+    damping_in_gap: bool,
+) -> Contact:
+    """Build the contact of the teeth of a mesh from its direction and its friction."""
+    require_between("backlash", backlash, 0.0, np.inf, "m")
     return Contact(
-        direction=towards,
+        direction=direction,
         stiffness=mesh.stiffness,
         damping=mesh_damping,
         error=with_error_of(mesh, error),
         gap=0.5 * backlash,
-        friction=rub,
+        friction=friction,
         events=tuple(mesh.event_phases),
         damping_in_gap=damping_in_gap,
     )

@@ -9,15 +9,15 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from tribodyn.dynamics.equations.entry import Entry
-from tribodyn.dynamics.equations.system import Contact, System
+from tribodyn.dynamics.equations.system import System
 from tribodyn.dynamics.structure.force_law import MeshForce, carried
 from tribodyn.dynamics.structure.gear_pair import (
     Driver,
     TorqueBalance,
     balance_direction,
     pair_of,
+    tooth_contact,
     torques,
-    with_error_of,
 )
 from tribodyn.errors import InputError, require_between
 from tribodyn.nomenclature import GEARS
@@ -123,20 +123,18 @@ def helical12(
     >>> helical12(flat, mass=1.0, moment_of_inertia=1e-3, torque=(90.0, 150.0))
     System(12 coordinates, 1 contact)
     """
-    require_between("backlash", backlash, 0.0, np.inf, "m")
     inertia, stiffness, damping = _bodies(
         pair_of("mass", mass, "kg"),
         pair_of("moment_of_inertia", moment_of_inertia, "kg*m^2"),
         supports or SpatialSupports(),
     )
-    contact = Contact(
-        direction=_direction(mesh),
-        stiffness=mesh.stiffness,
-        damping=mesh_damping,
-        error=with_error_of(mesh, error),
-        gap=0.5 * backlash,
-        friction=mesh.spatial_friction,
-        events=tuple(mesh.event_phases),
+    contact = tooth_contact(
+        mesh,
+        direction_in_space(mesh),
+        mesh.spatial_friction,
+        mesh_damping=mesh_damping,
+        backlash=backlash,
+        error=error,
         damping_in_gap=damping_in_gap,
     )
     force, balance = np.zeros(inertia.size), balance_direction(torque_balance, driver)
@@ -156,7 +154,8 @@ def helical12(
     )
 
 
-def _direction(mesh: MeshFunctions) -> Entry:
+def direction_in_space(mesh: MeshFunctions) -> Entry:
+    """Direction of the force of a mesh of cylindrical gears over all coordinates."""
     towards: Entry | None = getattr(mesh, "spatial_direction", None)
     if towards is None:
         why = "The gears of this structure are cylindrical and move in space"

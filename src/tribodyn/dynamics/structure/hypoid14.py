@@ -9,15 +9,15 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from tribodyn.dynamics.equations.entry import Entry
-from tribodyn.dynamics.equations.system import Contact, System
+from tribodyn.dynamics.equations.system import System
 from tribodyn.dynamics.structure.force_law import MeshForce, carried
 from tribodyn.dynamics.structure.gear_pair import (
     Driver,
     TorqueBalance,
     balance_direction,
     pair_of,
+    tooth_contact,
     torques,
-    with_error_of,
 )
 from tribodyn.errors import InputError, require_between, require_positive
 from tribodyn.types import Array
@@ -144,7 +144,6 @@ def hypoid14(
     System(14 coordinates, 1 contact)
     """
     bearings = supports or HypoidSupports()
-    require_between("backlash", backlash, 0.0, np.inf, "m")
     inertia = _inertia(
         pair_of("mass", mass, "kg"),
         pair_of("moment_of_inertia", moment_of_inertia, "kg*m^2"),
@@ -152,14 +151,13 @@ def hypoid14(
     )
     stiffness, damping = _springs(inertia, bearings)
     along, rubbing = in_space(mesh)
-    contact = Contact(
-        direction=along,
-        stiffness=mesh.stiffness,
-        damping=mesh_damping,
-        error=with_error_of(mesh, error),
-        gap=0.5 * backlash,
-        friction=rubbing,
-        events=tuple(mesh.event_phases),
+    contact = tooth_contact(
+        mesh,
+        along,
+        rubbing,
+        mesh_damping=mesh_damping,
+        backlash=backlash,
+        error=error,
         damping_in_gap=damping_in_gap,
     )
     balance = balance_direction(torque_balance, driver)
@@ -176,17 +174,24 @@ def hypoid14(
 
 def in_space(mesh: Any) -> tuple[Entry, Entry | None]:
     """Direction and friction of a mesh over all coordinates, zero for engine and load."""
+
+    def padded(entry: Any) -> Entry:
+        return lambda phase: np.pad(entry(phase), ((0, 0), (1, 1)))
+
+    direction, friction = directions_of_crossed_axes(mesh)
+    return padded(direction), None if friction is None else padded(friction)
+
+
+def directions_of_crossed_axes(mesh: Any) -> tuple[Entry, Entry | None]:
+    """Direction and friction of a mesh over the coordinates of both gears."""
     entries: list[Entry | None] = []
     for function in (getattr(mesh, "direction", None), getattr(mesh, "friction", None)):
         size = 0 if function is None else np.shape(function(np.zeros(1)))[-1]
-        if size == 2 * len(_WAYS):
-            entries.append(lambda phase, f=function: np.pad(f(phase), ((0, 0), (1, 1))))
-        elif function is None and entries:
-            entries.append(None)
-        else:
+        if size != 2 * len(_WAYS) and not (function is None and entries):
             why = "Gears with crossed axes need six components for each gear"
             remedy = "Use the mesh table of a hypoid pair, or another structure"
             raise InputError("the mesh has no directions in space", "argument mesh", why, remedy)
+        entries.append(function)
     return entries[0], entries[1]  # type: ignore[return-value]
 
 

@@ -184,7 +184,7 @@ class StaticBalance:
                         f'bearing "{name}" carries no load, so that its stiffness is zero: reduce '
                         "its clearance, or preload it",
                     )
-        return replace(self.machine, bearings=bearings)
+        return self.machine._with(bearings=bearings)
 
     def _stiffness(self, name: str) -> Array:
         """Stiffness of a bearing at its load, of a rolling one at least at that of a weight."""

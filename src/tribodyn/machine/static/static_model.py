@@ -37,7 +37,7 @@ class StaticModel:
         # Beam elements are exact under forces at their ends, however long they are.
         longest = max(shaft.length for shaft in machine.shafts.values()) or 1.0
         springs = {name: _as_spring(bearing) for name, bearing in machine.bearings.items()}
-        self.structure = MachineStructure(replace(machine, bearings=springs), 0.0, longest)
+        self.structure = MachineStructure(machine._with(bearings=springs), 0.0, longest)
         self.size = self.structure.size
         parts = self.structure.elements.items()
         matrices = [matrix for name, matrix in parts if not name.startswith("bearings.")]

@@ -253,16 +253,22 @@ def _gearbox_losses(case: CaseData) -> object:
 
 def mesh_law_of(case: CaseData) -> MeshForce:
     """Return the mesh law of a case: stiffness, tangent of the force law, or force law."""
+    return mesh_law(case.dynamics, case.mesh_table, case.spur_pair, case.stiffness.model)
+
+
+def mesh_law(
+    dynamics: Dynamics, table: TableFile | None, pair: SpurPair | None, model: str
+) -> MeshForce:
+    """Return the mesh law of teeth: of a mesh table, of a cylindrical pair, or of others."""
     from tribodyn.stiffness import MODELS
 
-    if case.dynamics.mesh_law is not None:
-        return cast("MeshForce", case.dynamics.mesh_law)
-    if case.mesh_table is not None:
-        return "force-law" if case.mesh_table.has_force_law else "stiffness"
-    if case.spur_pair is None:
+    if dynamics.mesh_law is not None:
+        return cast("MeshForce", dynamics.mesh_law)
+    if table is not None:
+        return "force-law" if table.has_force_law else "stiffness"
+    if pair is None:
         return "stiffness"
-    nonlinear = MODELS[case.stiffness.model].coupled or case.spur_pair.has_modification
-    return "force-law" if nonlinear else "stiffness"
+    return "force-law" if MODELS[model].coupled or pair.has_modification else "stiffness"
 
 
 def unused_lubricant() -> Lubricant:

@@ -21,7 +21,7 @@ from tribodyn.study.faults.loose_seat import (
     with_loose_seats,
 )
 from tribodyn.study.faults.machine_section import faults_of_mesh
-from tribodyn.study.faults.motion import turning_mesh_of, turning_system_of
+from tribodyn.study.faults.motion import contacts_over_turns, turning_mesh_of
 from tribodyn.study.faults.sensors import MachineSensors, SensorPlace, seat_accelerance
 from tribodyn.study.faults.turning import (
     SAMPLES,
@@ -33,6 +33,7 @@ from tribodyn.study.faults.turning import (
     steady_over_turns,
 )
 from tribodyn.study.machine.first_look import warn_of_orders, warn_of_period
+from tribodyn.study.mesh_inputs import mesh_inputs
 from tribodyn.types import Array
 
 if TYPE_CHECKING:
@@ -108,14 +109,15 @@ def turning_machine(case: MachineCase, sound: LoadResult) -> Machine:
         if fields:
             entries = {"stiffness": machine.meshes[name].stiffness, **fields}
             changed[name] = case.machine(sound.load, **{name: entries}).meshes[name]
-    return replace(machine, meshes={**machine.meshes, **changed})
+    return machine._with(meshes=changed)
 
 
 def _mesh_over_turns(
     case: MachineCase, sound: LoadResult, name: str, faults: list[Fault]
 ) -> dict[str, Any]:
     """Fields of a mesh with faults; empty where all its teeth are equal."""
-    from tribodyn.study.pipeline.assembly import damping_of
+    from tribodyn.study.pipeline.assembly import mesh_contacts, mesh_damping
+    from tribodyn.study.pipeline.tooth_contact import load_friction_of
 
     if name not in sound.tables:
         return _error_over_turns(case, sound.machine, name, faults) if faults else {}
@@ -126,9 +128,11 @@ def _mesh_over_turns(
     turning = turning_mesh_of(pair, table, faults)
     if not differ and turning.error is None and turning.repeats(turning_mesh_of(pair, table, [])):
         return {}  # faults of no size leave the mesh as it is, at its finer phases
-    system = turning_system_of(pair, table, damping_of(pair, table), turning)
-    events = turning.functions(table.functions()).event_phases
-    laws = {"contacts": system.contacts, "frictions": system.frictions, "events": events}
+    inputs, functions = mesh_inputs(pair), turning.functions(table.functions())
+    names, sound_teeth = mesh_contacts(inputs, functions, mesh_damping(inputs, table), "stiffness")
+    friction = load_friction_of(inputs, table)
+    contacts, frictions = contacts_over_turns(names, sound_teeth, turning, friction)
+    laws = {"contacts": contacts, "frictions": frictions, "events": functions.event_phases}
     return {**laws, "period": turning.cycles}
 
 

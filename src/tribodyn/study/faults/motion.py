@@ -25,9 +25,9 @@ from tribodyn.study.pipeline.computed import Computed
 from tribodyn.types import Array
 
 if TYPE_CHECKING:
-    from tribodyn.dynamics import Response, System
+    from tribodyn.dynamics import Contact, LoadFriction, Response, System
     from tribodyn.faults import BearingImpacts, DrivenSystem, Fault, TurningMesh
-    from tribodyn.mesh import MeshTable
+    from tribodyn.mesh import MeshFriction, MeshTable
     from tribodyn.study.case.case import Case
     from tribodyn.study.pipeline.assembly import Damping
     from tribodyn.study.pipeline.result import Result
@@ -108,23 +108,35 @@ def turning_system(result: Result | PreparedRun, mesh: TurningMesh) -> System:
 
 def turning_system_of(case: Case, table: MeshTable, damping: Damping, mesh: TurningMesh) -> System:
     """The structure of a case with the mesh over whole turns as its contact."""
-    from tribodyn.dynamics import follow_load, law_contact
-    from tribodyn.dynamics.equations.clock import on_clock
-    from tribodyn.dynamics.equations.system import FRICTION_ENTRIES
+    from tribodyn.study.mesh_inputs import mesh_inputs
     from tribodyn.study.pipeline.assembly import structure_of
     from tribodyn.study.pipeline.tooth_contact import load_friction_of
 
-    functions = mesh.functions(table.functions())
-    system = structure_of(case, functions, damping, "stiffness")
-    first, *others = system.contacts
-    contacts = (law_contact(first, mesh.force_law), *others)
-    friction = load_friction_of(case, table)
+    system = structure_of(case, mesh.functions(table.functions()), damping, "stiffness")
+    names, friction = tuple(system.names), load_friction_of(mesh_inputs(case), table)
+    contacts, frictions = contacts_over_turns(names, system.contacts, mesh, friction)
+    return replace(system, contacts=contacts, frictions=(*system.frictions, *frictions))
+
+
+def contacts_over_turns(
+    names: tuple[str, ...],
+    contacts: Sequence[Contact],
+    mesh: TurningMesh,
+    friction: MeshFriction | None,
+) -> tuple[tuple[Contact, ...], tuple[LoadFriction, ...]]:
+    """Contacts and friction of teeth over whole turns, from those of a stiffness."""
+    from tribodyn.dynamics import law_contact
+    from tribodyn.dynamics.equations.clock import on_clock
+    from tribodyn.dynamics.equations.system import FRICTION_ENTRIES
+    from tribodyn.dynamics.structure.force_law import with_load_friction
+
+    first, *others = contacts
+    over_turns = (law_contact(first, mesh.force_law), *others)
     if friction is None:
-        return replace(system, contacts=contacts)
-    rubbing = follow_load(replace(system, frictions=()), friction).frictions
-    over_turns = [on_clock(each, FRICTION_ENTRIES, mesh.cycles, 0.0) for each in rubbing]
-    contacts = tuple(replace(contact, friction=None) for contact in contacts)
-    return replace(system, contacts=contacts, frictions=(*system.frictions, *over_turns))
+        return over_turns, ()
+    rubbing = with_load_friction(names, contacts, friction)[1]
+    rubbing = tuple(on_clock(each, FRICTION_ENTRIES, mesh.cycles, 0.0) for each in rubbing)
+    return tuple(replace(contact, friction=None) for contact in over_turns), rubbing
 
 
 def driven_system(

@@ -21,7 +21,6 @@ from tribodyn.machine import (
     Operation,
     Shaft,
 )
-from tribodyn.machine.graph.mesh_checks import gear_hand
 from tribodyn.machine.plane_law import with_exchanged_gears
 from tribodyn.study.case.case import Case
 from tribodyn.study.case.provenance import Assumption, reason_faults
@@ -38,10 +37,14 @@ from tribodyn.study.machine.pair_cases import (
     MESH_KEYS,
     SHARED,
     constant_law,
+    inputs_under,
     mesh_tables,
     pair_case,
     pinion_and_wheel,
     read_blanks,
+    read_pair,
+    read_teeth,
+    teeth_under,
     with_forms,
 )
 from tribodyn.study.machine.read_parts import (
@@ -63,6 +66,7 @@ from tribodyn.study.machine.tables import (
 )
 from tribodyn.study.machine.unused_keys import unused_keys
 from tribodyn.study.machine.user_tables import PartsCase, default_assumptions, stated_assumptions
+from tribodyn.study.mesh_inputs import MeshInputs
 from tribodyn.study.planetary.machine_stages import MEMBERS, CaseStage, read_stages, stage_mesh
 
 _TOP = (
@@ -139,6 +143,8 @@ class MachineCase(PartsCase):
         self._mesh_dynamics: dict[str, Any] = {}
         self._stage_of: dict[str, tuple[CaseStage, str]] = {}
         self._pairs: dict[str, Case] = {}
+        self._teeth: dict[tuple[str, str, str], tuple[Case, MeshInputs]] = {}
+        self._machines: dict[tuple[float, float], Machine] = {}
         self._mesh_tables = {
             name: self._read_mesh(name, body, problems) for name, body in groups["meshes"].items()
         }
@@ -163,15 +169,19 @@ class MachineCase(PartsCase):
         self._check_meshes()
         try:
             self._add_stages(stages)
-            self.machine()
+            self._checked_machine(self.operating_point)
             self._add_forms()
             for name in self.meshes_with_teeth:
-                self.pair(name, self.operating_point)
+                inputs_under(self, name, self.operating_point)
         except InputError as error:
             raise InputError(self._placed(error)) from None
         if problems := impossible_faults(self):
             raise InputError(origin.place(problems))
         self._check_spreads(origin)
+
+    def __getstate__(self) -> dict[str, Any]:
+        """Return the state without what is kept for further loads."""
+        return {**vars(self), "_teeth": {}, "_machines": {}}
 
     def _add_forms(self) -> None:
         """Set tooth forms and densities of the gears whose teeth are computed."""
@@ -325,10 +335,25 @@ class MachineCase(PartsCase):
         -------
         Machine
         """
-        load = load or self.operating_point
+        machine = self._machine_under(load or self.operating_point)
+        of_stages = {
+            name: self._exchanged(stage_mesh(machine.meshes[name], fields))
+            for name, fields in meshes.items()
+            if name in self._stage_of
+        }
+        others = {n: self._mesh(n, f) for n, f in meshes.items() if n not in of_stages}
+        return machine._with(meshes={**of_stages, **others}) if meshes else machine
+
+    def _machine_under(self, load: LoadCase) -> Machine:
+        """Machine under a load, without force laws of teeth that are computed."""
+        key = load.speed, load.torque
+        if key not in self._machines:
+            self._machines[key] = self._checked_machine(load)
+        return self._machines[key]
+
+    def _checked_machine(self, load: LoadCase) -> Machine:
         operation = Operation(*self.ends, load.speed, load.torque)
-        tables = [name for name in self._mesh_tables if name not in self._stage_of]
-        objects = {n: self._mesh(n, meshes.get(n, {})) for n in tables}
+        objects = {n: self._mesh(n, {}) for n in self._mesh_tables if n not in self._stage_of}
         parts = self.shafts, self.gears, objects, self.bearings, self.housing, self.couplings
         planets = {name: stage.stage() for name, stage in self.stages.items()}
         machine = Machine(*parts, planets=planets, operation=operation)
@@ -336,11 +361,7 @@ class MachineCase(PartsCase):
             return machine
         flow = machine.kinematics.meshes
         planets = {n: stage.stage(flow[f"{n}_sun1"]) for n, stage in self.stages.items()}
-        objects |= {
-            n: self._exchanged(stage_mesh(machine.meshes[n], meshes.get(n, {})))
-            for n in self._stage_of
-        }
-        return replace(machine, meshes=objects, planets=planets)
+        return replace(machine, planets=planets)
 
     def _mesh(self, name: str, fields: Mapping[str, Any]) -> Mesh:
         table = self._mesh_tables[name]
@@ -398,30 +419,12 @@ class MachineCase(PartsCase):
         InputError
             If the gears of the mesh have no tooth contact that is computed.
         """
-        machine = self.machine(load)
-        names, flow = self._pinion_and_wheel(mesh), machine.kinematics
-        part, mesh_load = machine.meshes[mesh], flow.meshes[mesh]
-        pinion, speed = names[0], mesh_load.speeds[part.gears.index(names[0])]
-        if isinstance(misalignment, float):
-            # The gap grows along the axis about which the pinion turns.
-            misalignment = misalignment if speed < 0.0 else -misalignment
-        side = part.crossing.side(mesh_load.sense) if part.crossing else ""
-        data, key, driver = self.data, f"meshes.{mesh}", mesh_load.driver
-        if mesh in self._stage_of:
-            stage, role = self._stage_of[mesh]
-            data, key, names = stage.pair_data(role), stage.key, stage.names_of(role)
-            driver = stage.case_name(driver)
-        return pair_case(
-            data,
-            key,
-            names,
-            self.source,
-            # Hypoid teeth are those of a driving pinion; a driving wheel turns it back in time.
-            driver=pinion if side else driver,
-            operation=(abs(speed), abs(mesh_load.torque[part.gears.index(pinion)])),
-            hand=side or (gear_hand(pinion, self.gears, part) if part.helix_angle else ""),
-            misalignment=misalignment,
-        )
+        under = teeth_under(self, mesh, load)
+        if misalignment:
+            return read_pair(self, mesh, under, under.along_path(misalignment))
+        speed, torque = under.operation
+        pair, _ = read_teeth(self, mesh, under)
+        return pair.replace({"operation.speed": speed, "operation.torque": torque})
 
     def mesh_pairs(self) -> Iterator[tuple[str, Case, tuple[str, str]]]:
         """Iterate over the meshes with computed teeth.

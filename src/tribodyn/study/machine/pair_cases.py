@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-import pickle
 from collections.abc import Iterable, Mapping, Sequence
-from contextlib import suppress
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
@@ -13,22 +11,32 @@ import numpy as np
 from tribodyn.errors import Argument, InputError, Problem, did_you_mean
 from tribodyn.gear import Misalignment
 from tribodyn.machine import ROLLING_BEARINGS
+from tribodyn.machine.graph.mesh_checks import gear_hand
 from tribodyn.study.case import gears
 from tribodyn.study.case.case import Case
 from tribodyn.study.case.hypoid import blank_of
 from tribodyn.study.case.provenance import spec_of
 from tribodyn.study.case.section import Table
-from tribodyn.study.case.sections import Dynamics
+from tribodyn.study.case.sections import Dynamics, Operation
 from tribodyn.study.case.to_models import usual_backlash
 from tribodyn.study.case.user_input import Source
-from tribodyn.study.case.values import KeyedProblems, Plain, read_table, read_value
+from tribodyn.study.case.values import (
+    FaultError,
+    KeyedProblems,
+    Plain,
+    read_table,
+    read_value,
+)
 from tribodyn.study.machine.read_parts import rolling_options
 from tribodyn.study.machine.tables import TABLES, HypoidMeshTable, MeshDynamics, mesh_table_kind
+from tribodyn.study.mesh_inputs import MeshInputs, mesh_inputs
 
 if TYPE_CHECKING:
     from tribodyn.gear import HypoidBlank
     from tribodyn.machine import Gear
     from tribodyn.model import Option
+    from tribodyn.study.machine.case import MachineCase
+    from tribodyn.study.machine.load_cases import LoadCase
     from tribodyn.study.machine.user_tables import PartsCase
 
 #: Tables of models that hold for all meshes, and that a mesh may have for itself.
@@ -37,12 +45,8 @@ SHARED = ("material", "lubricant", "film", "stiffness", "friction")
 MESH_KEYS = tuple(n for n in Dynamics.fields if n not in ("model", "bearing_damping_ratio"))
 #: Groups of parts, with a table for each part.
 GROUPS = ("shafts", "bearings", "gears", "meshes", "couplings", "faults")
-#: The pair vibrates in the machine, not on supports of its own.
-_STRUCTURES: dict[str, dict[str, Any]] = {
-    "spur": {"model": "spur-6dof", "bearing_stiffness": Plain(1e9)},
-    "helical": {"model": "helical-12dof"},
-    "hypoid": {"model": "hypoid-14dof"},
-}
+#: The machine is what vibrates: its pairs have no supports of their own.
+_WITHOUT_SUPPORTS = {"model": "torsional"}
 _ROLES = ("pinion", "wheel")
 #: Torque of a mesh that is rounding [N*m].
 _IDLE = 1e-9
@@ -91,6 +95,23 @@ class PairSource(Source):
         return Source(self.name, self.find, self.replaced).where(self.key(key))
 
 
+@dataclass(frozen=True)
+class TeethUnder:
+    """Sense, speed and torque of the teeth of a mesh under a load of its machine."""
+
+    names: tuple[str, str]  #: pinion and wheel in the case
+    driver: str  #: name of the driving gear
+    hand: str  #: of the pinion, of hypoid teeth the side; empty for straight teeth
+    operation: tuple[float, float]  #: speed and torque of the pinion
+    backwards: bool  #: whether the pinion turns about -x
+
+    def along_path(self, misalignment: float | Misalignment) -> float | Misalignment:
+        """Misalignment of the pair from an increase of the compression along x."""
+        if isinstance(misalignment, Misalignment) or self.backwards:
+            return misalignment
+        return -misalignment  # the gap grows along the axis about which the pinion turns
+
+
 def pinion_and_wheel(names: Sequence[str], gears: Mapping[str, Gear]) -> tuple[str, str]:
     """Gears of a mesh in the order pinion, wheel; of equal gears the first is the pinion."""
     first, second = names
@@ -123,16 +144,8 @@ def pair_case(
     misalignment: float | Misalignment = 0.0,
 ) -> Case:
     """Case of the pair of a mesh; hand (of hypoid teeth side), speed and torque of its pinion."""
-    speed, torque = operation
     group, _, mesh = table.partition(".")
-    if torque < _IDLE:
-        what, why = f"mesh {mesh} carries no torque", "Its teeth have no contact to compute"
-        remedy = "Name the shaft where the power leaves behind it, or give it a constant stiffness"
-        option = TABLES["operation"].spec("torque")
-        assert option is not None
-        stated = read_value(option, "torque", data["operation"]["torque"])
-        key = "operation.output" if stated else "operation.torque"
-        raise InputError((source or Source()).place([(key, Problem(what, "", why, remedy))]))
+    refuse_idle(data, mesh, operation[1], source)
     body = data[group][mesh]
     inner, crossed = mesh_tables(body), mesh_table_kind(body) is HypoidMeshTable
     tables: dict[str, Any] = {
@@ -158,48 +171,111 @@ def pair_case(
     model_keys = (f"{model}.{key}" for model, values in inner.items() for key in values)
     mesh_keys = {*mesh_dynamics, *model_keys, *inner}
     origin = source or Source()
-    dynamics = _STRUCTURES["hypoid" if crossed else "helical" if hand else "spur"]
+    speed, torque = map(Plain, operation)
     tables |= {
         "title": f"{data.get('title', 'Machine')}: {mesh}",
         "gears": pair,
-        "dynamics": {**dynamics, **shared_dynamics, **mesh_dynamics},
+        "dynamics": {**_WITHOUT_SUPPORTS, **shared_dynamics, **mesh_dynamics},
+        "operation": {"speed": speed, "torque": torque, "speed_of": "pinion"},
     }
-    return _under(
-        PairSource(
-            *(origin.name, origin.find, origin.replaced, mesh, names),
-            *(frozenset(mesh_keys), group),
-        ),
-        tables,
-        {"speed": speed, "torque": torque},
+    places = origin.name, origin.find, origin.replaced
+    keyed = PairSource(*places, mesh, names, frozenset(mesh_keys), group)
+    case = Case(keyed, **tables)
+    if case.gears.kind == "spur":
+        # Shafts deflect and misalign the flanks, by amounts that are not known yet.
+        play = usual_backlash(case.gears, case.dynamics, case.gear_pair)
+        if play is not None:
+            tables["dynamics"] = {**tables["dynamics"], "backlash": Plain(play)}
+            case = Case(keyed, **tables)
+    return case
+
+
+def teeth_under(case: MachineCase, mesh: str, load: LoadCase) -> TeethUnder:
+    """Sense, speed and torque of the teeth of a mesh under a load of its machine."""
+    machine = case._machine_under(load)
+    names, mesh_load = case._pinion_and_wheel(mesh), machine.kinematics.meshes[mesh]
+    part, pinion = machine.meshes[mesh], names[0]
+    place = part.gears.index(pinion)
+    side = part.crossing.side(mesh_load.sense) if part.crossing else ""
+    driver = mesh_load.driver
+    if mesh in case._stage_of:
+        stage, role = case._stage_of[mesh]
+        names, driver = stage.names_of(role), stage.case_name(driver)
+    return TeethUnder(
+        names,
+        # Hypoid teeth are those of a driving pinion; a driving wheel turns it back in time.
+        driver=pinion if side else driver,
+        hand=side or (gear_hand(pinion, case.gears, part) if part.helix_angle else ""),
+        operation=(abs(mesh_load.speeds[place]), abs(mesh_load.torque[place])),
+        backwards=mesh_load.speeds[place] < 0.0,
     )
 
 
-#: Pairs of gears by their tables: those of a study differ in speed and torque alone.
-_pairs: dict[bytes, Case] = {}
-_MOST_PAIRS = 64
+def read_pair(
+    case: MachineCase, mesh: str, under: TeethUnder, misalignment: float | Misalignment = 0.0
+) -> Case:
+    """Pair of gears of a mesh of a machine."""
+    stage, role = case._stage_of.get(mesh, (None, ""))
+    data, key = case.data, f"meshes.{mesh}"
+    if stage is not None:
+        data, key = stage.pair_data(role), stage.key
+    return pair_case(
+        *(data, key, under.names, case.source),
+        driver=under.driver,
+        operation=under.operation,
+        hand=under.hand,
+        misalignment=misalignment,
+    )
 
 
-def _under(source: PairSource, tables: dict[str, Any], load: dict[str, float]) -> Case:
-    """Pair of gears under a load of its pinion; equal tables are read once."""
-    key = pickle.dumps(tables)
-    if key in _pairs and not _pairs[key]._named_files():  # files may change
-        with suppress(InputError):  # reported below, with the keys of the machine
-            pair = _pairs[key].replace({f"operation.{k}": value for k, value in load.items()})
-            pair._source = source
-            return pair
-    operation = {name: Plain(value) for name, value in load.items()}
-    tables |= {"operation": {**operation, "speed_of": "pinion"}}
-    pair = Case(source, **tables)
-    if pair.gears.kind == "spur":
-        # Shafts deflect and misalign the flanks, by amounts that are not known yet.
-        play = usual_backlash(pair.gears, pair.dynamics, pair.gear_pair)
-        if play is not None:
-            tables["dynamics"] = {**tables["dynamics"], "backlash": Plain(play)}
-            pair = Case(source, **tables)
-    if len(_pairs) >= _MOST_PAIRS:
-        _pairs.clear()
-    _pairs[key] = pair
-    return pair
+def read_teeth(case: MachineCase, mesh: str, under: TeethUnder) -> tuple[Case, MeshInputs]:
+    """Pair of gears and inputs of a mesh, read once for each sense of its load."""
+    refuse_idle(case.data, mesh, under.operation[1], case.source)
+    key = case.tooth_group(mesh), under.driver, under.hand
+    if key not in case._teeth:
+        pair = read_pair(case, mesh, under)
+        teeth = pair, mesh_inputs(pair)
+        if pair._named_files():  # they may change
+            return teeth
+        case._teeth[key] = teeth
+    return case._teeth[key]
+
+
+def inputs_under(
+    case: MachineCase, mesh: str, load: LoadCase, misalignment: float | Misalignment = 0.0
+) -> MeshInputs:
+    """What the teeth of a mesh of a machine are computed from, misaligned by its shafts."""
+    under = teeth_under(case, mesh, load)
+    pair, inputs = read_teeth(case, mesh, under)
+    check_range(pair, under.operation)
+    return inputs.under(*under.operation, under.along_path(misalignment))
+
+
+def refuse_idle(data: Mapping[str, Any], mesh: str, torque: float, source: Source | None) -> None:
+    """Refuse a mesh that carries no torque."""
+    if torque >= _IDLE:
+        return
+    what, why = f"mesh {mesh} carries no torque", "Its teeth have no contact to compute"
+    remedy = "Name the shaft where the power leaves behind it, or give it a constant stiffness"
+    option = TABLES["operation"].spec("torque")
+    assert option is not None
+    stated = read_value(option, "torque", data["operation"]["torque"])
+    key = "operation.output" if stated else "operation.torque"
+    raise InputError((source or Source()).place([(key, Problem(what, "", why, remedy))]))
+
+
+def check_range(pair: Case, operation: tuple[float, float]) -> None:
+    """Refuse speed and torque of a pinion that are out of range."""
+    problems: KeyedProblems = []
+    for name, value in zip(("speed", "torque"), operation, strict=True):
+        try:
+            spec = Operation.spec(name)
+            assert spec is not None
+            read_value(spec, name, Plain(value))
+        except FaultError as fault:
+            problems.append((f"operation.{name}", fault.problem))
+    if problems:
+        raise InputError(pair.source.place(problems))
 
 
 def _merged(name: str, shared: Mapping[str, Any], of_mesh: Mapping[str, Any]) -> dict[str, Any]:

@@ -232,7 +232,8 @@ class MachineResult(PartsResult):
             If there is no such mesh, or its tooth contact is not that of hypoid gears.
         """
         from tribodyn.gear import Misalignment, misalignment_study
-        from tribodyn.study.case.hypoid import mounting
+        from tribodyn.study.machine.pair_cases import inputs_under
+        from tribodyn.study.mesh_inputs import HypoidTeeth
 
         if mesh in self._mounting_studies:
             return self._mounting_studies[mesh]
@@ -243,13 +244,15 @@ class MachineResult(PartsResult):
             ]
             why = f"Hypoid meshes with computed teeth: {', '.join(names) or 'none'}"
             raise InputError(f'mesh "{mesh}" has no mounting errors', Argument("mesh"), why, "")
-        nominal = self.case.pair(mesh, self.operation.load)
-        pairs = [self.case.pair(mesh, each.load, each.misalignment[mesh]) for each in loads]
-        cases = [mounting(p.gears) for p in pairs if p.gears.side == nominal.gears.side]
-        flanks = nominal.hypoid_flanks
-        assert flanks is not None
-        errors = list(dict.fromkeys((mounting(nominal.gears), *cases)))
-        self._mounting_studies[mesh] = study = misalignment_study(flanks, errors)
+        nominal = inputs_under(self.case, mesh, self.operation.load).teeth
+        assert isinstance(nominal, HypoidTeeth)
+        displaced: list[Any] = [
+            inputs_under(self.case, mesh, each.load, each.misalignment[mesh]).teeth
+            for each in loads
+        ]
+        cases = [teeth.mounting for teeth in displaced if teeth.gears.side == nominal.gears.side]
+        errors = list(dict.fromkeys((nominal.mounting, *cases)))
+        self._mounting_studies[mesh] = study = misalignment_study(nominal.flanks, errors)
         return study
 
     @cached_property

@@ -10,6 +10,7 @@ from dataclasses import replace
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from tribodyn.dynamics import law_contact
+from tribodyn.dynamics.structure.force_law import with_load_friction
 from tribodyn.errors import (
     ComputationError,
     InputError,
@@ -29,20 +30,20 @@ from tribodyn.machine import (
 )
 from tribodyn.machine import system as system_of
 from tribodyn.progress import SILENT, Progress
-from tribodyn.study.case.to_models import locate_errors, mesh_law_of
 from tribodyn.study.machine.case import MachineCase
 from tribodyn.study.machine.first_look import warn_of_period
 from tribodyn.study.machine.load_cases import LoadCase
 from tribodyn.study.machine.motion import machine_motion
+from tribodyn.study.machine.pair_cases import inputs_under
 from tribodyn.study.machine.result import LoadResult, MachineResult, steady_motion
-from tribodyn.study.pipeline.assembly import whole_system
-from tribodyn.study.pipeline.tooth_contact import mesh_of
+from tribodyn.study.mesh_inputs import MeshInputs
+from tribodyn.study.pipeline.assembly import mesh_contacts, mesh_damping
+from tribodyn.study.pipeline.tooth_contact import load_friction_of, mesh_table
 
 if TYPE_CHECKING:
-    from tribodyn.dynamics import Response
+    from tribodyn.dynamics import LoadFriction, Response
     from tribodyn.machine import Machine, MeshBalance, StaticBalance
     from tribodyn.mesh import MeshTable
-    from tribodyn.study.case.case import Case
 
 #: Passes of teeth and balance at most, and change of the misalignment over the compression of the
 #: teeth that ends them.
@@ -157,25 +158,26 @@ def _teeth(
     for name, value in misalignment.items():
         shift = round(value / _EQUAL) if isinstance(value, float) else name
         groups.setdefault((case.tooth_group(name), shift), []).append(name)
-    pairs = [case.pair(names[0], load, misalignment[names[0]]) for names in groups.values()]
-    listed = teeth_of_pairs(pairs, load, progress, rehearsal=rehearsal)
+    firsts = [names[0] for names in groups.values()]
+    inputs = [inputs_under(case, name, load, misalignment[name]) for name in firsts]
+    listed = teeth_of_meshes(inputs, load, progress, rehearsal=rehearsal)
     computed = zip(groups.values(), listed, strict=True)
     teeth = {name: each for names, each in computed for name in names}
     return {name: teeth[name] for name in misalignment}
 
 
-def teeth_of_pairs(
-    pairs: Sequence[Case], load: LoadCase, progress: Progress, *, rehearsal: bool = False
+def teeth_of_meshes(
+    inputs: Sequence[MeshInputs], load: LoadCase, progress: Progress, *, rehearsal: bool = False
 ) -> list[tuple[MeshTable, dict[str, Any], list[ModelWarning]]]:
     """Teeth of several meshes under a load, in threads."""
-    progress.start(f"Tooth contact: {load.name}", len(pairs))
+    progress.start(f"Tooth contact: {load.name}", len(inputs))
 
-    def compute(pair: Case) -> tuple[MeshTable, dict[str, Any], list[ModelWarning]]:
-        teeth = teeth_of(pair, rehearsal=rehearsal)
+    def compute(of_mesh: MeshInputs) -> tuple[MeshTable, dict[str, Any], list[ModelWarning]]:
+        teeth = teeth_of(of_mesh, rehearsal=rehearsal)
         progress.advance()
         return teeth
 
-    return in_threads(compute, pairs, processors())
+    return in_threads(compute, inputs, processors())
 
 
 def misalignment_of(mesh: MeshBalance) -> float | Misalignment:
@@ -193,12 +195,12 @@ def _change(before: float | Misalignment, after: float | Misalignment) -> float:
 
 
 def teeth_of(
-    pair: Case, *, rehearsal: bool = False
+    inputs: MeshInputs, *, rehearsal: bool = False
 ) -> tuple[MeshTable, dict[str, Any], list[ModelWarning]]:
     """Mesh table and force law of the teeth of a mesh, and their warnings."""
-    with locate_errors(pair), collected() as caught:
-        table = mesh_of(pair, about_load=True, rehearsal=rehearsal)
-        return table, _law(pair, table, rehearsal=rehearsal), caught
+    with inputs.located(), collected() as caught:
+        table = mesh_table(inputs, about_load=True, rehearsal=rehearsal)
+        return table, _law(inputs, table, rehearsal=rehearsal), caught
 
 
 def static_with_teeth(
@@ -208,7 +210,8 @@ def static_with_teeth(
     misalignment: Mapping[str, float | Misalignment],
 ) -> StaticBalance:
     """Static balance of a machine with the force laws of its mesh tables."""
-    laws = {n: _law(case.pair(n, load, misalignment[n]), table) for n, table in tables.items()}
+    inputs = {name: inputs_under(case, name, load, misalignment[name]) for name in tables}
+    laws = {name: _law(inputs[name], table) for name, table in tables.items()}
     return _static(case, load, laws, misalignment)
 
 
@@ -260,17 +263,20 @@ def structure_of(case: MachineCase, machine: Machine) -> MachineStructure:
     return reduce_structure(MachineStructure(machine, ratio), limit)
 
 
-def _law(pair: Case, table: MeshTable, *, rehearsal: bool = False) -> dict[str, Any]:
+def _law(inputs: MeshInputs, table: MeshTable, *, rehearsal: bool = False) -> dict[str, Any]:
     """Force law of a mesh whose teeth are computed."""
-    functions, single = table.functions(), mesh_law_of(pair) == "force-law"
-    force = "stiffness" if single else None  # one spring for the ramps
-    plane = whole_system(pair, table, force, rehearsal=rehearsal)
-    law = functions.force_law
-    contacts = [law_contact(c, law) for c in plane.contacts] if single and law else plane.contacts
+    functions, single = table.functions(), inputs.law == "force-law"
+    force = "stiffness" if single else inputs.law  # one spring for the ramps
+    names, contacts = mesh_contacts(inputs, functions, mesh_damping(inputs, table), force)
+    frictions: tuple[LoadFriction, ...] = ()
+    if (friction := load_friction_of(inputs, table, rehearsal)) is not None:
+        contacts, frictions = with_load_friction(names, contacts, friction)
+    if single and functions.force_law:
+        contacts = tuple(law_contact(each, functions.force_law) for each in contacts)
     return {
         # The static balance and the modes are those about the load.
         "stiffness": functions.tangent_stiffness or functions.stiffness,
-        "contacts": tuple(contacts),
-        "frictions": plane.frictions,
+        "contacts": contacts,
+        "frictions": frictions,
         "events": functions.event_phases,
     }

@@ -13,15 +13,17 @@ import numpy as np
 from tribodyn.study.case.hypoid import bodies, contact_ratio, levers
 from tribodyn.study.case.provenance import effective
 from tribodyn.study.case.to_models import chosen_options, mesh_law_of
+from tribodyn.study.mesh_inputs import MeshInputs, mesh_inputs
 from tribodyn.study.pipeline.tooth_contact import load_friction_of
 from tribodyn.types import Array
 
 if TYPE_CHECKING:
-    from tribodyn.dynamics import System
+    from tribodyn.dynamics import Contact, MeshForce, System
     from tribodyn.gear import HypoidFlanks, SpurGear, SpurPair
     from tribodyn.mesh import MeshFriction, MeshFunctions, MeshTable
     from tribodyn.mesh.table_file import TableFile
     from tribodyn.study.case.case import Case
+    from tribodyn.study.case.sections import Dynamics
 
 
 #: Modifications that are one figure each.
@@ -208,18 +210,18 @@ def equivalent_mass(
 
 def damping_of(case: Case, mesh: MeshTable) -> Damping:
     """Damping of a case."""
-    data, body = case.dynamics, geometry(case)
-    mesh_damping = data.mesh_damping
-    if mesh_damping is None:
-        mass = equivalent_mass(
-            body["moment_of_inertia_pinion"],
-            body["moment_of_inertia_wheel"],
-            body["base_radius_pinion"],
-            body["base_radius_wheel"],
-        )
-        mesh_damping = 2.0 * data.mesh_damping_ratio * math.sqrt(mesh.mean_mesh_stiffness * mass)
+    body = geometry(case)
     supports = _supports(case, (body.get("mass_pinion", 0.0), body.get("mass_wheel", 0.0)))
-    return Damping(mesh_damping, *supports)
+    return Damping(mesh_damping(mesh_inputs(case), mesh), *supports)
+
+
+def mesh_damping(inputs: MeshInputs, mesh: MeshTable) -> float:
+    """Damping of the teeth of a mesh along the line of action [N*s/m]."""
+    data = inputs.dynamics
+    if data.mesh_damping is not None:
+        return float(data.mesh_damping)
+    mass = equivalent_mass(*inputs.inertias, *inputs.base_radii)
+    return float(2.0 * data.mesh_damping_ratio * math.sqrt(mesh.mean_mesh_stiffness * mass))
 
 
 def _supports(case: Case, masses: tuple[float, float]) -> tuple[float, float]:
@@ -230,13 +232,34 @@ def _supports(case: Case, masses: tuple[float, float]) -> tuple[float, float]:
     return support_damping(values[0], masses, values[1], values[2])
 
 
-def static_error(case: Case, phase: Array | float) -> Array:
-    """Static transmission error of a case: a cosine at mesh frequency."""
-    amplitude = case.dynamics.transmission_error_amplitude
+def static_error(data: Dynamics, phase: Array | float) -> Array:
+    """Static transmission error of a mesh: a cosine at mesh frequency."""
+    amplitude = data.transmission_error_amplitude
     if amplitude == 0.0:
         return np.zeros(np.shape(phase))
-    angle = 2.0 * np.pi * np.asarray(phase) + case.dynamics.transmission_error_phase
+    angle = 2.0 * np.pi * np.asarray(phase) + data.transmission_error_phase
     return np.asarray(amplitude * np.cos(angle))
+
+
+def contact_values(inputs: MeshInputs, damping: float) -> dict[str, Any]:
+    """Damping, backlash and error of the contact of a mesh."""
+    data, error = inputs.dynamics, {}
+    if data.transmission_error_amplitude > 0.0:
+        error = {"error": lambda phase: static_error(data, phase)}
+    in_gap = data.damping_in_gap
+    values = {"mesh_damping": damping, "backlash": inputs.backlash, "damping_in_gap": in_gap}
+    return {**values, **error}
+
+
+def mesh_contacts(
+    inputs: MeshInputs, mesh: MeshFunctions, damping: float, mesh_force: MeshForce
+) -> tuple[tuple[str, ...], tuple[Contact, ...]]:
+    """Coordinates of the gears of a mesh, and the contacts of its teeth over them."""
+    from tribodyn.dynamics.structure.pair_contacts import pair_contacts
+
+    values = {"error": 0.0, **contact_values(inputs, damping)}
+    of_gears: Any = {"base_radius": inputs.base_radii, "driver": inputs.driver}
+    return pair_contacts(mesh, inputs.axes, **of_gears, mesh_force=mesh_force, **values)
 
 
 def system_of(
@@ -258,8 +281,8 @@ def whole_system(
     case: Case, mesh: MeshTable, mesh_force: str | None = None, *, rehearsal: bool = False
 ) -> System:
     """Build the structure of a case with its tooth contact, its damping and its friction."""
-    parts = damping_of(case, mesh), load_friction_of(case, mesh, rehearsal)
-    return system_of(case, mesh, *parts, mesh_force)
+    friction = load_friction_of(mesh_inputs(case), mesh, rehearsal)
+    return system_of(case, mesh, damping_of(case, mesh), friction, mesh_force)
 
 
 def structure_of(case: Case, mesh: MeshFunctions, damping: Damping, mesh_force: str) -> System:
@@ -272,16 +295,12 @@ def structure_of(case: Case, mesh: MeshFunctions, damping: Damping, mesh_force: 
         # Not by the law alone, which knows the gap at its phases only.
         refuse_clamped_teeth(least_gap(case.spur_pair), 0.5 * case.backlash)
     body, torque = geometry(case), case.pinion_torque
-    contact: dict[str, Any] = {
-        "mesh_damping": damping.mesh,
+    contact = {
+        **contact_values(mesh_inputs(case), damping.mesh),
         "driver": case.gears.driver,
-        "backlash": case.backlash,
-        "damping_in_gap": case.dynamics.damping_in_gap,
         "torque_balance": case.operation.torque_balance,
         "mesh_force": mesh_force,
     }
-    if case.dynamics.transmission_error_amplitude > 0.0:
-        contact["error"] = lambda phase: static_error(case, phase)
     gearing = Gearing(
         mesh,
         mass=(body.get("mass_pinion", 0.0), body.get("mass_wheel", 0.0)),

@@ -41,13 +41,19 @@ def papers(case: Case | PartsCase) -> dict[str, dict[str, Any]]:
     if isinstance(case, PartsCase):
         entries = _package() | _values_source(case)
         for _, pair, _ in case.mesh_pairs():
-            entries |= papers(pair)
+            entries |= _papers_of_pair(pair, ("stiffness", "friction", "film"))
         return entries | {key: _library()[key] for key in _papers_of_parts(case)}
-    keys = ["iso-21771", "hertz"]
+    tables = ("stiffness", "friction", "film", "dynamics", "solver")
+    entries = _papers_of_pair(case, tables)
+    return entries | {key: _library()[key] for key in _METHODS.get(case.solver.method, ())}
+
+
+def _papers_of_pair(case: Case, tables: tuple[str, ...]) -> dict[str, dict[str, Any]]:
+    """Papers behind the models of some tables of a pair, and behind its teeth and losses."""
     from tribodyn.ehl import SHEAR_MODELS
 
-    unlisted: dict[str, dict[str, Any]] = {}
-    for table in ("stiffness", "friction", "film", "dynamics", "solver"):
+    keys, unlisted = ["iso-21771", "hertz"], dict[str, dict[str, Any]]()
+    for table in tables:
         if is_idle(table, case.gears.kind):
             continue
         model = getattr(case, table).chosen
@@ -59,7 +65,6 @@ def papers(case: Case | PartsCase) -> dict[str, dict[str, Any]]:
         keys += SHEAR_MODELS[case.friction.shear_model].papers
         if case.friction.limiting_stress or case.friction.limiting_stress_slope is not None:
             keys.append("evans-johnson")
-    keys += _METHODS.get(case.solver.method, ())
     if case.friction.variant == "he-singh":
         keys.append("he-gunda-singh")
     keys += _loss_papers(case)

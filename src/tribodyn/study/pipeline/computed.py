@@ -83,15 +83,17 @@ class Computed(Record):
     def static_error(self, phase: Array | float) -> Array:
         """Transmission error without load: prescribed, or a column of the mesh table."""
         mesh_error, phase = self.mesh.functions().error, np.asarray(phase, dtype=float)
-        return static_error(self.case, phase) + (0.0 if mesh_error is None else mesh_error(phase))
+        return static_error(self.case.dynamics, phase) + (
+            0.0 if mesh_error is None else mesh_error(phase)
+        )
 
     def transmission_error_at_rest(self, phase: Array | float | None = None) -> Array:
         """Lag of the driven gear under load at rest [m], with the prescribed error of the case."""
         if phase is None:
-            error = static_error(self.case, self.mesh.phase)
+            error = static_error(self.case.dynamics, self.mesh.phase)
             return np.asarray(self.mesh.transmission_error_at_rest + error)
         loaded = self.mesh.at("transmission_error_at_rest", phase)
-        return np.asarray(loaded + static_error(self.case, phase))
+        return np.asarray(loaded + static_error(self.case.dynamics, phase))
 
     def loaded_contact(self) -> LoadedContact:
         """Loaded contact at rest, without oil film: a turn of each gear whose teeth differ."""

@@ -95,10 +95,12 @@ class Result(Computed):
     @cached_property
     def hypoid_friction(self) -> HypoidFriction | None:
         """Load, film and friction in every cell of a hypoid pair at rest; None of other gears."""
+        from tribodyn.study.mesh_inputs import mesh_inputs
         from tribodyn.study.pipeline.tooth_contact import hypoid_friction_of
 
         with collected():  # The run has raised the warnings.
-            return None if self.case.hypoid_flanks is None else hypoid_friction_of(self.case)
+            crossed = self.case.hypoid_flanks is not None
+            return hypoid_friction_of(mesh_inputs(self.case)) if crossed else None
 
     @cached_property
     def natural_modes(self) -> NaturalModes:

@@ -16,6 +16,7 @@ from tribodyn.study.case.to_models import locate_errors
 from tribodyn.study.coupling import Follow, coupled
 from tribodyn.study.first_use import compile_in_parallel
 from tribodyn.study.heat_balance import balanced
+from tribodyn.study.mesh_inputs import mesh_inputs
 from tribodyn.study.pipeline.assembly import damping_of, system_of, whole_system
 from tribodyn.study.pipeline.cautions import (
     case_cautions,
@@ -105,7 +106,7 @@ def rehearse(case: Case) -> tuple[ModelWarning, ...]:
         steps = steps_of(case, system, mesh.mesh_frequency)
         compile_system(system, FEWEST)  # the tables of a slow run take gigabytes
         refuse_steps(system, mesh.mesh_frequency, steps)
-    return load_cautions(mesh, teeth_contact_ratio(case))
+    return load_cautions(mesh, teeth_contact_ratio(mesh_inputs(case)))
 
 
 def computed(
@@ -188,7 +189,7 @@ def prepare_run(
             case, mesh, coupling, heat = balanced(case, mesh_at)
         else:
             case, mesh, coupling = mesh_at(case)
-        friction = load_friction_of(case, mesh)
+        friction = load_friction_of(mesh_inputs(case), mesh)
         damping = damping_of(case, mesh)
         system = system_of(case, mesh, damping, friction)
         progress.finish()
@@ -212,7 +213,7 @@ def with_tables(pending: Sequence[PendingRun]) -> list[PendingRun]:
             places.setdefault(key, []).append(place)
     filled = list(pending)
     for group in places.values():
-        tables = meshes_of([pending[place].case for place in group])
+        tables = meshes_of([mesh_inputs(pending[place].case) for place in group])
         for place, table in zip(group, tables, strict=False):
             filled[place] = pending[place]._replace(mesh_source=table)
     return filled

@@ -214,7 +214,7 @@ def _static_error_figures(result: Computed) -> dict[str, Any]:
     pair = result.case.spur_pair
     if pair is not None and pair.teeth_differ:
         loaded = result.loaded_contact()
-        error = loaded.transmission_error + static_error(result.case, loaded.phase)
+        error = loaded.transmission_error + static_error(result.case.dynamics, loaded.phase)
         loaded = replace(loaded, transmission_error=error)
         figures = (
             loaded.mean_transmission_error,

@@ -12,13 +12,13 @@ import numpy as np
 
 from tribodyn.errors import ComputationError, InputError, ModelWarning, collected, warn
 from tribodyn.progress import SILENT, Progress
-from tribodyn.study.case import to_models
-from tribodyn.study.case.hypoid import mounting
-from tribodyn.study.case.to_models import (
-    chosen_options,
-    friction_of_table,
-    locate_errors,
-    mesh_law_of,
+from tribodyn.study.case.to_models import locate_errors
+from tribodyn.study.mesh_inputs import (
+    HypoidTeeth,
+    MeshInputs,
+    TableTeeth,
+    mesh_inputs,
+    model_settings,
 )
 from tribodyn.study.studies.study_axes import read_torques
 
@@ -32,42 +32,17 @@ if TYPE_CHECKING:
 
 #: Load over the nominal load below which friction may be missing.
 _LIGHT = 0.3
-#: Tables of a case that its tooth contact depends on, in addition to speed and load.
-_OF_CONTACT = ("gears", "material", "lubricant", "film", "stiffness", "friction")
 #: Phase intervals of a rehearsal.
 _FEWEST = 16
 
 
-def model_settings(case: Case) -> dict[str, Any]:
-    """Material, oil, stiffness and film of a case, as arguments of the mesh functions."""
-    return {
-        "material": case.material_properties,
-        "stiffness_model": case.stiffness.model,
-        "stiffness_options": chosen_options(case, "stiffness"),
-        "lubricant": case.film_lubricant or to_models.unused_lubricant(),
-        "composite_roughness": case.composite_roughness or 0.0,
-        "film_model": case.film.model,
-        "film_options": chosen_options(case, "film"),
-    }
+def mesh_of(case: Case, progress: Progress = SILENT, **options: Any) -> MeshTable:
+    """Compute the tooth contact of a pair over one mesh cycle, as :func:`mesh_table`."""
+    return mesh_table(mesh_inputs(case), progress, **options)
 
 
-def contact_settings(case: Case) -> ToothContact:
-    """Settings of the tooth contact of a case."""
-    from tribodyn.mesh.sharing import ToothContact
-
-    def settings() -> ToothContact:
-        return ToothContact(
-            friction_law=case.friction.law,
-            friction_options=chosen_options(case, "friction"),
-            bodies=case.thermal_contact_coefficients,
-            **model_settings(case),
-        )
-
-    return case._once("contact_settings", _OF_CONTACT, settings)
-
-
-def mesh_of(
-    case: Case,
+def mesh_table(
+    inputs: MeshInputs,
     progress: Progress = SILENT,
     *,
     load: float = 1.0,
@@ -75,36 +50,36 @@ def mesh_of(
     about_load: bool = False,
     friction_alone: bool = False,
 ) -> MeshTable:
-    """Compute the tooth contact of a case over one mesh cycle."""
+    """Compute the tooth contact of a mesh over one mesh cycle."""
     # A rehearsal has few phases and a film by formula: it only has to raise the input errors.
-    # about_load: the force law has few ramps, or is its tangent where the case takes no more.
+    # about_load: the force law has few ramps, or is its tangent where the inputs take no more.
     # friction_alone: the force law is its tangent, which costs nothing.
-    from tribodyn.mesh.build import mesh_table
+    from tribodyn.mesh.build import mesh_table as of_cylindrical
 
-    if case.mesh_table is not None:
-        return case.mesh_table.table(
-            teeth=case.gears.pinion.teeth,
-            driver=case.gears.driver,
-            pinion_speed=case.pinion_speed,
-            pinion_torque=case.pinion_torque,
-            friction_coefficient=friction_of_table(case),
+    if isinstance(inputs.teeth, TableTeeth):
+        return inputs.teeth.file.table(
+            teeth=inputs.teeth.gears.pinion.teeth,
+            driver=inputs.driver,
+            pinion_speed=inputs.speed,
+            pinion_torque=inputs.torque,
+            friction_coefficient=inputs.teeth.friction_coefficient,
         )
-    settings = _rehearsed(contact_settings(case)) if rehearsal else contact_settings(case)
-    if case.hypoid_flanks is not None:
+    settings = _rehearsed(inputs.settings) if rehearsal else inputs.settings
+    if isinstance(inputs.teeth, HypoidTeeth):
         fewest = {"steps": _FEWEST, "cells": _FEWEST} if rehearsal else {}
-        loaded = hypoid_loaded_contact_of(case, load=load, progress=progress, **fewest)
-        return _friction_in_cells(case, loaded, settings).table()
-    fitted: FittedLaw = mesh_law_of(case) == "force-law"
+        loaded = hypoid_loaded_contact_of(inputs, load=load, progress=progress, **fewest)
+        return _friction_in_cells(inputs, loaded, settings).table()
+    fitted: FittedLaw = inputs.law == "force-law"
     if about_load:
         fitted = "about-load" if fitted else "tangent"
     if friction_alone:
         fitted = "tangent"
-    return mesh_table(
-        case.gear_pair,
+    return of_cylindrical(
+        inputs.teeth,
         settings,
         steps=_FEWEST if rehearsal else None,
-        pinion_speed=case.pinion_speed,
-        pinion_torque=case.pinion_torque * load,
+        pinion_speed=inputs.speed,
+        pinion_torque=inputs.torque * load,
         force_law=fitted,
         progress=progress,
     )
@@ -127,16 +102,15 @@ def _rehearsed(settings: ToothContact) -> ToothContact:
     return replace(settings, friction_law=other.name, friction_options=shared_options)
 
 
-def teeth_contact_ratio(case: Case) -> float | None:
+def teeth_contact_ratio(inputs: MeshInputs) -> float | None:
     """Contact ratio under load on the grid points of a run; None if only a mesh table has it."""
     from tribodyn.mesh.build import teeth_under_load
     from tribodyn.mesh.loaded_intervals import contact_ratio
 
-    pair = case.spur_pair
+    pair = inputs.cylindrical
     if pair is None or not pair.has_profile_modification:
         return None
-    settings = contact_settings(case)
-    cycle, teeth = teeth_under_load(pair, settings, case.pinion_torque, None, None)
+    cycle, teeth = teeth_under_load(pair, inputs.settings, inputs.torque, None, None)
     shared = teeth.shared_load()
     return contact_ratio(cycle.grid, shared.share, shared.corner_share)
 
@@ -146,18 +120,20 @@ def film_group(case: Case) -> object:
     if case.spur_pair is None or case._named_files():
         return None
     try:
-        return case.spur_pair, contact_settings(case), mesh_law_of(case)
+        inputs = mesh_inputs(case)
+        return inputs.teeth, inputs.contact, inputs.law
     except InputError:
         return None  # preparing the run reports the error
 
 
-def meshes_of(cases: Sequence[Case]) -> list[Callable[[], MeshTable]]:
-    """Mesh tables of cases with the same key from one pass; empty if none can be shared."""
+def meshes_of(points: Sequence[MeshInputs]) -> list[Callable[[], MeshTable]]:
+    """Mesh tables of meshes with the same key from one pass; empty if none can be shared."""
     from tribodyn.mesh.operating_points import mesh_tables
 
-    first, points = cases[0], [case.operating_point for case in cases]
-    law = mesh_law_of(first) == "force-law"
-    tables = mesh_tables(first.gear_pair, contact_settings(first), points, force_law=law)
+    first, law = points[0], points[0].law == "force-law"
+    assert first.cylindrical is not None
+    operation = [(point.speed, point.torque) for point in points]
+    tables = mesh_tables(first.cylindrical, first.settings, operation, force_law=law)
     return [partial(_repeat_warnings, *entry) for entry in tables]
 
 
@@ -167,47 +143,49 @@ def _repeat_warnings(table: MeshTable, model_warnings: Sequence[ModelWarning]) -
     return table
 
 
-def hypoid_friction_of(case: Case, *, loading: Array | None = None) -> HypoidFriction:
+def hypoid_friction_of(inputs: MeshInputs, *, loading: Array | None = None) -> HypoidFriction:
     """Load, film and friction of a hypoid pair in every cell of its contact lines."""
-    loaded = hypoid_loaded_contact_of(case)
+    loaded = hypoid_loaded_contact_of(inputs)
     if loading is not None:
         loaded = loaded.under_loading(loading)
-    return _friction_in_cells(case, loaded, contact_settings(case))
+    return _friction_in_cells(inputs, loaded, inputs.settings)
 
 
 def _friction_in_cells(
-    case: Case, loaded: HypoidLoadedContact, settings: ToothContact
+    inputs: MeshInputs, loaded: HypoidLoadedContact, settings: ToothContact
 ) -> HypoidFriction:
     from tribodyn.mesh.hypoid.friction import friction_in_cells
 
-    return friction_in_cells(loaded, case.pinion_speed, settings, case.gears.entrainment)
+    assert isinstance(inputs.teeth, HypoidTeeth)
+    return friction_in_cells(loaded, inputs.speed, settings, inputs.teeth.gears.entrainment)
 
 
 def hypoid_loaded_contact_of(
-    case: Case, *, load: float = 1.0, progress: Progress = SILENT, **resolution: int
+    inputs: MeshInputs, *, load: float = 1.0, progress: Progress = SILENT, **resolution: int
 ) -> HypoidLoadedContact:
-    """Loaded contact of the hypoid pair of a case, with phases (``steps``) and ``cells``."""
+    """Loaded contact of a hypoid pair, with phases (``steps``) and ``cells``."""
     from tribodyn.mesh import hypoid_loaded_contact
 
-    assert case.hypoid_flanks is not None  # Only hypoid pairs have such a contact.
+    teeth = inputs.teeth
+    assert isinstance(teeth, HypoidTeeth)  # Only hypoid pairs have such a contact.
     return hypoid_loaded_contact(
-        case.hypoid_flanks,
-        case.pinion_torque * load,
-        misalignment=mounting(case.gears),
-        material=case.material_properties,
-        line_stiffness=case.gears.line_stiffness,
+        teeth.flanks,
+        inputs.torque * load,
+        misalignment=teeth.mounting,
+        material=inputs.settings.material,
+        line_stiffness=teeth.gears.line_stiffness,
         # fewer phases or cells are a rehearsal, which takes no time
-        stiffness_model="line" if "cells" in resolution else case.gears.stiffness_model,
+        stiffness_model="line" if "cells" in resolution else teeth.gears.stiffness_model,
         progress=progress,
         **resolution,
     )
 
 
 def load_friction_of(
-    case: Case, nominal: MeshTable, rehearsal: bool = False
+    inputs: MeshInputs, nominal: MeshTable, rehearsal: bool = False
 ) -> MeshFriction | None:
-    """Friction of a case under any load of the teeth."""
-    if case.dynamics.friction_load == "nominal":
+    """Friction of a mesh under any load of the teeth."""
+    if inputs.dynamics.friction_load == "nominal":
         return None
     from tribodyn.mesh import LOADS, mesh_friction
 
@@ -215,8 +193,8 @@ def load_friction_of(
     with collected():
         for load in LOADS:
             try:
-                at = partial(mesh_of, case, load=load, rehearsal=rehearsal, friction_alone=True)
-                tables.append(nominal if load == 1.0 else at())
+                at = partial(mesh_table, load=load, rehearsal=rehearsal, friction_alone=True)
+                tables.append(nominal if load == 1.0 else at(inputs))
             except ComputationError:
                 # An oil film in series is softer than lightly loaded teeth. Light loads rub little.
                 if load > _LIGHT:

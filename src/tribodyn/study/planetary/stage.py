@@ -13,7 +13,8 @@ from tribodyn.machine import LoadShares, Mesh, load_shares, planetary_plane_mode
 from tribodyn.machine.planetary.mesh_laws import PlanetMesh, with_computed_teeth
 from tribodyn.machine.planetary.plane_model import modal_damping, without_free_rotation
 from tribodyn.progress import SILENT, Progress
-from tribodyn.study.machine.run import MeshWarning, teeth_of_pairs
+from tribodyn.study.machine.run import MeshWarning, teeth_of_meshes
+from tribodyn.study.mesh_inputs import mesh_inputs
 from tribodyn.study.pipeline.assembly import geometry
 from tribodyn.study.planetary.machine_stages import carrier_body
 
@@ -42,7 +43,8 @@ def stage_teeth(
 ) -> StageTeeth:
     """Compute the teeth of one sun mesh and one ring mesh; those of all planets are equal."""
     pairs = case.pairs_under(load)
-    teeth = teeth_of_pairs(list(pairs.values()), load, progress, rehearsal=rehearsal)
+    inputs = [mesh_inputs(pair) for pair in pairs.values()]
+    teeth = teeth_of_meshes(inputs, load, progress, rehearsal=rehearsal)
     results = dict(zip(MESHES, teeth, strict=True))
     warnings: list[ModelWarning]
     listed = []

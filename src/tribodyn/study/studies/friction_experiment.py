@@ -17,8 +17,8 @@ from tribodyn.errors import InputError, collected
 from tribodyn.nomenclature import GEARS
 from tribodyn.progress import SILENT, Progress
 from tribodyn.study.case.to_models import locate_errors, mesh_law_of
+from tribodyn.study.mesh_inputs import contact_settings
 from tribodyn.study.pipeline.run import PendingRun
-from tribodyn.study.pipeline.tooth_contact import contact_settings
 from tribodyn.study.studies.case_grid import identity, over_cases
 from tribodyn.study.studies.friction_claims import (
     CONSTANT,

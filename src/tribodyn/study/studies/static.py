@@ -16,11 +16,8 @@ from tribodyn.stiffness import TipReliefOptimum
 from tribodyn.study.case.gears import Modification
 from tribodyn.study.case.to_models import locate_errors
 from tribodyn.study.case.values import FaultError, Plain, read_value
-from tribodyn.study.pipeline.tooth_contact import (
-    hypoid_loaded_contact_of,
-    loaded_settings,
-    model_settings,
-)
+from tribodyn.study.mesh_inputs import mesh_inputs, model_settings
+from tribodyn.study.pipeline.tooth_contact import hypoid_loaded_contact_of, loaded_settings
 from tribodyn.study.studies.needs import mesh_pair
 from tribodyn.study.studies.study_axes import read_speeds, read_torques
 from tribodyn.units import format_quantity
@@ -129,7 +126,7 @@ def _hypoid_map(case: Case, torques: list[float], phases: int | None) -> HarrisM
     if phases is not None:
         require_between("phases", require_whole("phases", phases), *_PHASES)
     steps: dict[str, Any] = {} if phases is None else {"steps": phases}
-    loaded = hypoid_loaded_contact_of(case, **steps)
+    loaded = hypoid_loaded_contact_of(mesh_inputs(case), **steps)
     return hypoid_transmission_error_over_torque(loaded, torques)
 
 
