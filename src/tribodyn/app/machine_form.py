@@ -13,9 +13,10 @@ from tribodyn.study.case.checks import case_options
 from tribodyn.study.case.provenance import effective
 from tribodyn.study.case.section import Section, Table
 from tribodyn.study.case.values import Plain
+from tribodyn.study.machine.case import MachineCase
 from tribodyn.study.machine.pair_cases import SHARED
 from tribodyn.study.machine.tables import TABLES, MeshDynamics, mesh_table_kind
-from tribodyn.study.machine.user_tables import PartsCase, flat_keys
+from tribodyn.study.machine.user_tables import flat_keys
 
 #: Groups of the form, those of parts with a table for each of them.
 _GROUPS = {
@@ -39,7 +40,7 @@ _MEANINGS = {
 class MachineForm:
     """Form of a machine or stage, with typed text that is not part of the case yet."""
 
-    def __init__(self, case: PartsCase, typed: Typed, units: Mapping[str, str]) -> None:
+    def __init__(self, case: MachineCase, typed: Typed, units: Mapping[str, str]) -> None:
         self.case, self.typed, self.units = case, typed, units
 
     @cached_property

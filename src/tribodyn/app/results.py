@@ -12,12 +12,11 @@ from tribodyn.app.studies import STUDIES, offered
 from tribodyn.errors import InputError, TribodynError, collected
 from tribodyn.report.figure_blocks import block_of_figure, topic_of
 from tribodyn.study.machine.case import MachineCase
-from tribodyn.study.machine.user_tables import PartsCase
-from tribodyn.study.planetary.case import PlanetaryCase
 
 if TYPE_CHECKING:
     from tribodyn.app.jobs import Job
     from tribodyn.study.case.case import Case
+    from tribodyn.study.machine.case import MachineCase
 
 #: Derived values of the geometry that are displayed as cards.
 _FIRST = (
@@ -91,8 +90,7 @@ def notice(heading: str, lines: list[str]) -> list[Any]:
 
 def rail(desk: TabSession) -> list[Any]:
     """Tabs of all views, and the list of runs."""
-    kinds: dict[type, str] = {MachineCase: "Machine", PlanetaryCase: "Planetary stage"}
-    name = kinds.get(type(desk.case), "Gear pair")
+    name = getattr(desk.case, "kind", "Gear pair")
     views = [("pair", name), ("files", "Open and save"), ("studies", "Studies")]
     tabs = [_tab(desk, view, text) for view, text in views]
     for job in desk.all_jobs():
@@ -137,7 +135,7 @@ def pair(desk: TabSession) -> list[Any]:
     from tribodyn.study.pipeline.preview import operating_figures
 
     case = desk.case
-    if isinstance(case, PartsCase):
+    if isinstance(case, MachineCase):
         return _parts(desk, case)
     with collected():
         figures = {n: float(v) for n, v in (geometry(case) | operating_figures(case)).items()}
@@ -156,23 +154,18 @@ def pair(desk: TabSession) -> list[Any]:
     return [*_outdated(desk), html.Div(parts, className="outdated" if desk.faults else "")]
 
 
-def _parts(desk: TabSession, case: PartsCase) -> list[Any]:
-    """View, speeds, torques and assumptions of the current machine or stage."""
+def _parts(desk: TabSession, case: MachineCase) -> list[Any]:
+    """View, speeds, torques and assumptions of the current machine."""
     from tribodyn import plot
     from tribodyn.report.numbers import describe
     from tribodyn.study.machine.first_look import kinematic_figures, warn_of_period
-    from tribodyn.study.planetary.summary import kinematic_figures as stage_figures
 
-    subject: Any
     with collected() as warnings:
-        if isinstance(case, MachineCase):
-            subject, figure = case.machine(), plot.machine
-            warn_of_period(case.machine())
-            values = kinematic_figures(case)
-        else:
-            assert isinstance(case, PlanetaryCase)
-            subject, figure = case, plot.planetary_stage
-            values = stage_figures(case, case.kinematics(case.operating_point))
+        machine = case.machine()
+        warn_of_period(machine)
+        values = kinematic_figures(case)
+    alone = case.lone_stage is not None
+    figure, subject = (plot.planetary_stage, case) if alone else (plot.machine, machine)
     numbers = [describe(name, value) for name, value in values.items()]
     rows = [[n.label, f"{n.value} {n.unit}".strip(), n.meaning] for n in numbers]
     first = [describe(n, value, 4) for n, value in values.items() if n.endswith(_OF_MACHINE)]

@@ -17,7 +17,7 @@ from tribodyn.cases.load import load_case
 from tribodyn.errors import InputError, TribodynError, collected
 from tribodyn.model import Option
 from tribodyn.nomenclature import GEARS
-from tribodyn.study.machine.user_tables import PartsCase
+from tribodyn.study.machine.case import MachineCase
 from tribodyn.study.result_comparison import differing
 from tribodyn.units import UnitProblemError, format_quantity, parse, split
 from tribodyn.validated_files import plain_number
@@ -25,7 +25,7 @@ from tribodyn.validated_files import plain_number
 if TYPE_CHECKING:
     from tribodyn.study.case.case import Case
 
-    AnyCase = Case | PartsCase
+    AnyCase = Case | MachineCase
 
 #: Greatest number of runs, and of studies, of a tab.
 RUNS = 6
@@ -70,7 +70,7 @@ class TabSession:
     @property
     def form(self) -> CaseForm | MachineForm:
         """The form of the case."""
-        if isinstance(self.case, PartsCase):
+        if isinstance(self.case, MachineCase):
             return MachineForm(self.case, self.typed, self.units)
         return CaseForm(self.case, self.typed, self.units)
 

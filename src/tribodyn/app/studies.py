@@ -25,7 +25,7 @@ from tribodyn.study.studies.range_syntax import (
 if TYPE_CHECKING:
     from tribodyn.progress import Progress
     from tribodyn.study.case.case import Case
-    from tribodyn.study.machine.user_tables import PartsCase
+    from tribodyn.study.machine.case import MachineCase
 
 #: Values of a study by name: numbers and choices checked, others as text; None or empty: default.
 Values = Mapping[str, Any]
@@ -55,7 +55,7 @@ class Study:
     function: Callable[[Any, Values, Progress, Path], Shown]
 
     def compute(
-        self, case: Case | PartsCase, texts: Mapping[str, str], progress: Progress, target: Path
+        self, case: Case | MachineCase, texts: Mapping[str, str], progress: Progress, target: Path
     ) -> Shown:
         """Check the typed values, compute the study and write its directory."""
         values: dict[str, Any] = {}
@@ -262,7 +262,7 @@ _KEY = "operation.speed"
 _GUARD = "guards against a slip of the keyboard"
 
 
-def offered(kind: str, case: Case | PartsCase) -> bool:
+def offered(kind: str, case: Case | MachineCase) -> bool:
     """Whether the page offers a study for a case."""
     return kind_of(case) in NEEDS[kind].kinds
 
@@ -387,11 +387,11 @@ def numeric_keys(options: Mapping[str, Option]) -> list[str]:
     return [key for key, option in options.items() if option.kind == "number"]
 
 
-def first_values(kind: str, case: Case | PartsCase) -> dict[str, str]:
+def first_values(kind: str, case: Case | MachineCase) -> dict[str, str]:
     """Values to begin with: speeds about that of the case."""
     from tribodyn.units import convert
 
-    point = case.operating_point if isinstance(case, PartsCase) else case.operation
+    point = case.operating_point if isinstance(case, MachineCase) else case.operation
     rpm = abs(convert(point.speed, "rad/s", "rpm"))
     about = f"{0.5 * rpm:.4g}..{2.0 * rpm:.4g} rpm"
     first = {

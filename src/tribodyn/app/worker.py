@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from tribodyn.study.case.case import Case
-    from tribodyn.study.machine.user_tables import PartsCase
+    from tribodyn.study.machine.case import MachineCase
 
 #: Shortest time between two messages about progress [s].
 _PAUSE = 0.15
@@ -103,7 +103,7 @@ def _carry_out(order: Mapping[str, Any], tell: Tell) -> None:
         tell(state="failed", problems=[f"{what}. This is a fault of tribodyn, not of the input."])
 
 
-def _case(order: Mapping[str, Any]) -> Case | PartsCase:
+def _case(order: Mapping[str, Any]) -> Case | MachineCase:
     from tribodyn.study.machine.read import read_any_case
 
     return read_any_case(order["case"], "case.toml")
@@ -113,11 +113,11 @@ def _run(order: Mapping[str, Any], folder: Path, tell: Tell) -> None:
     """Compute a case, send its contents, and write the directory of ``tribodyn run``."""
     from tribodyn.report.figure_blocks import figure_blocks
     from tribodyn.report.numbers import HEAD, headlines, modes_table, table
-    from tribodyn.study.machine.user_tables import PartsCase
+    from tribodyn.study.machine.case import MachineCase
     from tribodyn.study.pipeline.run import computed
 
     case = _case(order)
-    if isinstance(case, PartsCase):
+    if isinstance(case, MachineCase):
         _run_parts(case, folder, tell)
         return
     result = computed(case, Teller(tell))
@@ -139,19 +139,16 @@ def _run(order: Mapping[str, Any], folder: Path, tell: Tell) -> None:
     tell(saved=True)
 
 
-def _run_parts(case: PartsCase, folder: Path, tell: Tell) -> None:
+def _run_parts(case: MachineCase, folder: Path, tell: Tell) -> None:
     """Compute a machine or stage, send its contents, and write the directory of the command."""
     from tribodyn.cases.load import run
     from tribodyn.errors import collected
     from tribodyn.report.machine_report import machine_content
-    from tribodyn.report.planetary_report import planetary_content
-    from tribodyn.study.machine.result import MachineResult
 
     with collected():  # the result has them
         result = run(case, Teller(tell))  # type: ignore[arg-type]
     tell(task="Figures", done=0, total=None)
-    machine = isinstance(result, MachineResult)
-    content = machine_content(result) if machine else planetary_content(result)
+    content = machine_content(result)
     tell(state="done", content={**content, "blocks": _written(content["blocks"], folder)}, task="")
     result.save(folder / "result")
     tell(saved=True)

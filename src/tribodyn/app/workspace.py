@@ -9,13 +9,13 @@ from typing import TYPE_CHECKING
 
 from tribodyn.errors import InputError, OutputExistsError
 from tribodyn.study.case.read import named_files, parse_toml, read_text
-from tribodyn.study.machine.case import MachineCase, is_machine
+from tribodyn.study.machine.case import MachineCase
 from tribodyn.study.machine.housing_files import copy_housing
-from tribodyn.study.machine.read import machine_files, read_any_case
+from tribodyn.study.machine.read import is_machine, machine_files, read_any_case
 
 if TYPE_CHECKING:
     from tribodyn.study.case.case import Case
-    from tribodyn.study.machine.user_tables import PartsCase
+    from tribodyn.study.machine.case import MachineCase
 
 #: Characters of a name, case files that are listed, and how deep the search goes.
 _LONGEST, _LISTED, _DEEP = 120, 200, 3
@@ -77,14 +77,14 @@ class Workspace:
         except InputError:
             return False
 
-    def load(self, name: str) -> Case | PartsCase:
+    def load(self, name: str) -> Case | MachineCase:
         """Read a case file; files that it names have to be in the folder too."""
         place = self.inside(name, ".toml")
         if not place.is_file():
             raise InputError(f'there is no file "{name}"', "", "", "Choose one from the list")
         return self.read(read_text(place), place)
 
-    def read(self, text: str, place: Path) -> Case | PartsCase:
+    def read(self, text: str, place: Path) -> Case | MachineCase:
         """Read a case from text as a file of the folder."""
         name = self.relative_name(place)
         data = parse_toml(text, name)
@@ -94,7 +94,7 @@ class Workspace:
                 raise self._outside(named)
         return read_any_case(text, str(place))
 
-    def save_case(self, case: Case | PartsCase, name: str, force: bool = False) -> Path:
+    def save_case(self, case: Case | MachineCase, name: str, force: bool = False) -> Path:
         """Write a case file with the files of a housing; replace one only with ``force``."""
         from tribodyn.study.pipeline.save import write_file
 

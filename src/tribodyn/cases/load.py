@@ -14,7 +14,7 @@ from tribodyn.progress import SILENT, Progress
 
 if TYPE_CHECKING:
     from tribodyn.study import Case
-    from tribodyn.study.machine.user_tables import PartsCase
+    from tribodyn.study.machine.case import MachineCase
 
 #: Endings of gearbox models of other programs.
 _REXS = (".rexs", ".rexsj", ".rexsz", ".rexs.zip", ".rexsj.zip")
@@ -32,9 +32,9 @@ def load_case(name_or_path: str | os.PathLike[str]) -> Any:
 
     Returns
     -------
-    Case, MachineCase or PlanetaryCase
-        A planetary stage, where the file has ``[planets.NAME]``; a machine, where it has
-        ``[meshes.NAME]``; a REXS model of another program is one of both.
+    Case or MachineCase
+        A machine, where the file has ``[meshes.NAME]`` or ``[planets.NAME]``; a REXS model of
+        another program is one of both.
 
     Raises
     ------
@@ -107,19 +107,19 @@ def _not_found(name: str, path: Path, names: list[str]) -> Problem:
     return Problem("no built-in case and no file has this name", name, why, remedy)
 
 
-def run(case: Case | PartsCase | str | os.PathLike[str], progress: Progress = SILENT) -> Any:
+def run(case: Case | MachineCase | str | os.PathLike[str], progress: Progress = SILENT) -> Any:
     """Compute a case: a gear pair, a machine of several shafts, or a planetary stage.
 
     Parameters
     ----------
-    case : Case, PartsCase, str or path
+    case : Case, MachineCase, str or path
         From :func:`tribodyn.load_case`, or what that function takes.
     progress : Progress
         Reports the steps of the run; silent by default.
 
     Returns
     -------
-    Result, MachineResult or PlanetaryResult
+    Result or MachineResult
 
     Raises
     ------
@@ -138,11 +138,11 @@ def run(case: Case | PartsCase | str | os.PathLike[str], progress: Progress = SI
     >>> result = run("fzg-roughness")  # doctest: +SKIP
     """
     from tribodyn.study import run as compute
-    from tribodyn.study.machine.user_tables import PartsCase
+    from tribodyn.study.machine.case import MachineCase
 
     ready: Any = load_case(case) if isinstance(case, (str, os.PathLike)) else case
-    if isinstance(ready, PartsCase):
-        from tribodyn.study.planetary.run import run_parts
+    if isinstance(ready, MachineCase):
+        from tribodyn.study.machine.run import run_machine
 
-        return run_parts(ready, progress, stacklevel=3)
+        return run_machine(ready, progress, stacklevel=3)
     return compute(ready, progress, stacklevel=3)

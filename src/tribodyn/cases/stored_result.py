@@ -37,7 +37,7 @@ _FACTS = ("mesh_frequency", "periods", "steady_state_error", "warnings", "cycles
 def load_result(directory: str | os.PathLike[str]) -> Any:
     """Read a saved result; only the forces along its motion are computed again.
 
-    A planetary stage is computed again from its case file.
+    A planetary stage that an earlier version stored is computed again from its case file.
 
     Parameters
     ----------
@@ -73,8 +73,8 @@ Give the directory that tribodyn run or Result.save wrote.
 
     folder = Path(directory)
     if (folder / _MOTION).is_file():
-        if (stage := _stage(folder)) is not None:
-            return stage
+        if "planet" in read_dataset(folder / _MOTION, str(folder)).coords:
+            return _recomputed(folder)
         return read_machine(folder, load_case, read_summary)
     summary = read_summary(folder)
     case = load_case(folder / "case.toml")
@@ -108,17 +108,13 @@ Give the directory that tribodyn run or Result.save wrote.
     return result
 
 
-def _stage(folder: Path) -> Any:
-    """Result of a planetary stage, computed again from its case; None of a machine."""
-    from tribodyn.study.planetary.case import PlanetaryCase
-    from tribodyn.study.planetary.run import run_planetary
+def _recomputed(folder: Path) -> Any:
+    """Result of a planetary stage of an earlier version, computed again from its case."""
+    from tribodyn.cases.load import run
 
     summary = read_summary(folder)
-    case = load_case(folder / "case.toml")
-    if not isinstance(case, PlanetaryCase):
-        return None
     with collected():
-        result = run_planetary(case)
+        result = run(load_case(folder / "case.toml"))
     vars(result)["_summary"] = summary
     return result
 

@@ -15,7 +15,7 @@ from tribodyn.study.studies.range_syntax import UnreadError, read_range, read_va
 
 if TYPE_CHECKING:
     from tribodyn.study.case.case import Case
-    from tribodyn.study.machine.user_tables import PartsCase
+    from tribodyn.study.machine.case import MachineCase
 
 
 Output = Path | None
@@ -97,11 +97,11 @@ def changed_case(name_or_path: str, settings: Sequence[str], study: str) -> Any:
     return case
 
 
-def changed_any_case(name_or_path: str, settings: Sequence[str]) -> Case | PartsCase:
+def changed_any_case(name_or_path: str, settings: Sequence[str]) -> Case | MachineCase:
     """Load the case of a gear pair, a machine or a planetary stage and change values."""
     from tribodyn.cases.load import load_changed_case
 
-    case: Case | PartsCase = load_changed_case(name_or_path, read_changes(settings), by="--set")
+    case: Case | MachineCase = load_changed_case(name_or_path, read_changes(settings), by="--set")
     return case
 
 

@@ -15,7 +15,7 @@ from tribodyn.drawing import FIGURES, draw, figures_of
 from tribodyn.errors import InputError, OutputExistsError
 from tribodyn.files import atomic_write
 from tribodyn.record import Record
-from tribodyn.study import MachineResult, PlanetaryResult, Result
+from tribodyn.study import MachineResult, Result
 from tribodyn.study.pipeline.summary_figures import figure_of
 from tribodyn.validated_files import csv_text
 
@@ -25,14 +25,12 @@ _nothing = "".format  # for a figure without conditions
 Table = tuple[list[str], list[Sequence[Any]]]  # heads with units, columns
 
 
-def write_tables(
-    result: Result | MachineResult | PlanetaryResult | Record, folder: str | PathLike[str]
-) -> Path:
+def write_tables(result: Result | MachineResult | Record, folder: str | PathLike[str]) -> Path:
     """Write all tables and figures of a result into a new folder, as CSV and as JSON.
 
     Parameters
     ----------
-    result : Result, MachineResult, PlanetaryResult or Record
+    result : Result, MachineResult or Record
         A computed or loaded result; also sweeps, bifurcations, maps and all other results with
         ``to_xarray``.
     folder : path
@@ -73,9 +71,9 @@ def write_tables(
 
 
 def _tables(
-    result: Result | MachineResult | PlanetaryResult | Record,
+    result: Result | MachineResult | Record,
 ) -> Iterator[tuple[str, Table]]:
-    if not isinstance(result, Result | MachineResult | PlanetaryResult):
+    if not isinstance(result, Result | MachineResult):
         yield from _of_data("table", result.to_xarray())
         return
     summary = result.summary()
@@ -91,14 +89,14 @@ def _tables(
             ],
         ),
     )
-    if isinstance(result, MachineResult | PlanetaryResult):
+    if isinstance(result, MachineResult):
         yield from _of_loads(result)
         return
     yield from _of_data("mesh", result.mesh.to_xarray())
     yield from _of_data("motion", result.to_xarray())
 
 
-def _of_loads(result: MachineResult | PlanetaryResult) -> Iterator[tuple[str, Table]]:
+def _of_loads(result: MachineResult) -> Iterator[tuple[str, Table]]:
     """Mesh tables and motions of a machine or stage; those of load cases by their number."""
     for number, load in enumerate((result.operation, *result.load_cases)):
         prefix = f"load_{number}_" if number else ""

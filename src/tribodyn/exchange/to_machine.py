@@ -30,7 +30,6 @@ from tribodyn.study.case.user_input import Source
 from tribodyn.study.machine.case import MachineCase
 from tribodyn.study.machine.read_parts import in_si
 from tribodyn.study.machine.user_tables import changed_tables
-from tribodyn.study.planetary.case import PlanetaryCase
 
 #: Part of a face without a mate that is rounding of the positions [m].
 _FACE = 1e-5
@@ -101,9 +100,7 @@ def machine_from_rexs(
     return MachineCase(source, **tables)
 
 
-def case_from_model(
-    model: GearboxModel, changes: dict[str, Any], by: str
-) -> Case | MachineCase | PlanetaryCase:
+def case_from_model(model: GearboxModel, changes: dict[str, Any], by: str) -> Case | MachineCase:
     """Case of a REXS file: the one that tribodyn stored in it, or that of its stages."""
     if stored_case_text(model):
         case = case_from_rexs(model)

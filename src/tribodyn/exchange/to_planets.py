@@ -10,9 +10,9 @@ from tribodyn.errors import InputError, Problem
 from tribodyn.exchange.gearbox import GearboxModel, Load, StageGear
 from tribodyn.exchange.to_case import NOT_THERE, material_values, nested, rack_values, shared_models
 from tribodyn.study.case.user_input import Source
+from tribodyn.study.machine.case import MachineCase
 from tribodyn.study.machine.read_parts import in_si
 from tribodyn.study.machine.user_tables import changed_tables
-from tribodyn.study.planetary.case import PlanetaryCase
 from tribodyn.types import Array
 
 _SPUR = 1e-6
@@ -26,7 +26,7 @@ def stage_from_rexs(
     *,
     changes: dict[str, Any] | None = None,
     by: str = "",
-) -> PlanetaryCase:
+) -> MachineCase:
     """Case of the planetary stage of a gearbox model.
 
     Parameters
@@ -36,13 +36,13 @@ def stage_from_rexs(
     load_case : int, optional
         Number of the load case that is the operating point; the first by default.
     changes : dict, optional
-        Values by dotted key that replace those of the file, as in :meth:`PlanetaryCase.replace`.
+        Values by dotted key that replace those of the file, as in :meth:`MachineCase.replace`.
     by : str
         Source of the changes, for messages; then a bare number for a dimension is refused.
 
     Returns
     -------
-    PlanetaryCase
+    MachineCase
         Its gears are named after their numbers in the file, such as ``gear_53``. Values that the
         file does not contain are in its ``assumptions``, and so are the remarks on the model.
 
@@ -96,7 +96,7 @@ def stage_from_rexs(
         remedy = 'Give both: --set "operation.speed=1500 rpm" --set "operation.torque=100 N*m"'
         what = "the speed and the torque of the stage are not known"
         raise InputError(what, model.path, "No load case specifies them on one member", remedy)
-    return PlanetaryCase(Source(model.path).with_replaced(changes, by or "changes:"), **tables)
+    return MachineCase(Source(model.path).with_replaced(changes, by or "changes:"), **tables)
 
 
 def _of_case(key: str, gears: dict[str, Any]) -> bool:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 from itertools import pairwise
 from typing import Any
 
@@ -85,7 +86,17 @@ def system(machine: Machine | MachineStructure, *, phases: bool = False) -> Syst
         balance=structure.balance,
         gyroscopic=gyroscopic if gyroscopic.any() else None,
     )
-    return without_free_rotation(whole) if structure.frame else whole
+    return _without_drift(structure, whole) if structure.frame else whole
+
+
+def _without_drift(structure: MachineStructure, whole: System) -> System:
+    """System without the Coriolis forces of a free rotation, whose mean speed is that of a load."""
+    springs = [
+        Contact(structure.mesh(name), structure.mesh_stiffness(name))
+        for name in structure.machine.meshes
+    ]
+    plain = without_free_rotation(replace(whole, contacts=springs, frictions=()))
+    return replace(whole, gyroscopic=plain.gyroscopic)
 
 
 def _contact(structure: MachineStructure, name: str, phases: bool) -> Contact:

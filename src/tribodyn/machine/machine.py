@@ -76,6 +76,10 @@ class Operation:
         check_number(self, "torque", "N*m", -1e12, 1e12)
 
 
+#: Keys of a stage by the arguments of the positions of its planets.
+_OF_STAGE = {"planets": ".count", "angles": ".angles"}
+
+
 @dataclass(frozen=True, eq=False)
 class Machine:
     """Shafts on bearings that are joined by meshes.
@@ -297,7 +301,9 @@ class Machine:
             try:
                 stage.positions(self.gears)
             except InputError as error:
-                yield from (replace(problem, where=where) for problem in error.problems)
+                for problem in error.problems:
+                    key = _OF_STAGE.get(getattr(problem.where, "name", ""), "")
+                    yield replace(problem, where=f"{where}{key}")
 
     def _set_offsets(self, name: str) -> None:
         """Set the phases of the meshes of a planetary stage, by the sense of its sun."""

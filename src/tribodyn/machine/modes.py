@@ -141,7 +141,8 @@ def machine_modes(machine: Machine | MachineStructure, speed: float | None = Non
     if structure.frame is not None:  # what its turning stores counts for the carrier
         carrier = f"shafts.{structure.frame}"
         elements[carrier] = elements.get(carrier, 0.0) + frame_terms(structure, speed)[1]
-    modes = natural_modes(_turning(structure, speed), elements=elements)
+    rest = _with_mean_stiffness(structure)
+    modes = natural_modes(_turning(structure, rest, speed), elements=elements)
     elastic = _reliable(structure, modes.frequency)
     shape = modes.shape[elastic].astype(complex)
     return MachineModes(
@@ -158,19 +159,19 @@ def machine_modes(machine: Machine | MachineStructure, speed: float | None = Non
 
 def machine_frequencies(structure: MachineStructure, speeds: Array) -> list[Array]:
     """Natural frequencies [Hz] at each speed of the input [rad/s], as :func:`machine_modes`."""
+    rest = _with_mean_stiffness(structure)
     if structure.frame is None:
-        linear = linear_system(_with_mean_stiffness(structure))
         turning = [structure.gyroscopic(float(speed)) if speed else None for speed in speeds]
-        rows = frequencies_at(linear, turning)
+        rows = frequencies_at(linear_system(rest), turning)
     else:  # their stiffness depends on the speed too
-        rows = [natural_modes(_turning(structure, float(speed))).frequency for speed in speeds]
+        rows = [natural_modes(_turning(structure, rest, float(n))).frequency for n in speeds]
     return [each[_reliable(structure, each)] for each in rows]
 
 
-def _turning(structure: MachineStructure, speed: float) -> System:
+def _turning(structure: MachineStructure, rest: System, speed: float) -> System:
     """System with the mean stiffness of its meshes at a speed of the input [rad/s]."""
     return replace(
-        _with_mean_stiffness(structure),
+        rest,
         stiffness=structure.stiffness + frame_terms(structure, speed)[1],
         gyroscopic=structure.gyroscopic(speed) if speed else None,
     )

@@ -162,7 +162,7 @@ def compare(
 
     Parameters
     ----------
-    computed : Result, MachineResult, PlanetaryResult or xarray.Dataset
+    computed : Result, MachineResult or xarray.Dataset
         Steady-state result of :func:`tribodyn.run` or :func:`tribodyn.load_result`.
     measured : Recording
         Recording at about the same speed and the same torque.

@@ -85,10 +85,7 @@ def _cards(summary: dict[str, float]) -> list[Number]:
 
 def _blocks(result: MachineResult) -> list[Block]:
     figures = [(figure, result, figure.name, figure.heading) for figure in FIGURES_OF_MACHINES]
-    maps: list[tuple[Any, Any, str, str]] = [
-        (plot.face_maps, table, f"face-maps-{number}", f"Mesh {mesh}: maps over the face")
-        for number, (mesh, table) in enumerate(result.operation.tables.items(), 1)
-    ]
+    maps = _of_maps(result)
     maps += [
         (
             plot.hypoid_misalignment,
@@ -99,12 +96,39 @@ def _blocks(result: MachineResult) -> list[Block]:
         for number, (mesh, errors) in enumerate(result.operation.misalignment.items(), 1)
         if isinstance(errors, Misalignment)
     ]
-    places = [*figures[:_BEFORE_MAPS], *maps, *figures[_BEFORE_MAPS:]]
+    places = [*figures[:_BEFORE_MAPS], *_of_stages(result), *maps, *figures[_BEFORE_MAPS:]]
     return [
         block_of_figure(name, heading, figure.sketch(part), figure.caption_of(part))
         for figure, part, name, heading in places
         if not figure.missing(part)
     ]
+
+
+def _of_stages(result: MachineResult) -> list[tuple[Any, Any, str, str]]:
+    """Figures of each planetary stage with what they draw, their names and headings."""
+    places: list[tuple[Any, Any, str, str]] = []
+    for number, name in enumerate(result.machine.planets):
+        stage, end = result.operation.stage(name), f"-{number + 1}" if number else ""
+        # As Inalpolat and Kahraman: the sensor feels the planet that passes it.
+        sensor = stage.ring_sensor(window=2.0 * np.pi / stage.stage.count)
+        for figure, part, place in (
+            (plot.planetary_stage, result, "stage"),
+            (plot.planetary_forces, stage.motion, "forces"),
+            (plot.ring_sensor, sensor, "ring-sensor"),
+            (plot.planetary_modes, stage.modes, "mode-shapes"),
+        ):
+            if not (number and part is result):
+                places.append((figure, part, f"{place}{end}", f"{name}: {figure.heading}"))
+    return places
+
+
+def _of_maps(result: MachineResult) -> list[tuple[Any, Any, str, str]]:
+    """Maps of the meshes; those of planets with equal teeth once."""
+    maps: dict[int, tuple[Any, Any, str, str]] = {}
+    for number, (mesh, table) in enumerate(result.operation.tables.items(), 1):
+        heading = f"Mesh {mesh}: maps over the face"
+        maps.setdefault(id(table), (plot.face_maps, table, f"face-maps-{number}", heading))
+    return [*maps.values()]
 
 
 def machine_content(result: MachineResult) -> dict[str, Any]:

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from tribodyn.dynamics import Branch
     from tribodyn.study import CaseSensitivity
     from tribodyn.study.case.case import Case
-    from tribodyn.study.machine.user_tables import PartsCase
+    from tribodyn.study.machine.case import MachineCase
 
 #: Rows of the table of a branch.
 _ROWS = 60
@@ -245,7 +245,7 @@ def _branch_statements(branch: Branch, axis: Axis) -> list[str]:
 
 
 def sobol_report_data(
-    case: Case | PartsCase,
+    case: Case | MachineCase,
     figures: Sequence[str] | None = None,
     size: int = 64,
     seed: int = 0,

@@ -5,11 +5,13 @@ from __future__ import annotations
 import platform
 from datetime import UTC, datetime
 from importlib.metadata import version as installed
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from tribodyn.plot.theme.labels import display_unit, displayed
 from tribodyn.study.machine.case import MachineCase
-from tribodyn.study.planetary.case import PlanetaryCase
+
+if TYPE_CHECKING:
+    from tribodyn.study.planetary.machine_stages import CaseStage
 
 #: Packages whose version may change a figure.
 _PACKAGES = ("numpy", "scipy", "numba")
@@ -28,8 +30,6 @@ def _with_unit(name: str, value: float) -> str:
 
 def operating_point(case: Any) -> list[tuple[str, str]]:
     """Speed, load, surfaces, oil and models of a case as formatted (name, value) pairs."""
-    if isinstance(case, PlanetaryCase):
-        return _of_stage(case)
     if isinstance(case, MachineCase):
         start, end = case.ends
         return [
@@ -38,6 +38,7 @@ def operating_point(case: Any) -> list[tuple[str, str]]:
             ("Input", start),
             ("Output", end),
             ("Meshes", ", ".join(case.meshes)),
+            *(row for stage in case.stages.values() for row in _of_stage(stage)),
         ]
     gears, operation = case.gears, case.operation
     stiffness, film = case.contact_models
@@ -60,17 +61,11 @@ def operating_point(case: Any) -> list[tuple[str, str]]:
     return point
 
 
-def _of_stage(case: PlanetaryCase) -> list[tuple[str, str]]:
-    start, end = case.ends
-    teeth = [abs(case.gears[getattr(case.table, r)].teeth) for r in ("sun", "planet", "ring")]
+def _of_stage(stage: CaseStage) -> list[tuple[str, str]]:
+    teeth = [stage.gears[stage.table.sun], *stage.planets, stage.gears[stage.table.ring]]
     return [
-        ("Speed", _with_unit("speed", case.operating_point.speed)),
-        ("Torque", _with_unit("torque", case.operating_point.torque)),
-        ("Input", f"{start} ({case.roles[0]})"),
-        ("Output", f"{end} ({case.roles[1]})"),
-        ("Held", f"{case.members[case.roles[2]]} ({case.roles[2]})"),
-        ("Planets", str(case.table.count)),
-        ("Teeth of sun, planet, ring", ", ".join(map(str, teeth))),
+        (f"Planets of {stage.name}", str(stage.table.count)),
+        (f"Teeth of {stage.name}", ", ".join(str(abs(gear.teeth)) for gear in teeth)),
     ]
 
 

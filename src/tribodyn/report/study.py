@@ -16,7 +16,7 @@ from tribodyn.report.figure_blocks import Block, block_of_figure
 from tribodyn.report.html import plotly_script, template, text_of
 from tribodyn.report.provenance import operating_point, provenance, version
 from tribodyn.study.case.provenance import Assumption, assumptions
-from tribodyn.study.machine.user_tables import PartsCase
+from tribodyn.study.machine.case import MachineCase
 from tribodyn.study.pipeline.save import write_file
 from tribodyn.study.pipeline.summary_figures import figure_of
 from tribodyn.study.pipeline.summary_labels import in_words
@@ -46,10 +46,10 @@ class _Page:
     heading: str = ""  #: title of the report, where it is not that of the case
 
 
-def _assumptions(case: Case | PartsCase | None) -> Sequence[Assumption]:
+def _assumptions(case: Case | MachineCase | None) -> Sequence[Assumption]:
     if case is None:
         return ()
-    return case.assumptions if isinstance(case, PartsCase) else assumptions(case)
+    return case.assumptions if isinstance(case, MachineCase) else assumptions(case)
 
 
 @report_of("Sweep")
@@ -185,7 +185,7 @@ def _verdict_cards(diagram: Bifurcation) -> list[tuple[str, str]]:
 
 @with_old_names
 def write_study_report(
-    case: Case | PartsCase | None,
+    case: Case | MachineCase | None,
     path: str | os.PathLike[str],
     *,
     kind: str,

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from tribodyn.losses import GearboxLosses
     from tribodyn.nonlinear.bifurcation import Bifurcation
     from tribodyn.study.case.case import Case
-    from tribodyn.study.machine.user_tables import PartsCase
+    from tribodyn.study.machine.case import MachineCase
     from tribodyn.study.studies.bifurcation import Findings
     from tribodyn.study.studies.levels import MachineLevels
 
@@ -41,7 +41,7 @@ class StudyReportData(NamedTuple):
     head: Sequence[str]
     rows: Sequence[Sequence[str]]
     facts: dict[str, Any]  #: in SI
-    best: Case | PartsCase | None = None  #: resulting case, such as the optimum
+    best: Case | MachineCase | None = None  #: resulting case, such as the optimum
 
 
 def figure_with_caption(figure: Drawing, result: Any) -> Picture:
@@ -55,7 +55,7 @@ def _title(picture: Picture) -> str:
 
 def save_study(
     kind: str,
-    case: Case | PartsCase,
+    case: Case | MachineCase,
     target: Path,
     report: StudyReportData,
     force: bool = False,
@@ -127,7 +127,7 @@ def modes_report_data(case: Case, ends: Any, progress: Progress = SILENT) -> Stu
 
 
 def harris_report_data(
-    case: Case | PartsCase, torque: Sequence[Any] | None, mesh: str | None = None
+    case: Case | MachineCase, torque: Sequence[Any] | None, mesh: str | None = None
 ) -> StudyReportData:
     """Static transmission error over the torque."""
     from tribodyn.study.studies.static import harris_map
@@ -150,7 +150,7 @@ def harris_report_data(
 
 
 def relief_report_data(
-    case: Case | PartsCase, torque: Sequence[Any] | None, gears: str, mesh: str | None = None
+    case: Case | MachineCase, torque: Sequence[Any] | None, gears: str, mesh: str | None = None
 ) -> StudyReportData:
     """Tip relief with the least transmission error, and the case with it."""
     from tribodyn.study.studies.static import optimize_tip_relief
@@ -183,7 +183,7 @@ def relief_report_data(
 
 
 def run_up_report_data(
-    case: Case | PartsCase,
+    case: Case | MachineCase,
     ends: Any,
     duration: float,
     down: bool = False,
@@ -242,7 +242,7 @@ def _levels_report_data(run: MachineLevels) -> StudyReportData:
 
 
 def losses_report_data(
-    case: Case | PartsCase,
+    case: Case | MachineCase,
     torque: Any = None,
     speed: Any = None,
     progress: Progress = SILENT,

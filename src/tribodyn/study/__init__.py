@@ -23,9 +23,12 @@ if TYPE_CHECKING:
     from tribodyn.study.pipeline.run import run
     from tribodyn.study.pipeline.summary import SUMMARY, summary_figure
     from tribodyn.study.pipeline.tooth_contact import loaded_contact
-    from tribodyn.study.planetary.case import PlanetaryCase
-    from tribodyn.study.planetary.motion import PlanetaryMotion
-    from tribodyn.study.planetary.result import PlanetaryLoadResult, PlanetaryResult
+    from tribodyn.study.planetary.names import (
+        PlanetaryCase,
+        PlanetaryLoadResult,
+        PlanetaryResult,
+    )
+    from tribodyn.study.planetary.stage_result import PlanetaryMotion, StageResult
     from tribodyn.study.planetary.tolerances import LoadShareStatistics, load_share_statistics
     from tribodyn.study.result_comparison import ResultComparison, compare_results
     from tribodyn.study.studies.bifurcation import bifurcation
@@ -74,6 +77,7 @@ __all__ = [
     "RecordingSet",
     "Result",
     "ResultComparison",
+    "StageResult",
     "Sweep",
     "TurningClock",
     "Wear",
@@ -129,9 +133,8 @@ _NAMES = {
     "pipeline.run": "run",
     "pipeline.summary": "SUMMARY summary_figure",
     "pipeline.tooth_contact": "loaded_contact",
-    "planetary.case": "PlanetaryCase",
-    "planetary.motion": "PlanetaryMotion",
-    "planetary.result": "PlanetaryLoadResult PlanetaryResult",
+    "planetary.names": "PlanetaryCase PlanetaryLoadResult PlanetaryResult",
+    "planetary.stage_result": "PlanetaryMotion StageResult",
     "planetary.tolerances": "LoadShareStatistics load_share_statistics",
     "result_comparison": "ResultComparison compare_results",
     "studies.bifurcation": "bifurcation",

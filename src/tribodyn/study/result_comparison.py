@@ -14,9 +14,8 @@ from tribodyn.record import Parts, Record, html_table, record
 from tribodyn.study.machine.result import MachineResult
 from tribodyn.study.pipeline.result import Result
 from tribodyn.study.pipeline.summary_figures import by_topic, figure_of
-from tribodyn.study.planetary.result import PlanetaryResult
 
-AnyResult = Result | MachineResult | PlanetaryResult
+AnyResult = Result | MachineResult
 #: Relative difference below which figures count as equal.
 _TOLERANCE = 1e-9
 
@@ -76,7 +75,7 @@ class ResultComparison(Record):
         Values of the cases by key, in SI, where they differ.
     figures : dict of str to tuple of float
         Figures of the summaries by name, in SI, where they differ; None where a result lacks it.
-    results : tuple of Result, of MachineResult or of PlanetaryResult
+    results : tuple of Result or of MachineResult
         The results.
     """
 
@@ -128,8 +127,8 @@ def compare_results(*results: AnyResult, names: Sequence[str] | None = None) -> 
 
     Parameters
     ----------
-    *results : Result, MachineResult or PlanetaryResult
-        Two or more, at most twelve, all of pairs, all of machines or all of stages.
+    *results : Result or MachineResult
+        Two or more, at most twelve, all of pairs or all of machines.
     names : sequence of str, optional
         Name of each; by default the title of its case, with a number where titles are equal.
 
@@ -152,12 +151,11 @@ def compare_results(*results: AnyResult, names: Sequence[str] | None = None) -> 
     >>> compare_results(base, reduced, names=("as printed", "60 N m")).values
     {'operation.torque': (10.6, 60.0)}
     """
-    kinds = (MachineResult, PlanetaryResult)
-    kind = type(results[0]) if results and isinstance(results[0], kinds) else Result
+    kind = MachineResult if results and isinstance(results[0], MachineResult) else Result
     invalid = [result for result in results if not isinstance(result, kind)]
     if invalid:
         what = f"results holds {shortened(repr(invalid[0]))}"
-        why = "Expected: results of tribodyn.run, of pairs or of machines or of stages"
+        why = "Expected: results of tribodyn.run, of pairs or of machines"
         raise InputError(what, Argument("results"), why, "Run each case first")
     if not 2 <= len(results) <= 12:
         why = "Between 2 and 12 results can be compared"

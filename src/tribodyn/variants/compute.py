@@ -20,7 +20,7 @@ from tribodyn.types import Array
 
 if TYPE_CHECKING:
     from tribodyn.study.case.case import Case
-    from tribodyn.study.machine.user_tables import PartsCase
+    from tribodyn.study.machine.case import MachineCase
 
 Columns = Mapping[str, list[Any]]
 
@@ -50,7 +50,7 @@ class Job(NamedTuple):
     """Input for the computation of a chunk, which is sent to a worker."""
 
     kind: str
-    case: Case | PartsCase
+    case: Case | MachineCase
     keep: tuple[str, ...]  #: figures to store; all if it is empty
     columns: Columns
 
@@ -148,7 +148,7 @@ def _reason(error: Exception) -> str:
     return str(Problem(what, why="This is an error in tribodyn, not in the input"))
 
 
-def _summaries(case: Case | PartsCase, columns: Columns, progress: Progress) -> Part:
+def _summaries(case: Case | MachineCase, columns: Columns, progress: Progress) -> Part:
     """Every figure of the summary of each member."""
     from tribodyn.study.studies.sweep import points_under
 

@@ -23,7 +23,7 @@ from tribodyn.study.case.case import Case
 from tribodyn.study.case.read import key_lines, parse_toml, read_text
 from tribodyn.study.case.user_input import Source, unsound
 from tribodyn.study.case.values import FaultError, read_value, written
-from tribodyn.study.machine.user_tables import PartsCase
+from tribodyn.study.machine.case import MachineCase
 from tribodyn.study.pipeline.summary_figures import in_order
 from tribodyn.study.studies.range_syntax import UnreadError, read_values, toml_value
 from tribodyn.study.studies.study_axes import Axis, member_value, read_axis
@@ -90,7 +90,7 @@ class Study:
     ----------
     title : str
         One line.
-    case : Case, MachineCase or PlanetaryCase
+    case : Case or MachineCase
         With the values that all members share.
     compute : str
         Kind of computation: ``"summary"`` or ``"motions"``.
@@ -107,7 +107,7 @@ class Study:
     """
 
     title: str
-    case: Case | PartsCase
+    case: Case | MachineCase
     compute: str
     keep: tuple[str, ...]
     chunk: int
@@ -186,7 +186,7 @@ class _Reader:
             why = f"Exactly one of {', '.join(_VARIES)} defines what varies"
             self.put("".join(varies[-1:]), Problem(what, "", why, _EXAMPLE))
         case = self._case(top.get("case"))
-        if isinstance(case, PartsCase) and kind == "motions":
+        if isinstance(case, MachineCase) and kind == "motions":
             what, why = f'compute = "{kind}"', "It integrates the motions of gear pairs in batches"
             self.put("compute", Problem(what, "", why, 'Write compute = "summary"'))
         if self.faults or case is None:
@@ -235,14 +235,14 @@ class _Reader:
             self.put("keep", Problem(f'there is no figure "{name}"', "", why, remedy))
         return tuple(in_order(filter(known, names), figures))
 
-    def _case(self, name: str | None) -> Case | PartsCase | None:
+    def _case(self, name: str | None) -> Case | MachineCase | None:
         """The case with the values that all members share."""
         if name is None:
             return None
         try:
             case: Any = load_case(name if name in all_files() else self.folder / name)
             changes = self._keys("set", self.data)
-            changed: Case | PartsCase = case.replace(changes, by="set") if changes else case
+            changed: Case | MachineCase = case.replace(changes, by="set") if changes else case
             return changed
         except InputError as error:
             for problem in error.problems:
@@ -273,7 +273,7 @@ class _Reader:
         return {}
 
     def _layout(
-        self, case: Case | PartsCase, kind: str, varies: str, top: Mapping[str, Any]
+        self, case: Case | MachineCase, kind: str, varies: str, top: Mapping[str, Any]
     ) -> tuple[Layout | None, Mapping[str, Any]]:
         """The members and their specification."""
         free = SCALES if kind == "motions" else ()
@@ -283,7 +283,7 @@ class _Reader:
             return self._sampled(case)
         return self._listed(case, top["table"], free)
 
-    def _grid(self, case: Case | PartsCase, free: Any) -> tuple[Layout | None, Mapping[str, Any]]:
+    def _grid(self, case: Case | MachineCase, free: Any) -> tuple[Layout | None, Mapping[str, Any]]:
         axes: list[Axis] = []
         wrong = bool(self.faults)
         for key, entry in self._keys("axes", self.data).items():
@@ -310,7 +310,7 @@ class _Reader:
         grid = Grid(tuple(axes))
         return (grid if axes and not wrong else None), {"axes": [axis.key for axis in axes]}
 
-    def _sampled(self, case: Case | PartsCase) -> tuple[Layout | None, Mapping[str, Any]]:
+    def _sampled(self, case: Case | MachineCase) -> tuple[Layout | None, Mapping[str, Any]]:
         table = self.data["samples"]
         if not isinstance(table, dict):
             self.put("samples", Problem(written(table), "", "It is a table", "Write [samples]"))
@@ -335,7 +335,7 @@ class _Reader:
         return listed(floats, units), request
 
     def _listed(
-        self, case: Case | PartsCase, path: str | None, free: Any
+        self, case: Case | MachineCase, path: str | None, free: Any
     ) -> tuple[Layout | None, Mapping[str, Any]]:
         key = "table" if path is not None else "cases"
         try:
@@ -373,15 +373,15 @@ def _flat(table: Mapping[str, Any], prefix: str = "") -> dict[str, Any]:
     return flat
 
 
-def _axis(case: Case | PartsCase, key: str, entry: Any) -> Axis:
+def _axis(case: Case | MachineCase, key: str, entry: Any) -> Axis:
     return read_axis(case, key, entry, "axes")
 
 
-def _value(case: Case | PartsCase, key: str, entry: Any) -> Any:
+def _value(case: Case | MachineCase, key: str, entry: Any) -> Any:
     return member_value(case, key, entry, "cases")
 
 
-def _unit(case: Case | PartsCase, key: str) -> str:
+def _unit(case: Case | MachineCase, key: str) -> str:
     spec = None if key in SCALES else case.option_of(key)
     return spec.unit if spec else ""
 

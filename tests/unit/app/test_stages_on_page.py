@@ -38,8 +38,8 @@ def test_typed_values_change_the_stage_and_planets_that_do_not_fit_are_marked(
     desk: TabSession,
 ) -> None:
     assert typed(desk, "planets.low.pin_errors", value="20 um, 0 um, 0 um") == []
-    assert desk.case.table.pin_errors == pytest.approx((20e-6, 0.0, 0.0))
-    (fault,) = typed(desk, "planets.low.count", value="4")
+    assert desk.case.stages["low"].table.pin_errors == pytest.approx((20e-6, 0.0, 0.0))
+    fault = typed(desk, "planets.low.count", value="4")[0]
     assert fault["key"] == "planets.low.pin_errors"  # a list of three for four planets
     assert typed(desk, "planets.low.pin_errors", value="")[0]["key"] == "planets.low.count"
     assert "out of date" in texts(results.bench(desk))
@@ -66,7 +66,7 @@ def test_the_worker_computes_and_overlays_stages(tmp_path: Path) -> None:
         order = {"kind": "run", "case": text, "folder": str(folder)}
         worker._carry_out(order, lambda **message: messages.append(message))
     content = next(each["content"] for each in messages if each.get("state") == "done")
-    assert {block["name"] for block in content["blocks"]} >= {"stage", "forces", "campbell"}
+    assert {block["name"] for block in content["blocks"]} >= {"stage", "forces", "machine_campbell"}
     assert all(len(row) == len(head) for _, head, rows in content["tables"] for row in rows)
     places = [str(tmp_path / str(number) / "result") for number in range(2)]
     order = {"kind": "overlay", "results": places, "names": ["a", "b"], "folder": str(tmp_path)}

@@ -166,17 +166,18 @@ def test_a_stiffness_of_a_stage_needs_a_unit_on_the_command_line() -> None:
 def test_a_planetary_stage_runs_from_its_file(tmp_path) -> None:
     path = MODELS / "planetary.rexsz"
     case = td.load_case(path)
-    assert repr(case).endswith("3 planets, sun 17, planet 22, ring 61 teeth)")
-    assert case.roles == ("sun", "carrier", "ring")
+    (stage,) = case.stages.values()
+    assert [gear.teeth for gear in stage.gears.values()] == [17, -61]
+    assert (stage.planet.teeth, stage.table.count) == (22, 3)
     assert case.operating_point.torque == pytest.approx(1591.549, abs=1e-3)
-    stage = case.kinematics(case.operating_point)
-    assert stage.speeds["carrier"] * 30 / np.pi == pytest.approx(326.9231, abs=1e-4)
+    carrier = case.machine().kinematics.shafts[stage.table.carrier]
+    assert carrier.speed * 30 / np.pi == pytest.approx(326.9231, abs=1e-4)
     reasons = {assumption.key: assumption.reason for assumption in case.assumptions}
     assert "not in the REXS file" in reasons["gears.gear_53.roughness_ra"]
     other = tmp_path / "stage.toml"
     other.write_text(case.to_toml())
     assert td.load_case(other).operating_point == case.operating_point
-    assert td.load_case(other).center_distance == case.center_distance
+    assert td.load_case(other).stages[stage.name].center_distance == stage.center_distance
     with pytest.raises(InputError, match=r"planetary_stage 9 .*sun 17, 3 planets 22, ring 61"):
         machine_from_rexs(read_rexs(path))
 

@@ -18,7 +18,7 @@ from tribodyn.plot.motion.sweeps import _case_title
 from tribodyn.plot.theme.panels import Panel, stack
 from tribodyn.plot.theme.style import line
 from tribodyn.study.machine.motion import MachineMotion
-from tribodyn.study.planetary.motion import PlanetaryMotion
+from tribodyn.study.planetary.stage_result import PlanetaryMotion
 
 CLOCK = np.linspace(0.0, 1.0, 301)
 WAVE = np.sin(2.0 * np.pi * 5.0 * CLOCK)

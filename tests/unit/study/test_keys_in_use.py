@@ -13,7 +13,7 @@ import pytest
 import tribodyn as td
 from tribodyn.errors import InputError
 from tribodyn.model import Option
-from tribodyn.study import MachineCase, PlanetaryCase
+from tribodyn.study import MachineCase
 from tribodyn.study.case.gears import Modification
 from tribodyn.study.case.section import Section
 from tribodyn.study.machine.pair_cases import MESH_KEYS
@@ -161,7 +161,6 @@ def other_value(option: Option) -> Any:
         (MachineCase, constant_stiffness),
         (MachineCase, computed_teeth),
         (MachineCase, stage),
-        (PlanetaryCase, stage),
     ],
 )
 def test_every_key_is_used_or_refused(
@@ -185,10 +184,7 @@ def test_every_key_is_used_or_refused(
         (MachineCase, computed_teeth, "lubricant.heat_transfer", "15 W/K"),
         (MachineCase, computed_teeth, "meshes.first.lubricant.heat_transfer", "15 W/K"),
         (MachineCase, stage, "planets.low.lubricant.heat_transfer", "15 W/K"),
-        (PlanetaryCase, stage, "lubricant.heat_transfer", "15 W/K"),
-        (PlanetaryCase, stage, "dynamics.frequency_limit", "9 kHz"),
-        (PlanetaryCase, stage, "gears.planet.position", "9 mm"),
-        (PlanetaryCase, stage, "gears.sun.modification.run_out", "9 um"),
+        (MachineCase, stage, "lubricant.heat_transfer", "15 W/K"),
         (MachineCase, stage, "gears.planet.position", "9 mm"),
         (MachineCase, stage, "planets.low.pair_center_distance", "90 mm"),
         (MachineCase, stage, "planets.low.ring_normal_module", "3 mm"),

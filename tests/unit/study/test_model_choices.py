@@ -13,11 +13,10 @@ import pytest
 
 import tribodyn as td
 from tribodyn.errors import ModelWarning, TribodynError
-from tribodyn.study import MachineCase, PlanetaryCase
+from tribodyn.study import MachineCase
 from tribodyn.study.case.section import Section
 from tribodyn.study.machine.run import rehearse_machine
 from tribodyn.study.pipeline.run import rehearse
-from tribodyn.study.planetary.run import rehearse_planetary
 
 #: Cases with teeth and films by formula, under one load.
 KINDS: dict[str, dict[str, Any]] = {
@@ -63,8 +62,7 @@ def message(study: Any, case: Any) -> str:
 
 
 def rehearsal_of(case: Any) -> Any:
-    kinds = {MachineCase: rehearse_machine, PlanetaryCase: rehearse_planetary}
-    return kinds.get(type(case), rehearse)
+    return rehearse_machine if isinstance(case, MachineCase) else rehearse
 
 
 def disagreements(case: Any, choices: Iterator[tuple[str, str]]) -> list[str]:
@@ -102,7 +100,7 @@ def test_choices_run_or_are_refused(name):
     tables = ["film", "dynamics", "stiffness", "friction", "operation", "solver", "gears"]
     if "hypoid" in name:
         tables = tables[:2]  # each choice takes seconds
-    elif isinstance(case, MachineCase | PlanetaryCase):
+    elif isinstance(case, MachineCase):
         tables = tables[:4]
     differing = []
     for table in tables:

@@ -36,23 +36,23 @@ def test_modes_and_diagram_need_no_motion(case, result):
     modes = td.study.natural_modes(case)
     np.testing.assert_allclose(modes.frequency, result.modes.frequency)
     diagram = td.study.campbell(case, ("0 rpm", "3000 rpm"))
-    assert diagram.excitation[:3] == ("mesh x 1 (T)", "mesh x 2 (T)", "mesh x 3 (R)")
+    named = ("mesh low x 1 (T)", "mesh low x 2 (T)", "mesh low x 3 (R)")
+    assert diagram.excitation[:3] == named
     assert diagram.order[0] == pytest.approx(17 * (1 - 1 / 4.588235), rel=1e-6)
     first, second = diagram.frequency[:, 0], diagram.frequency[:, 1]
     # A pair of translational modes is one at rest and splits in proportion to the speed.
     assert second[0] - first[0] < 1e-6 * first[0]
     split = (second - first)[[2, 4]]
     assert split[1] / split[0] == pytest.approx(2.0, rel=1e-3)
-    assert "carrier at 326.92 rpm" in result.operation.stage_modes.frame_effect()
 
 
 def test_a_harmonic_excites_one_of_two_whirling_modes(result):
     """Planets in sequence push a member around: forwards or backwards, by their phases."""
     modes, orders = result.modes, result.operation.mesh_orders
     for order in orders[:2]:
-        pairs = order.share[1:3]
+        pairs = order.share[:2]
         assert pairs.min() < 1e-9 < 1e-3 < pairs.max()
-    rotational = np.array(modes.types) == "rotational"
+    rotational = np.array(modes.of_stage("low").types) == "rotational"
     assert orders[2].share[~rotational].max() < 1e-9 < 0.5 < orders[2].share[rotational].max()
 
 
@@ -62,7 +62,8 @@ def test_levels_and_sweeps_have_the_figures_of_single_runs(case, result):
     assert levels.mesh == ("sun", "ring")
     forces = [figures[f"meshes.{mesh}.rms_mesh_force"] for mesh in levels.mesh]
     np.testing.assert_allclose(levels.mesh_force[0], forces, rtol=1e-6)
-    pins = np.hypot(*result.motion.rms(result.motion.pin_force).T).max()
+    stage = result.operation.stage().motion
+    pins = np.hypot(*stage.rms(stage.pin_force).T).max()
     assert levels.bearing_force[0, 0] == pytest.approx(pins, rel=1e-6)
     sweep = td.sweep(case, ERRORS[1], ("0 um", "40 um"), 2)
     for name, value in figures.items():
@@ -101,10 +102,10 @@ def test_variants_have_the_load_shares_of_their_errors(case):
     variants = td.ensemble(spread, size=4, seed=1)
     factors = variants.figures()["planets.low.load_factor"]
     assert factors[0] == pytest.approx(1.0)  # at the middle no pin has an error
-    data = td.run(spread.replace(dict.fromkeys(ERRORS, 0.0))).operation.data
+    data = td.run(spread.replace(dict.fromkeys(ERRORS, 0.0))).operation.stage().plane_data
     for row, factor in zip(variants.value, factors[1:], strict=True):
         shares = load_shares(**{**data, "carrier_speed": 0.0, "pin_errors": row})
-        assert factor == pytest.approx(shares.load_factor, rel=1e-9)
+        assert factor == pytest.approx(shares.load_factor, rel=1e-3)  # teeth that stiffen
     statistics = td.study.load_share_statistics(spread, samples=20, seed=1)
     for pins, share in zip(statistics.pin_errors[:3], statistics.share, strict=False):
         expected = load_shares(**{**data, "carrier_speed": 0.0, "pin_errors": pins}).share
@@ -140,7 +141,7 @@ def test_members_that_nothing_holds_are_refused(case, changes, finding):
     with pytest.raises(InputError, match=finding):
         case.replace(changes, by="--set")
     held = case.replace({**changes, "planets.low.sun_support": "1e8 N/m"}, by="--set")
-    assert (td.study.natural_modes(held).frequency == 0.0).sum() == 1
+    assert (td.study.natural_modes(held).frequency > 0.0).all()
 
 
 def test_commands(case, tmp_path, monkeypatch, capsys):
@@ -148,8 +149,9 @@ def test_commands(case, tmp_path, monkeypatch, capsys):
     (tmp_path / "s.toml").write_text(case.to_toml(), encoding="utf-8")
     assert command("modes", "s.toml", "--json") == 0
     facts = json.loads(capsys.readouterr().out)
-    assert facts["excited_types"]["3"] == "R"
-    assert len(facts["modes"]) == 18
+    assert facts["excited_types"]["low"]["3"] == "R"
+    assert len(facts["modes"]) == 17
+    assert facts["modes"][0]["types"] == {"low": "translational"}
     assert command("sweep", "s.toml", "planets.low.pin_stifness=1e8..2e8 N/m:2") == 2
     assert 'Did you mean "planets.low.pin_stiffness"?' in capsys.readouterr().err
     assert command("sweep", "s.toml", "planets.low.pin_errors=0..9 um:2") == 2

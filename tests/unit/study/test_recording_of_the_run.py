@@ -130,7 +130,7 @@ def test_names_of_a_pair_are_those_of_its_data() -> None:
 )
 def test_planetary_stages(sensor: str) -> None:
     case = result_of("planetary-stage").case
-    teeth = abs(case.gears[case.table.ring].teeth)
+    teeth = abs(case.gears["ring"].teeth)
     check("planetary-stage", sensor, sensor, teeth, tacho="carrier")
 
 
@@ -155,7 +155,7 @@ def test_a_wrong_sensor_is_refused_before_the_run(
         raise AssertionError("the motion is computed")
 
     monkeypatch.setattr("tribodyn.cases.load.run", no_run)
-    monkeypatch.setattr("tribodyn.study.planetary.run.run_parts", no_run)
+    monkeypatch.setattr("tribodyn.study.machine.run.run_machine", no_run)
     monkeypatch.setattr("tribodyn.study.pipeline.run.prepare_run", no_run)
     out = str(tmp_path / "wave.mat")
     assert call(["recording", name, "--sensor", "bearings.Q.acceleration_y", "--out", out]) == 2

@@ -9,8 +9,8 @@ import tribodyn as td
 from tribodyn.cli import main
 from tribodyn.errors import ComputationError, InputError, ModelWarning
 from tribodyn.friction import LAWS
+from tribodyn.study.machine.run import rehearse_machine
 from tribodyn.study.pipeline.run import computed, rehearse
-from tribodyn.study.planetary.run import rehearse_planetary
 
 
 def _message(study, case):
@@ -91,7 +91,7 @@ def test_a_slow_case_is_rehearsed_without_the_tables_of_its_run(name):
     case = td.load_case(name).replace(changes)
     tracemalloc.start()
     try:
-        assert not _message(rehearse_planetary if "load_cases" in changes else rehearse, case)
+        assert not _message(rehearse_machine if "load_cases" in changes else rehearse, case)
         peak = tracemalloc.get_traced_memory()[1]
     finally:
         tracemalloc.stop()
@@ -112,7 +112,7 @@ def test_a_slow_stage_needs_no_steps_of_a_time_integration(speed):
     case = td.load_case("planetary-stage").replace(
         {"operation.speed": speed, "film.model": "dowson-higginson", "load_cases": None}
     )
-    assert _message(rehearse_planetary, case) == _message(td.run, case) == ""
+    assert _message(rehearse_machine, case) == _message(td.run, case) == ""
 
 
 def test_a_law_of_a_third_party_is_checked_too():

@@ -72,7 +72,7 @@ def test_forces_of_a_stage_leave_load_sharing_to_the_load_factor() -> None:
     uneven = {"planets.low.pin_errors": ["40 um", "0 um", "0 um"],
               "planets.low.sun_support": "1e9 N/m"}  # fmt: skip
     result = td.run(td.load_case("planetary-stage").replace({**QUICK, **uneven}, by="test"))
-    motion, figures = result.motion, result.summary()
+    motion, figures = result.operation.stage().motion, result.summary()
     assert figures["planets.low.dynamic_load_factor"] > 1.05
     for mesh in ("sun", "ring"):
         each = levels(getattr(motion, f"{mesh}_mesh_force"), motion.weight)

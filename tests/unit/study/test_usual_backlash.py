@@ -12,7 +12,6 @@ from tribodyn.study.case.to_models import has_usual_backlash
 from tribodyn.study.machine.read import read_any_case
 from tribodyn.study.machine.run import balanced_machine, rehearse_machine, run_machine
 from tribodyn.study.pipeline.run import prepare_run, rehearse
-from tribodyn.study.planetary.run import rehearse_planetary, run_planetary
 
 #: A pinion behind its bearings: its shaft bends and misaligns the teeth by some micrometres.
 OVERHUNG = """
@@ -175,8 +174,9 @@ def test_check_finds_a_bearing_that_the_load_pulls_out(direction):
 
 def test_teeth_of_a_stage_that_touch_early_are_named():
     stage = td.load_case("planetary-stage")
-    sun, planet = stage.table.sun, stage.table.planet
+    (part,) = stage.stages.values()
+    sun, planet = part.table.sun, part.table.planet
     early = {"dynamics.backlash": 1e-6, f"gears.{sun}.modification.lead_slope": 20e-6}
-    fault = problem(rehearse_planetary, stage.replace(early))
-    assert fault == problem(run_planetary, stage.replace(early))
-    assert fault[1].startswith(f'stage "{stage.name}", gears {sun} and {planet}: a pair touches')
+    fault = problem(rehearse_machine, stage.replace(early))
+    assert fault == problem(run_machine, stage.replace(early))
+    assert fault[1].startswith(f'stage "{part.name}", gears {sun} and {planet}: a pair touches')

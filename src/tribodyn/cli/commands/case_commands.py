@@ -13,7 +13,7 @@ from tribodyn.errors import InputError
 
 if TYPE_CHECKING:
     from tribodyn.study.case.case import Case
-    from tribodyn.study.machine.user_tables import PartsCase
+    from tribodyn.study.machine.case import MachineCase
 
 
 def cases(*, json: Flag = False) -> None:
@@ -42,7 +42,7 @@ def check(case: CaseName, /, *, set_: Settings = None, json: Flag = False) -> No
         Write one flat JSON object in SI to stdout.
     """
     from tribodyn.study.case.provenance import assumptions
-    from tribodyn.study.machine.user_tables import PartsCase
+    from tribodyn.study.machine.case import MachineCase
     from tribodyn.study.pipeline.assembly import geometry
     from tribodyn.study.pipeline.cautions import case_cautions
     from tribodyn.study.pipeline.preview import operating_figures
@@ -50,7 +50,7 @@ def check(case: CaseName, /, *, set_: Settings = None, json: Flag = False) -> No
     from tribodyn.study.pipeline.summary_figures import summary_rows
 
     ready = changed_any_case(case, set_ or [])
-    if isinstance(ready, PartsCase):
+    if isinstance(ready, MachineCase):
         _check_machine(ready, json)
         return
     warnings = rehearse(ready)
@@ -71,27 +71,17 @@ def check(case: CaseName, /, *, set_: Settings = None, json: Flag = False) -> No
     )
 
 
-def _check_machine(case: PartsCase, json: bool) -> None:
+def _check_machine(case: MachineCase, json: bool) -> None:
     """Show speeds, torques and power of a machine, after rehearsing its teeth."""
     from tribodyn.errors import collected
-    from tribodyn.study.machine.case import MachineCase
     from tribodyn.study.machine.first_look import kinematic_figures, warn_of_period
     from tribodyn.study.machine.run import rehearse_machine
     from tribodyn.study.pipeline.summary_figures import summary_rows
-    from tribodyn.study.planetary.case import PlanetaryCase
-    from tribodyn.study.planetary.run import rehearse_planetary
-    from tribodyn.study.planetary.summary import kinematic_figures as stage_figures
 
     with collected() as warnings:
-        if isinstance(case, MachineCase):
-            rehearse_machine(case)
-            warn_of_period(case.machine())
-            values = kinematic_figures(case)
-        elif isinstance(case, PlanetaryCase):
-            rehearse_planetary(case)
-            values = stage_figures(case, case.kinematics(case.operating_point))
-        else:
-            raise TypeError(f"no check of {type(case).__name__}")
+        rehearse_machine(case)
+        warn_of_period(case.machine())
+        values = kinematic_figures(case)
     if json:
         say_json(values)
     else:
@@ -161,12 +151,13 @@ def new(
         tell(f"Edit it, then: tribodyn check {path}")
 
 
-def _new_text(source: Case | PartsCase | None, kind: str = "") -> str:
+def _new_text(source: Case | MachineCase | None, kind: str = "") -> str:
     """Text of a case file with all values of a case, or to be filled in."""
     from tribodyn.study.case.reference import start_toml
-    from tribodyn.study.machine.user_tables import PartsCase, commented_toml
+    from tribodyn.study.machine.case import MachineCase
+    from tribodyn.study.machine.user_tables import commented_toml
     from tribodyn.study.parts_reference import start_of
 
     if source is None:
         return start_of(kind) if kind else start_toml()
-    return commented_toml(source) if isinstance(source, PartsCase) else source.to_toml()
+    return commented_toml(source) if isinstance(source, MachineCase) else source.to_toml()

@@ -20,7 +20,7 @@ from tribodyn.cli.settings import (
 )
 
 if TYPE_CHECKING:
-    from tribodyn.study import MachineResult, PlanetaryResult, Result
+    from tribodyn.study import MachineResult, Result
 
 
 @Parameter(name="*")
@@ -79,7 +79,7 @@ def run(
         warnings.simplefilter("ignore", ModelWarning)
         from tribodyn.cases.load import run as compute
 
-        result: Result | MachineResult | PlanetaryResult = compute(ready, progress)
+        result: Result | MachineResult = compute(ready, progress)
         progress.start("Report")
         result.save(target, force=force, csv=csv)
         progress.finish()

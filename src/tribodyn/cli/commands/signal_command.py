@@ -402,7 +402,6 @@ class _CaseMesh(NamedTuple):
 def _meshes_of(case: Any) -> Iterator[_CaseMesh]:
     """Meshes of a case of any kind at its operating point."""
     from tribodyn.study.machine.case import MachineCase
-    from tribodyn.study.planetary.case import PlanetaryCase
 
     if isinstance(case, MachineCase):
         machine = case.machine()
@@ -413,15 +412,6 @@ def _meshes_of(case: Any) -> Iterator[_CaseMesh]:
                 {n: abs(gear.teeth) for n, gear in gears.items()},
                 {n: abs(shaft.speed) for n, shaft in shafts.items()},
                 machine.kinematics.meshes[name].mesh_frequency,
-            )
-    elif isinstance(case, PlanetaryCase):
-        flow, table = case.kinematics(case.operating_point), case.table
-        for role in ("sun", "ring"):
-            names = {role: getattr(table, role), "planet": table.planet}
-            yield _CaseMesh(
-                {name: abs(case.gears[name].teeth) for name in names.values()},
-                {name: abs(flow.speeds[each]) for each, name in names.items()},
-                flow.mesh_frequency,
             )
     else:
         teeth = {name: abs(int(gear.teeth)) for name, gear in case.gears.by_name.items()}

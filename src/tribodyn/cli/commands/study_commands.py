@@ -23,7 +23,7 @@ from tribodyn.cli.settings import (
 if TYPE_CHECKING:
     from tribodyn.report.study_report_data import StudyReportData
     from tribodyn.study.case.case import Case
-    from tribodyn.study.machine.user_tables import PartsCase
+    from tribodyn.study.machine.case import MachineCase
 
 
 def prepare_study(
@@ -43,7 +43,7 @@ def stripped(texts: Sequence[str]) -> list[str]:
 
 def finish(
     kind: str,
-    case: Case | PartsCase,
+    case: Case | MachineCase,
     target: Path,
     answer: StudyReportData,
     force: bool,

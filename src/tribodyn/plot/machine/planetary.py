@@ -11,6 +11,7 @@ import numpy as np
 
 from tribodyn.drawing import drawing
 from tribodyn.gear import gear_outline
+from tribodyn.machine.planetary.positions import read_angles
 from tribodyn.plot.machine.orders import COLORS
 from tribodyn.plot.theme.curves import curve, curves
 from tribodyn.plot.theme.labels import axis_label, displayed, rounded
@@ -21,7 +22,7 @@ from tribodyn.types import Array, ComplexArray
 if TYPE_CHECKING:
     from tribodyn.gear import CylindricalGear
     from tribodyn.machine import RingSensorSignal
-    from tribodyn.study import PlanetaryCase, PlanetaryMotion, PlanetaryResult
+    from tribodyn.study import MachineCase, MachineResult, PlanetaryMotion
     from tribodyn.study.planetary.tolerances import LoadShareStatistics
     from tribodyn.study.uncertain.machine_ensemble import MachineEnsemble
 
@@ -48,10 +49,8 @@ def _trace(points: ComplexArray, name: str, color: str) -> Trace:
     }  # fmt: skip
 
 
-def _start_angles(case: PlanetaryCase, angles: Array) -> tuple[float, list[float]]:
+def _start_angles(teeth: dict[str, int], angles: Array) -> tuple[float, list[float]]:
     """Rotations of the ring and of the planets in which their teeth engage, the sun's is 0."""
-    teeth = {role: abs(case.gears[getattr(case.table, role)].teeth)
-             for role in ("sun", "planet", "ring")}  # fmt: skip
     planets = []
     for at in angles:
         # The sun has a tooth at angle 0; a planet has a gap where one meets it.
@@ -62,29 +61,41 @@ def _start_angles(case: PlanetaryCase, angles: Array) -> tuple[float, list[float
     return float(angles[0] + (tooth + 0.5) * 2.0 * np.pi / teeth["ring"]), planets
 
 
+def _not_drawn(result: MachineResult | MachineCase) -> str:
+    case: Any = getattr(result, "case", result)
+    single = any(stage.table.planet_type == "single" for stage in case.stages.values())
+    return "" if single else "The machine has no stage of planets with one gear."
+
+
 @drawing(
     "planetary_stage",
     heading="The stage in front view",
     caption="Sun, planets and ring with their teeth in the transverse section, and the arms of the "
     "carrier, to scale, seen against the axis. Press Play to turn the stage: one step of the "
     "carrier from planet to planet, or the same time where the carrier is held.",
-    of=("PlanetaryResult", "PlanetaryCase"),
+    missing=_not_drawn,
+    of=("MachineResult", "MachineCase"),
     made_by="Load or run a case with planets: tribodyn.load_case, tribodyn.run.",
 )
-def planetary_stage(result: PlanetaryResult | PlanetaryCase) -> Any:
-    """Draw a planetary stage with moving planets."""
+def planetary_stage(result: MachineResult | MachineCase) -> Any:
+    """Draw the first planetary stage of a machine with moving planets."""
     whole: Any = result
-    case: PlanetaryCase = getattr(whole, "case", whole)
-    load = case.operating_point
-    stage = case.kinematics(load)
-    pairs = {mesh: pair.gear_pair for mesh, pair in case.pairs.items()}
-    sun_side = "pinion" if case.gears_of("sun")[0] == case.table.sun else "wheel"
+    case: MachineCase = getattr(whole, "case", whole)
+    parts = next(s for s in case.stages.values() if s.table.planet_type == "single")
+    machine, table = case.machine(), parts.table
+    pairs = {mesh: parts.gear_pair(mesh) for mesh in ("sun", "ring")}
+    sun_side = "pinion" if parts.names_of("sun")[0] == table.sun else "wheel"
     sun = _outline(getattr(pairs["sun"], sun_side))
     planet, ring = _outline(pairs["ring"].pinion), _outline(pairs["ring"].wheel)
-    angles = np.asarray(case.phases(load).angles) * case.turn(load)
-    ring_start, planet_starts = _start_angles(case, angles)
-    distance = 1e3 * case.center_distance
-    rates = stage.speeds
+    stage = machine.planets[parts.name]
+    angles = read_angles(stage.count, stage.angles)
+    teeth = {"sun": parts.gears[table.sun].teeth, "planet": parts.planet.teeth,
+             "ring": abs(parts.gears[table.ring].teeth)}  # fmt: skip
+    ring_start, planet_starts = _start_angles(teeth, angles)
+    distance = 1e3 * parts.center_distance
+    shafts = {role: parts.shaft_of(role) for role in ("sun", "ring", "carrier")}
+    shafts["planet"] = f"{parts.name}_planet1"
+    rates = {role: machine.kinematics.shafts[shaft].speed for role, shaft in shafts.items()}
     slowest = abs(rates["carrier"]) or abs(rates["ring"])
     duration = 2.0 * np.pi / angles.size / slowest
 
@@ -121,11 +132,8 @@ def planetary_stage(result: PlanetaryResult | PlanetaryCase) -> Any:
         "xaxis": axis,
         "yaxis": {**axis, "scaleanchor": "x"},
     }  # fmt: skip
-    turns = abs(stage.relative_speeds["planet"] / stage.speeds[stage.input])
-    title = (
-        f"{angles.size} planets turn {turns:.3g} times about their pins in a turn of the "
-        f"{stage.input}; ratio {stage.ratio:.4g}"
-    )
+    turns = abs((rates["planet"] - rates["carrier"]) / rates["sun"])
+    title = f"{angles.size} planets turn {turns:.3g} times about their pins in a turn of the sun"
     sketch = figure(title, frames[0], layout)
     sketch.frames = [{"name": str(k), "data": data} for k, data in enumerate(frames)]
     return sketch
@@ -136,8 +144,8 @@ def planetary_stage(result: PlanetaryResult | PlanetaryCase) -> Any:
     heading="Mesh forces of all planets",
     caption="Force of each sun mesh and of each ring mesh along its line of action over a mesh "
     "cycle, and the motion of the sun about its mean place, which the axis names.",
-    of=("PlanetaryMotion", "PlanetaryResult.motion"),
-    made_by="Run a case with planets: tribodyn.run.",
+    of=("PlanetaryMotion",),
+    made_by="Run a case with planets: tribodyn.run(...).operation.stage().motion.",
 )
 def planetary_forces(motion: PlanetaryMotion) -> Any:
     """Draw the mesh forces of all planets and the motion of the sun over a mesh cycle."""

@@ -1,4 +1,4 @@
-"""Torques and speeds of the shafts of a machine or a stage that vary over their turns."""
+"""Torques and speeds of the shafts of a machine that vary over their turns."""
 
 from __future__ import annotations
 
@@ -10,14 +10,11 @@ import numpy as np
 
 from tribodyn.faults import DrivenSystem, drive
 from tribodyn.study.faults.machine_section import shaft_excitation
-from tribodyn.study.pipeline.assembly import geometry
 from tribodyn.types import Array
 
 if TYPE_CHECKING:
     from tribodyn.dynamics import System
     from tribodyn.machine import MachineStructure
-    from tribodyn.study.planetary.case import PlanetaryCase
-    from tribodyn.study.planetary.result import PlanetaryLoadResult
 
 #: Eigenvalues below this share of the largest are those of free motions.
 _FREE = 1e-12
@@ -64,28 +61,6 @@ def drive_machine(
     return _drive(
         system, cycles, faults, mesh_frequency=cycles * clock.frequency,
         turns=clock.turns, torques=torques,
-    )  # fmt: skip
-
-
-def drive_stage(
-    case: PlanetaryCase, sound: PlanetaryLoadResult, system: System, cycles: int
-) -> DrivenSystem:
-    """A planetary stage with the excitation of its members."""
-    table, stage, fixed_role = case.table, sound.kinematics, case.roles[2]
-    teeth = {role: abs(case.gears[getattr(table, role)].teeth) for role in ("sun", "ring")}
-    planet = geometry(case.pairs["ring"])["base_radius_pinion"] / case.gears[table.planet].teeth
-    radii = {role: planet * count for role, count in teeth.items()}
-    radii["carrier"] = case.center_distance
-    turns = {"sun": Fraction(cycles, teeth["sun"]), "ring": Fraction(-cycles, teeth["ring"])}
-    turns["carrier"] = Fraction(0)  # about the carrier
-    torques = {}
-    for number, role in enumerate(("carrier", "ring", "sun")):
-        unit = np.eye(system.size)[3 * number + 2] / radii[role]
-        torques[case.members[role]] = sound.turn * np.sign(stage.speeds[role]) * unit
-    return _drive(
-        system, cycles, case.faults, mesh_frequency=stage.mesh_frequency,
-        turns={case.members[role]: abs(turn - turns[fixed_role]) for role, turn in turns.items()},
-        torques=torques,
     )  # fmt: skip
 
 

@@ -86,24 +86,17 @@ _OF_PARTS = {
         optional=(*_BEARING, "contact_angle", "impact_duration", "slip"),
     )
 }
-#: Kinds that a planetary stage has of its gears, and by which planet.
+#: Kinds that a gear with a constant stiffness has too.
 WAVES = ("eccentricity", "waviness")
-_ALIKE = "The teeth of a stage are computed for one mesh cycle, so that all of a gear are equal"
-_NO_BEARINGS = "The bearings of a stage have no geometry and no seats"
 #: Why a kind of case does not have a kind of fault.
 LACKS: dict[str, dict[str, str]] = {
     "pair": {"looseness": "The supports of a pair have no seats, which bearings of a machine have"},
     "machine": {},
-    "stage": {
-        name: _NO_BEARINGS if kind.part == "bearing" else _ALIKE
-        for name, kind in KINDS.items()
-        if kind.part != "shaft" and name not in WAVES
-    },
 }
 
 
 def kinds_in(case: str) -> Mapping[str, Kind]:
-    """Kinds of faults of a ``"pair"``, a ``"machine"`` or a ``"stage"``."""
+    """Kinds of faults of a ``"pair"`` or a ``"machine"``."""
     changed = {} if case == "pair" else _OF_PARTS
     return {name: kind for name, kind in {**KINDS, **changed}.items() if name not in LACKS[case]}
 
@@ -112,7 +105,7 @@ def keys_in(case: str, name: str) -> tuple[tuple[str, ...], tuple[str, ...]]:
     """Keys of a kind of fault, first that of the part: required, and optional ones."""
     kind = kinds_in(case)[name]
     part = "gear" if case == "pair" else kind.part
-    which = ("planet",) if case == "stage" and kind.part == "gear" else ()
+    which = ("planet",) if case == "machine" and kind.part == "gear" else ()
     return (part, *kind.required), (*kind.optional, *which)
 
 

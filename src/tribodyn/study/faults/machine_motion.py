@@ -3,14 +3,16 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
 from tribodyn.faults import BearingForce, BearingImpacts, Fault, Waviness
 from tribodyn.interrupt import single_blas_thread
+from tribodyn.machine.planetary.ring_sensor import passing_weights
 from tribodyn.progress import SILENT, Progress
 from tribodyn.study.faults.clock import MOST_CYCLES
 from tribodyn.study.faults.driven_shafts import drive_machine
@@ -34,6 +36,8 @@ from tribodyn.study.faults.turning import (
 )
 from tribodyn.study.machine.first_look import warn_of_orders, warn_of_period
 from tribodyn.study.mesh_inputs import mesh_inputs
+from tribodyn.study.planetary.common import only_stage
+from tribodyn.study.planetary.stage_result import planetary_angles
 from tribodyn.types import Array
 
 if TYPE_CHECKING:
@@ -43,10 +47,19 @@ if TYPE_CHECKING:
     from tribodyn.study.machine.result import LoadResult
 
 _ACCURACY = Accuracy((128, 256), 1e-4)
+#: Most mesh cycles of a signal of a ring.
+_MOST_OF_RING = 20_000
 _SHORTER = (
     "Give faults of one gear only, numbers of teeth with common factors, or orders that repeat "
     "after fewer turns"
 )
+
+
+class RingPlace(NamedTuple):
+    """Where a sensor is on a ring, and how it feels a passing planet."""
+
+    angle: float = 0.0  #: from y towards z [rad]
+    window: float | Callable[[Array], Array] | None = None  #: as of ``ring_sensor_signal``
 
 
 @dataclass(frozen=True, eq=False)
@@ -56,6 +69,7 @@ class MachineTurningMotion(PeriodicMotion):
     sound: LoadResult  #: with equal teeth under the same load
     structure: MachineStructure  #: with the force laws of all teeth over the turns
     motion: MachineMotion
+    ring: RingPlace
 
     @property
     def machine(self) -> Machine:
@@ -69,9 +83,35 @@ class MachineTurningMotion(PeriodicMotion):
             values = motion.bearing_force[:, motion.bearing.index(place.part), :3] @ place.direction
         elif place.quantity == "acceleration":
             values = motion.acceleration[:, motion.node.index(place.part)] @ place.direction
+        elif place.quantity == "passing_force":
+            names = self.machine.planets[place.part].mesh_names(place.part)["ring"]
+            values = motion.mesh_force[:, [motion.mesh.index(name) for name in names]]
         else:
             values = getattr(motion, place.quantity)[:, motion.mesh.index(place.part)]
-        return even_samples(motion.clock, SAMPLES * self.cycles)(values)
+        fastest = int(motion.cycles.max())
+        even = even_samples(motion.clock, SAMPLES * fastest)(values)
+        even = np.tile(even, (self.cycles // fastest, *[1] * (even.ndim - 1)))
+        if place.quantity == "passing_force":
+            even = (even * self._passing(place.part, fastest, len(even))).sum(axis=1)
+        return np.asarray(even)
+
+    def _passing(self, stage: str, fastest: int, count: int) -> Array:
+        """Weight of each planet at the sensor on the ring, on even samples (count, N)."""
+        machine, parts = self.machine, self.machine.planets[stage]
+        flow, ring = machine.kinematics.shafts, machine.gears[parts.ring]
+        mesh = self.motion.mesh.index(parts.mesh_names(stage)["ring"][0])
+        share = float(self.motion.cycles[mesh]) / fastest
+        at = np.arange(count) / SAMPLES
+        turns = share * (at + self.lead(at / fastest % 1.0)) / abs(ring.teeth)
+        relative = np.sign(flow[parts.carrier].speed - flow[ring.shaft].speed)
+        return passing_weights(planetary_angles(parts), relative * turns, *self.ring)
+
+    def sensed_from(self, tacho: str | None, angle: float, window: Any) -> MachineTurningMotion:
+        """The motion with its tacho on another shaft, and its sensor at an angle of the ring."""
+        if only_stage(self.machine) is None:
+            return PeriodicMotion.sensed_from(self, tacho, angle, window)  # type: ignore[no-any-return]
+        place = RingPlace(angle, window)
+        return replace(self, ring=place, tacho=self.tacho if tacho is None else tacho)
 
     @cached_property
     def free_structure(self) -> FreeStructure:
@@ -167,11 +207,12 @@ def machine_turning_motion(
         if not of_teeth or machine.meshes != sound.machine.meshes:
             structure = replace(structure, machine=machine)
             motion, lead = _searched(case, sound, structure, progress)
-    clock, cycles = structure.machine.clock, int(motion.cycles.max())
-    periods = round(clock.frequency / motion.frequency)
+    clock, rounds = structure.machine.clock, _rounds(structure.machine, motion)
+    cycles = rounds * int(motion.cycles.max())
+    periods = round(rounds * clock.frequency / motion.frequency)
     return MachineTurningMotion(
         cycles=cycles,
-        mesh_frequency=cycles * motion.frequency,
+        mesh_frequency=cycles * motion.frequency / rounds,
         places=MachineSensors(structure.machine, seat_accelerance(case.motion)),
         turns={shaft: periods * turns for shaft, turns in clock.turns.items()},
         tacho=machine.operation.input,
@@ -179,7 +220,23 @@ def machine_turning_motion(
         sound=sound,
         structure=structure,
         motion=motion,
+        ring=RingPlace(),
     )
+
+
+def _rounds(machine: Machine, motion: MachineMotion) -> int:
+    """Periods of a motion until the planets of a stage pass the sensor with the same teeth."""
+    stage = only_stage(machine)
+    if stage is None:
+        return 1
+    parts = machine.planets[stage]
+    teeth = abs(machine.gears[parts.ring].teeth)
+    mesh = motion.mesh.index(parts.mesh_names(stage)["ring"][0])
+    rounds = teeth // math.gcd(int(motion.cycles[mesh]), teeth)
+    cycles = rounds * int(motion.cycles.max())
+    seconds = rounds / motion.frequency
+    refuse_long_period(cycles, seconds, _MOST_OF_RING, _SHORTER)
+    return rounds
 
 
 def _searched(

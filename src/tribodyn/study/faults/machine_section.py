@@ -1,4 +1,4 @@
-"""Faults of the named parts of a machine or a stage: what they can have, and in which meshes."""
+"""Faults of the named parts of a machine: what they can have, and in which meshes."""
 
 from __future__ import annotations
 
@@ -24,36 +24,37 @@ if TYPE_CHECKING:
     from tribodyn.faults import BearingForce, BearingImpacts, Fault, ShaftExcitation
     from tribodyn.machine import Machine
     from tribodyn.study.machine.case import MachineCase
-    from tribodyn.study.planetary.case import PlanetaryCase
 
 _GEOMETRY = ("rolling_elements", "element_diameter", "pitch_diameter")
 
 
 def machine_fault_problems(case: MachineCase) -> KeyedProblems:
     """Report faults that are incomplete, or whose gear or bearing does not exist."""
-    parts = {"gear": [*case.gears], "bearing": [*case.bearings], "shaft": [*case.shafts]}
+    gears = [*case.gears, *case.planet_names]
+    parts = {"gear": gears, "bearing": [*case.bearings], "shaft": [*case.shafts]}
     return fault_problems(case.faults, "machine", parts)
 
 
-def stage_fault_problems(case: PlanetaryCase) -> KeyedProblems:
-    """Report faults that are incomplete, or whose gear, planet or member does not exist."""
-    gears = [getattr(case.table, role) for role in ("sun", "planet", "ring")]
-    parts = {"gear": gears, "shaft": tuple(case.members.values())}
-    if problems := fault_problems(case.faults, "stage", parts):
-        return problems
-    for name, fault in case.faults.items():
-        key = f"faults.{name}"
-        if fault.shaft is not None:
-            speed = float(part_of(fault.shaft) in case.ends)
-            problems += list(_located(key, partial(check_shaft, fault, speed)))
-        elif fault.planet and (part_of(fault.gear) != gears[1] or fault.planet > case.table.count):
-            what = f"planet = {fault.planet} of the gear {fault.gear}"
-            why = f"The stage has {case.table.count} planets; sun and ring are one each"
-            problems.append((f"{key}.planet", Problem(what, "", why, "Correct the number")))
-        if fault.lead_angle:
-            what, why = f"lead_angle = {fault.lead_angle:g} rad", "All slices of a stage are equal"
-            problems.append((f"{key}.lead_angle", Problem(what, "", why, "Remove it")))
-    return problems
+def gear_of(case: MachineCase, fault: PartFaultTable) -> str:
+    """Name of the gear of a fault in the machine; of planets that of its number, or the first."""
+    name = part_of(fault.gear)
+    for stage in case.stages.values():
+        for place, gear in zip(("planet", "ring_planet"), stage.planet_names, strict=False):
+            if name == gear:
+                return f"{stage.name}_{place}{fault.planet or 1}"
+    return name
+
+
+def _check_planet(case: MachineCase, fault: PartFaultTable) -> None:
+    """Raise InputError if a gear is no planet, or its stage has fewer planets."""
+    name = part_of(fault.gear)
+    counts = [s.table.count for s in case.stages.values() if name in s.planet_names]
+    if fault.planet is not None and fault.planet > max(counts, default=0):
+        what = f"planet = {fault.planet} of the gear {name}"
+        why = "Other gears are one each"
+        if counts:
+            why = f"Its stage has {counts[0]} planets"
+        raise InputError(what, Argument("planet"), why, "Correct the number, or remove it")
 
 
 def impossible_faults(case: MachineCase) -> KeyedProblems:
@@ -63,8 +64,10 @@ def impossible_faults(case: MachineCase) -> KeyedProblems:
         checks: list[Callable[[], object]] = [
             partial(_check_gear_fault, case, fault, mesh)
             for mesh in case.meshes
-            if fault.gear is not None and part_of(fault.gear) in case._names(mesh)
+            if fault.gear is not None and gear_of(case, fault) in case._names(mesh)
         ]
+        if fault.planet is not None:
+            checks.insert(0, partial(_check_planet, case, fault))
         if fault.kind == "looseness":
             checks = [partial(_check_seat, case, fault)]
         elif fault.bearing:
@@ -120,14 +123,14 @@ def _check_gear_fault(case: MachineCase, fault: PartFaultTable, mesh: str) -> No
 
 def _role(case: MachineCase, fault: PartFaultTable, mesh: str) -> str:
     """The gear with a fault as the pair of a mesh names it."""
-    return GEARS[case._pinion_and_wheel(mesh).index(part_of(fault.gear))]
+    return GEARS[case._pinion_and_wheel(mesh).index(gear_of(case, fault))]
 
 
 def faults_of_mesh(case: MachineCase, machine: Machine, mesh: str) -> list[Fault]:
     """Faults of both gears of a mesh, with the teeth counted as they come into contact there."""
     faults: list[Any] = []
     for fault in case.faults.values():
-        gear = part_of(fault.gear)
+        gear = gear_of(case, fault)
         if gear not in machine.meshes[mesh].gears:
             continue
         first = next(name for name, each in machine.meshes.items() if gear in each.gears)
@@ -149,7 +152,7 @@ def _changes(
     if not same_flank and fault.kind not in ("eccentricity", "broken-tooth"):
         return None  # it is on the flank that the first mesh loads
     teeth, turn = abs(machine.gears[gear].teeth), 2.0 * math.pi
-    speed = machine.kinematics.shafts[machine.gears[gear].shaft].speed
+    speed = flows[other].speeds[machine.meshes[other].gears.index(gear)]
     angles = [_force_angle(machine, name, gear) for name in meshes]
     between = math.copysign(1.0, speed) * (angles[1] - angles[0]) % turn
     lag = machine.meshes[other].offset - machine.meshes[first].offset

@@ -29,7 +29,7 @@ if TYPE_CHECKING:
     from tribodyn.measurement import Recording
     from tribodyn.study.case.case import Case
     from tribodyn.study.faults.turning import PeriodicMotion
-    from tribodyn.study.machine.user_tables import PartsCase
+    from tribodyn.study.machine.case import MachineCase
 
 #: Files of a set: description, labels, and recordings of one variant.
 CARD, LABELS, PART = "card.json", "labels.csv", "variant-{:05d}.h5"
@@ -80,7 +80,7 @@ class RecordingSet:
 
 
 def record_set(
-    case: Case | PartsCase,
+    case: Case | MachineCase,
     folder: str | os.PathLike[str],
     over: Mapping[str, Any],
     *,
@@ -98,7 +98,7 @@ def record_set(
 
     Parameters
     ----------
-    case : Case, MachineCase or PlanetaryCase
+    case : Case or MachineCase
         With ``[faults.NAME]``. Load cases besides ``[operation]`` are left out.
     folder : str or path
         Where they are stored. The same call goes on where an interrupted one ended.
@@ -175,7 +175,7 @@ def record_set(
 
 
 def _card(
-    case: Case | PartsCase, axes: tuple[Axis, ...], settings: dict[str, Any]
+    case: Case | MachineCase, axes: tuple[Axis, ...], settings: dict[str, Any]
 ) -> dict[str, Any]:
     """Description of a set, with a digest of everything that it depends on."""
     from tribodyn import __version__
@@ -222,23 +222,25 @@ def _seed(seed: int, variant: int, draw: int) -> int:
     return int.from_bytes(hashlib.sha256(text).digest()[:4], "big") % 10**9
 
 
-def _recorder(case: Case | PartsCase, sensor: str) -> Callable[[float, float, Scatter], Recording]:
+def _recorder(
+    case: Case | MachineCase, sensor: str
+) -> Callable[[float, float, Scatter], Recording]:
     """Function of duration, rate and scatter that samples the motion of a case."""
-    from tribodyn.study.machine.user_tables import PartsCase
+    from tribodyn.study.machine.case import MachineCase
+    from tribodyn.study.machine.run import run_machine
     from tribodyn.study.pipeline.run import prepare_run
-    from tribodyn.study.planetary.run import run_parts
 
     check_sensors(case._sensors, sensor)
     motion: PeriodicMotion
-    if isinstance(case, PartsCase):
-        motion = run_parts(case.replace({"load_cases": None})).turning_motion
+    if isinstance(case, MachineCase):
+        motion = run_machine(case.replace({"load_cases": None})).turning_motion
     else:
         motion = turning_motion(prepare_run(case))
     return partial(recording_of, motion, defects_of(case), sensor)
 
 
 def _write(
-    part: Path, case: Case | PartsCase, sampling: Mapping[str, Any], draws: list[Scatter]
+    part: Path, case: Case | MachineCase, sampling: Mapping[str, Any], draws: list[Scatter]
 ) -> Mapping[str, str]:
     """Compute the motion of one variant and write all its recordings; return their units."""
     import h5py

@@ -282,7 +282,8 @@ def read_fault(fault: FaultTable, **changes: Any) -> Fault | BearingDefect | Sha
     from tribodyn import faults
 
     values = {**_stated(fault), **changes}
-    values.pop("shaft", None)
+    for key in ("shaft", "planet"):
+        values.pop(key, None)
     if fault.kind == "eccentricity":
         values["order"] = 1
     if fault.kind == "bearing-defect":

@@ -1,4 +1,4 @@
-"""Sensors of pairs, machines and planetary stages, checked before their motion is computed."""
+"""Sensors of pairs and machines, checked before their motion is computed."""
 
 from __future__ import annotations
 
@@ -12,12 +12,12 @@ import numpy as np
 
 from tribodyn.errors import InputError
 from tribodyn.nomenclature import GEARS
+from tribodyn.study.planetary.common import only_stage
 from tribodyn.types import Array, ComplexArray
 
 if TYPE_CHECKING:
     from tribodyn.machine import Machine
     from tribodyn.study.case.case import Case
-    from tribodyn.study.planetary.case import PlanetaryCase
 
 _AXES = {"x": (1.0, 0.0, 0.0), "y": (0.0, 1.0, 0.0), "z": (0.0, 0.0, 1.0)}
 #: Signals of a mesh.
@@ -30,8 +30,9 @@ _RIGID = "Give seat_mass and seat_frequency in [dynamics]"
 class SensorPlace(NamedTuple):
     """Where a sensor is, and what it measures."""
 
-    quantity: str  #: ``acceleration``, ``force``, ``mesh_force`` or ``transmission_error``
-    part: str  #: coordinate, node of the housing, bearing, mesh or planet
+    #: ``acceleration``, ``force``, ``passing_force``, ``mesh_force`` or ``transmission_error``
+    quantity: str
+    part: str  #: coordinate, node of the housing, bearing, mesh or stage
     unit: str
     direction: Array = np.zeros(3)  #: of an acceleration or a force
     seat: Callable[[Array], ComplexArray] | None = None  #: between the force and the acceleration
@@ -117,10 +118,33 @@ class MachineSensors:
             *(f"bearings.{n}.acceleration_{a}" for n in seats for a in axes),
             *(f"bearings.{n}.force_{a}" for n in bearings for a in axes),
             *(f"meshes.{n}.{s}" for n in self.machine.meshes for s in _OF_MESH),
+            *self._of_stage,
         )
+
+    @cached_property
+    def _of_stage(self) -> dict[str, SensorPlace]:
+        """Ring that planets pass, and planets of a machine that is one stage, by their names."""
+        stage = only_stage(self.machine)
+        if stage is None:
+            return {}
+        places = {"ring.force": SensorPlace("passing_force", stage, "N")}
+        if self.seat:
+            places["ring.acceleration"] = SensorPlace(
+                "passing_force", stage, "m/s^2", seat=self.seat
+            )
+        return places | {
+            f"planet_{number}.{kind}_mesh_force": SensorPlace("mesh_force", mesh, "N")
+            for kind, meshes in self.machine.planets[stage].mesh_names(stage).items()
+            for number, mesh in enumerate(meshes, 1)
+        }
 
     def place(self, sensor: str) -> SensorPlace:
         """Place of a sensor by its name."""
+        if sensor in self._of_stage:
+            return self._of_stage[sensor]
+        if sensor == "ring.acceleration" and self._of_stage:
+            what, why = "the ring is rigid at its sensor", "Nothing accelerates there"
+            raise InputError(what, "argument sensor", why, _RIGID)
         group, _, inside = sensor.partition(".")
         part, _, name = inside.rpartition(".")
         quantity, _, axis = name.rpartition("_")
@@ -143,36 +167,6 @@ class MachineSensors:
                 remedy = f'{_RIGID}, such as "10 kg" and "2 kHz"'
                 raise InputError(what, "argument sensor", why, remedy)
         raise unlisted_sensor(sensor, self.names)
-
-
-@dataclass(frozen=True)
-class StageSensors:
-    """Sensors of a planetary stage."""
-
-    planets: int
-    shafts: tuple[str, ...]  #: members, and the planet that turns about its pin
-    seat: Callable[[Array], ComplexArray] | None
-
-    @property
-    def names(self) -> tuple[str, ...]:
-        """Names of all sensors."""
-        planets = range(1, self.planets + 1)
-        seat = ("ring.acceleration",) if self.seat else ()
-        forces = (f"planet_{i}.{mesh}_mesh_force" for mesh in ("sun", "ring") for i in planets)
-        return (*seat, "ring.force", *forces)
-
-    def place(self, sensor: str) -> SensorPlace:
-        """Planet and mesh of a sensor, or the ring that all planets pass."""
-        if sensor == "ring.acceleration" and self.seat is None:
-            what, why = "the ring is rigid at its sensor", "Nothing accelerates there"
-            raise InputError(what, "argument sensor", why, _RIGID)
-        if sensor not in self.names:
-            raise unlisted_sensor(sensor, self.names)
-        part, _, quantity = sensor.partition(".")
-        if part == "ring":
-            seat = self.seat if quantity == "acceleration" else None
-            return SensorPlace("passing_force", part, "m/s^2" if seat else "N", seat=seat)
-        return SensorPlace(quantity, part, "N")
 
 
 def unlisted_sensor(sensor: str, sensors: Sequence[str]) -> InputError:
@@ -217,12 +211,6 @@ def pair_sensors(case: Case) -> PairSensors:
     with locate_errors(case), collected():  # the run raises the warnings
         mesh = mesh_of(case, rehearsal=True)
         return PairSensors(tuple(whole_system(case, mesh, rehearsal=True).names))
-
-
-def stage_sensors(case: PlanetaryCase) -> StageSensors:
-    """Sensors of a planetary stage."""
-    shafts = (*case.members.values(), case.table.planet)
-    return StageSensors(case.table.count, shafts, seat_accelerance(case.motion))
 
 
 def check_sensors(places: Sensors, sensor: str | Sequence[str], tacho: str | None = None) -> None:

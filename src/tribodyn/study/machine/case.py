@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping
 from copy import copy, deepcopy
 from dataclasses import replace
 from functools import cached_property
@@ -24,11 +24,9 @@ from tribodyn.machine import (
 from tribodyn.machine.plane_law import with_exchanged_gears
 from tribodyn.study.case.case import Case
 from tribodyn.study.case.provenance import Assumption, reason_faults
-from tribodyn.study.case.sections import MaterialData
 from tribodyn.study.case.user_input import Source, unsound, without_spread
-from tribodyn.study.case.values import KeyedProblems, Plain
+from tribodyn.study.case.values import KeyedProblems
 from tribodyn.study.faults.machine_section import impossible_faults, machine_fault_problems
-from tribodyn.study.faults.section import PartFaultTable
 from tribodyn.study.faults.sensors import MachineSensors, seat_accelerance
 from tribodyn.study.machine.housing_files import read_housing
 from tribodyn.study.machine.load_cases import LoadCase, read_loads
@@ -48,10 +46,14 @@ from tribodyn.study.machine.pair_cases import (
     with_forms,
 )
 from tribodyn.study.machine.read_parts import (
+    add_material,
+    add_shafts,
     check_tables,
     in_si,
     read_bearing,
     read_coupling,
+    read_each,
+    read_fault_table,
     read_gear,
     read_shaft,
     table_of,
@@ -61,13 +63,20 @@ from tribodyn.study.machine.tables import (
     HousingTable,
     MeshDynamics,
     MotionTable,
-    ShaftTable,
     mesh_table_kind,
 )
 from tribodyn.study.machine.unused_keys import unused_keys
 from tribodyn.study.machine.user_tables import PartsCase, default_assumptions, stated_assumptions
 from tribodyn.study.mesh_inputs import MeshInputs
-from tribodyn.study.planetary.machine_stages import MEMBERS, CaseStage, read_stages, stage_mesh
+from tribodyn.study.planetary.machine_stages import (
+    MEMBERS,
+    CaseStage,
+    floating_members,
+    for_each_planet,
+    read_stages,
+    stage_by_itself,
+    stage_mesh,
+)
 
 _TOP = (
     *("title", "origin", *GROUPS, "planets", "housing", "operation", "load_cases", "dynamics"),
@@ -75,19 +84,8 @@ _TOP = (
 )
 #: Keys of a mesh that its object takes as they are.
 _OF_MESH = (
-    "normal_module",
-    "helix_angle",
-    "hand",
-    "angle",
-    "center_distance",
-    "stiffness",
-    "offset",
+    *("normal_module", "helix_angle", "hand", "angle", "center_distance", "stiffness", "offset"),
 )
-
-
-def is_machine(data: Mapping[str, Any]) -> bool:
-    """Whether tables of a case file describe a machine rather than a pair."""
-    return any(group in data for group in ("shafts", "meshes", "bearings"))
 
 
 class MachineCase(PartsCase):
@@ -126,20 +124,24 @@ class MachineCase(PartsCase):
             raise InputError(origin.place(unreadable))
         self.source = source
         tables = deepcopy(data) if source is not None else in_si(data)
-        self.data, self.uncertain, problems = without_spread(tables)
+        self.data, self.uncertain, problems = without_spread(for_each_planet(tables), lists=True)
         check_tables(self.data, _TOP, problems)
         problems += unused_keys(self.data)
-        self.title: str = self.data.get("title", "Machine")
+        self.title: str = self.data.get("title", self.kind)
         self.origin: str | None = self.data.get("origin")
         problems += reason_faults(self.data.get("assumed", {}))
         groups = {group: tables_of(self.data, group, problems) for group in GROUPS}
         self._blanks = read_blanks(groups, problems)
-        self._add_material(groups)
+        material = add_material(self.data, groups)
         stages = read_stages(self.data, groups["gears"], problems, source)
-        self.gears: dict[str, Gear] = _read(groups, "gears", read_gear, problems)
-        self._add_shafts(groups["shafts"], [table for table, *_ in stages.values()])
-        self.shafts: dict[str, Shaft] = _read(groups, "shafts", read_shaft, problems)
-        self.bearings: dict[str, Bearing] = _read(groups, "bearings", read_bearing, problems)
+        if self.lone_stage in stages:
+            problems += floating_members(f"planets.{self.lone_stage}", stages[self.lone_stage][0])
+        tables = [table for table, *_ in stages.values()]
+        self.planet_names = tuple(n for t in tables for n in (t.planet, t.ring_planet) if n)
+        self.gears: dict[str, Gear] = read_each(groups, "gears", read_gear, problems)
+        self.implied_shafts = add_shafts(groups["shafts"], self.gears, tables, material)
+        self.shafts: dict[str, Shaft] = read_each(groups, "shafts", read_shaft, problems)
+        self.bearings: dict[str, Bearing] = read_each(groups, "bearings", read_bearing, problems)
         self._mesh_dynamics: dict[str, Any] = {}
         self._stage_of: dict[str, tuple[CaseStage, str]] = {}
         self._pairs: dict[str, Case] = {}
@@ -151,15 +153,13 @@ class MachineCase(PartsCase):
         if not groups["meshes"] and "planets" not in self.data:
             remedy = 'Add [meshes.NAME] with gears = ["z1", "z2"] and normal_module'
             problems.append(("meshes", Problem("there is no mesh", "", "", remedy)))
-        self.couplings: dict[str, Coupling] = _read(groups, "couplings", read_coupling, problems)
+        self.couplings: dict[str, Coupling] = read_each(
+            groups, "couplings", read_coupling, problems
+        )
         self.housing: Housing | None = read_housing(self.data.get("housing"), problems)
         motion = {k: v for k, v in self.data.get("dynamics", {}).items() if k not in MESH_KEYS}
         self.motion = table_of(MotionTable, motion, "dynamics", problems)
-        faults = {
-            name: table_of(PartFaultTable, body, f"faults.{name}", problems)
-            for name, body in groups["faults"].items()
-        }
-        self.faults = {name: table for name, table in faults.items() if table is not None}
+        self.faults: dict[str, Any] = read_each(groups, "faults", read_fault_table, problems)
         problems += machine_fault_problems(self)
         self.load_cases: tuple[LoadCase, ...] = ()  #: of ``[[load_cases]]``
         if (loads := read_loads(self.data, problems)) is not None:
@@ -171,6 +171,7 @@ class MachineCase(PartsCase):
             self._add_stages(stages)
             self._checked_machine(self.operating_point)
             self._add_forms()
+            self._machines.clear()
             for name in self.meshes_with_teeth:
                 inputs_under(self, name, self.operating_point)
         except InputError as error:
@@ -209,26 +210,6 @@ class MachineCase(PartsCase):
             parts = stage.stage().parts(stage.name, stage.gears)
             self.gears |= parts["gears"]
             self._mesh_tables |= dict.fromkeys(parts["meshes"], stage.table)
-
-    def _add_shafts(self, shafts: dict[str, Any], stages: Sequence[Any]) -> None:
-        """A shaft that only its gears name is a rigid one, and so are the members of a stage."""
-        gears = self.gears
-        members = [gears[n].shaft for t in stages for n in (t.sun, t.ring) if n in gears]
-        members += [table.carrier for table in stages]
-        implied = members if shafts else [*(gear.shaft for gear in gears.values()), *members]
-        self.implied_shafts = tuple(dict.fromkeys(name for name in implied if name not in shafts))
-        shafts.update(dict.fromkeys(self.implied_shafts, self._material))
-
-    def _add_material(self, groups: Mapping[str, Any]) -> None:
-        """Shafts and gears are of the common material where they have none of their own."""
-        shared = self.data.get("material", {})
-        values = shared if isinstance(shared, Mapping) else {}
-        common = {key: value for key, value in values.items() if key in ShaftTable.fields}
-        for name, body in groups["shafts"].items():
-            groups["shafts"][name] = {**common, **body}
-        self._material = {"density": Plain(MaterialData.fields["density"].default), **common}
-        for body in groups["gears"].values():
-            body.setdefault("density", self._material["density"])
 
     def _read_mesh(self, name: str, body: dict[str, Any], problems: KeyedProblems) -> Any:
         key = f"meshes.{name}"
@@ -290,6 +271,16 @@ class MachineCase(PartsCase):
     def assumptions(self) -> tuple[Assumption, ...]:
         """What is assumed: reasons in ``[assumed]``, and what the case does not give."""
         return (*stated_assumptions(self), *default_assumptions(self))
+
+    @cached_property
+    def lone_stage(self) -> str | None:
+        """Name of the stage of a case that is nothing else; None of other machines."""
+        return stage_by_itself(self.data)
+
+    @property
+    def kind(self) -> str:
+        """What the case describes, in words."""
+        return "Planetary stage" if self.lone_stage else "Machine"
 
     @property
     def meshes(self) -> tuple[str, ...]:
@@ -372,7 +363,7 @@ class MachineCase(PartsCase):
                 values |= constant_law(law)
             values |= fields
             return Mesh.hypoid(self._names(name), blank, apex=(apex[0], apex[1]), **values)
-        values = {key: getattr(table, key) for key in _OF_MESH}
+        values = {k: getattr(table, k) for k in _OF_MESH}
         values["pressure_angle"] = table.normal_pressure_angle
         if (law := self._mesh_dynamics.get(name)) is not None:
             values |= constant_law(law)
@@ -486,12 +477,6 @@ class MachineCase(PartsCase):
 
     def __repr__(self) -> str:
         """One line."""
-        count = len(self.load_cases)
-        parts = repr(self.machine()).removeprefix("Machine(").removesuffix(")")
+        parts, count = repr(self.machine())[8:-1], len(self.load_cases)
         loads = f", {count} load case{'s' * (count != 1)}" if count else ""
         return f'MachineCase("{self.title}": {parts}{loads})'
-
-
-def _read(groups: Mapping[str, Any], group: str, read: Any, problems: KeyedProblems) -> Any:
-    parts = {n: read(n, dict(body), problems) for n, body in groups[group].items()}
-    return {name: part for name, part in parts.items() if part is not None}

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 from tribodyn.errors import ComputationError, Problem, warn
 from tribodyn.machine import machine_structure
 from tribodyn.study.machine.summary import helix_figures
+from tribodyn.study.planetary.machine_stages import motion_of_stage
 
 if TYPE_CHECKING:
     from tribodyn.machine import Machine
@@ -102,4 +103,7 @@ def kinematic_figures(case: MachineCase) -> dict[str, float]:
         values[f"shafts.{name}.speed"] = shaft.speed
         values[f"shafts.{name}.torque"] = shaft.torque
         values[f"shafts.{name}.power"] = shaft.power
+    for name, stage in machine.planets.items():
+        for key, value in motion_of_stage(machine, name, stage, flow).items():
+            values[f"planets.{name}.{key}"] = value
     return {key: float(value) for key, value in values.items()}

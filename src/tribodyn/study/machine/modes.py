@@ -15,6 +15,7 @@ from tribodyn.types import Array
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
 
+    from tribodyn.machine import Machine
     from tribodyn.study.machine.case import MachineCase
 
 _Row = TypeVar("_Row")
@@ -28,6 +29,12 @@ _LEAST_SHARE = 0.05
 STRAINED = 1e-3
 #: Modes nearest to an excitation with which a table begins.
 _NEAREST = 10
+#: Relative difference of frequencies that is rounding.
+_ROUNDING = 1e-6
+#: Letters of the types of modes of a stage, and harmonics of a stage by itself in
+#: tables and in the diagram.
+_TYPES = {"rotational": "R", "translational": "T", "planet": "P", "mixed": "RT"}
+_TYPED, _DRAWN = 12, 5
 #: Motion of a shaft along its axis over that of all shafts across, from which it is axial.
 _ALONG = 5.0
 MODES_HEAD = ("Mode", "Frequency [Hz]", "Damping [%]", "Energy in", "Nearest excitation")
@@ -120,16 +127,19 @@ class MachineCampbell(Record):
         return [(name, float(speed)) for name, speed, within in pairs if within]
 
 
-def excitations(structure: MachineStructure, harmonics: int = _HARMONICS) -> dict[str, float]:
+def excitations(structure: MachineStructure, harmonics: int | None = None) -> dict[str, float]:
     """Orders of the input at which meshes and turning shafts excite a machine."""
     machine = structure.machine
     turning = abs(machine.operation.speed) / (2.0 * np.pi)
     flow = machine.kinematics
-    orders = {
-        f"mesh {name} x {k}": k * mesh.mesh_frequency / turning
-        for name, mesh in flow.meshes.items()
-        for k in range(1, harmonics + 1)
-    }
+    harmonics = _harmonics(structure) if harmonics is None else harmonics
+    of_planets, orders = {m for names in _meshes_of_stages(machine).values() for m in names}, {}
+    for name, mesh in flow.meshes.items():
+        if name not in of_planets:
+            for k in range(1, harmonics + 1):
+                orders[f"mesh {name} x {k}"] = k * mesh.mesh_frequency / turning
+    for label, (_, order) in stage_orders(machine, harmonics).items():
+        orders[label] = order / turning
     return {
         **orders,
         **{
@@ -138,15 +148,58 @@ def excitations(structure: MachineStructure, harmonics: int = _HARMONICS) -> dic
     }
 
 
+def _harmonics(structure: MachineStructure) -> int:
+    """Harmonics of each mesh: of a stage by itself all whose types are listed."""
+    return _HARMONICS if structure.frame is None else _TYPED
+
+
+def _meshes_of_stages(machine: Machine) -> dict[str, list[str]]:
+    return {
+        name: [mesh for names in stage.mesh_names(name).values() for mesh in names]
+        for name, stage in machine.planets.items()
+    }
+
+
+def stage_orders(machine: Machine, harmonics: int) -> dict[str, tuple[str, float]]:
+    """Stage and frequency [Hz] of the mesh harmonics of stages, named with what they excite."""
+    # By the phases of the planets a harmonic excites modes of certain types: R rotational, in
+    # which central members turn, T translational, and P of the planets alone.
+    orders = {}
+    for name, stage in machine.planets.items():
+        phases, flow = stage.phases(machine.gears), machine.kinematics.meshes
+        kinds: dict[float, str] = {}
+        for kind, meshes in stage.mesh_names(name).items():
+            kinds.setdefault(flow[meshes[0]].mesh_frequency, kind)
+        for frequency, kind in kinds.items():
+            place = f"{name} {kind}" if len(kinds) > 1 else name
+            for k in range(1, harmonics + 1):
+                types = phases.excitation(k, kind).types
+                orders[f"mesh {place} x {k} ({types})"] = name, k * frequency
+    return orders
+
+
+def mode_types(modes: MachineModes) -> dict[str, tuple[str, ...]]:
+    """Types of all modes as motions of each stage."""
+    return {name: modes.of_stage(name).types for name in modes.structure.machine.planets}
+
+
 def excited_share(modes: MachineModes, orders: Iterable[str]) -> Array:
     """Share of each mode (m, k) that an excitation strains; NaN for turning shafts."""
+    # Harmonics of a stage excite all of some types of modes, and nothing of others.
     unknown = np.full(len(modes.frequency), np.nan)
+    stages, types = stage_orders(modes.structure.machine, _TYPED), mode_types(modes)
     columns = []
-    for kind, _, name in (order.partition(" ") for order in orders):
-        part = f"meshes.{name.rpartition(' x ')[0]}"
-        columns.append(
-            modes.strain_share[:, modes.parts.index(part)] if kind == "mesh" else unknown
-        )
+    for order in orders:
+        kind, _, name = order.partition(" ")
+        if order in stages:
+            letters = {*order.rpartition("(")[2]}
+            reached = [bool({*_TYPES[each]} & letters) for each in types[stages[order][0]]]
+            columns.append(np.array(reached, dtype=float))
+        elif kind == "mesh":
+            part = f"meshes.{name.rpartition(' x ')[0]}"
+            columns.append(modes.strain_share[:, modes.parts.index(part)])
+        else:
+            columns.append(unknown)
     return np.stack(columns, axis=1)
 
 
@@ -165,7 +218,7 @@ def campbell_of(
     now = abs(structure.machine.operation.speed)
     if speeds is None:
         speeds = np.linspace(0.0, _TOP * now, _SPEEDS)
-    orders = excitations(structure)
+    orders = excitations(structure, _HARMONICS if structure.frame is None else _DRAWN)
     top = _BEYOND * max(orders.values()) * float(speeds[-1]) / (2.0 * np.pi)
     rows = machine_frequencies(structure, speeds)
     count = min(int((row <= top).sum()) for row in rows)
@@ -222,7 +275,7 @@ def axial_notes(modes: MachineModes) -> list[str]:
 
 def mode_rows(modes: MachineModes) -> list[list[str]]:
     """Rows of the table of modes under :data:`MODES_HEAD`."""
-    orders = excitations(modes.structure)
+    orders, types = excitations(modes.structure), mode_types(modes)
     turning = abs(modes.structure.machine.operation.speed) / (2.0 * np.pi)
     hertz = turning * np.array(list(orders.values()))
     # Meshes reach the modes that they strain, turning shafts any.
@@ -238,7 +291,11 @@ def mode_rows(modes: MachineModes) -> list[list[str]]:
                 f"{k + 1}",
                 f"{modes.frequency[k]:.5g}",
                 f"{100.0 * modes.damping_ratio[k]:.3g}",
-                energy_shares(modes, k) + (f"; {axial} along its axis" if axial else ""),
+                "; ".join(
+                    [energy_shares(modes, k)]
+                    + [f"{axial} along its axis"] * bool(axial)
+                    + [f"{stage} {of_modes[k]}" for stage, of_modes in types.items()]
+                ),
                 f"{list(orders)[nearest]}, {100.0 * distance[nearest]:+.1f} %",
             ]
         )
@@ -247,14 +304,57 @@ def mode_rows(modes: MachineModes) -> list[list[str]]:
 
 def mesh_orders(modes: MachineModes) -> tuple[MeshOrder, ...]:
     """Mesh harmonics of a machine with the shares of the meshes in its modes."""
+    # All meshes of a stage act together, under the name of the first one: by their phases they
+    # strain some modes and not others.
     machine = modes.structure.machine
     turning = abs(machine.operation.speed) / (2.0 * np.pi)
+    flow = machine.kinematics.meshes
     return tuple(
-        MeshOrder(mesh, harmonic, harmonic * load.mesh_frequency / turning, share)
-        for mesh, load in machine.kinematics.meshes.items()
-        for share in [modes.strain_share[:, modes.parts.index(f"meshes.{mesh}")]]
+        MeshOrder(
+            group[0][0],
+            harmonic,
+            harmonic * flow[group[0][0]].mesh_frequency / turning,
+            _strained(modes, group, harmonic),
+        )
+        for group in _in_step(machine)
         for harmonic in range(1, _HARMONICS + 1)
     )
+
+
+def _in_step(machine: Machine) -> list[list[tuple[str, ...]]]:
+    """Meshes that act together, those of a stage by kind; others by themselves."""
+    of_stages = [stage.mesh_names(name).values() for name, stage in machine.planets.items()]
+    planets = {mesh for kinds in of_stages for names in kinds for mesh in names}
+    groups: list[list[tuple[str, ...]]] = [[(m,)] for m in machine.meshes if m not in planets]
+    for kinds in of_stages:
+        same: dict[float, list[tuple[str, ...]]] = {}
+        for names in kinds:
+            frequency = machine.kinematics.meshes[names[0]].mesh_frequency
+            same.setdefault(frequency, []).append(names)
+        groups += same.values()
+    return groups
+
+
+def _strained(modes: MachineModes, group: list[tuple[str, ...]], harmonic: int) -> Array:
+    """Shares of the energy of the modes (m,) that a harmonic of meshes in step strains."""
+    if group[0] == group[0][:1] and len(group) == 1:
+        return modes.strain_share[:, modes.parts.index(f"meshes.{group[0][0]}")]
+    structure, frequency = modes.structure, modes.frequency
+    total = np.zeros(frequency.size)
+    for names in group:
+        stiffness = np.sqrt([structure.mesh_stiffness(name) for name in names])
+        offsets = np.array([structure.machine.meshes[name].offset for name in names])
+        waves = np.exp(2j * np.pi * harmonic * offsets) * stiffness
+        along = np.array([structure.mesh(name) for name in names])
+        total += np.abs((modes.shape @ along.T) @ waves) ** 2
+    modal = np.einsum("mi,ij,mj->m", modes.shape.conj(), structure.mass, modes.shape).real
+    count = sum(map(len, group))
+    share = 2.0 * total / count / (modal * (2.0 * np.pi * frequency) ** 2)
+    # Modes of one frequency are one resonance: the shares of all of them count.
+    first = np.flatnonzero(np.diff(frequency, prepend=-1.0) > _ROUNDING * frequency)
+    together = np.zeros(frequency.size)
+    together[first] = np.add.reduceat(share, first)
+    return together
 
 
 def structure_at_rest(case: MachineCase, progress: Progress = SILENT) -> MachineStructure:
@@ -270,7 +370,14 @@ def modes_facts(modes: MachineModes, campbell: MachineCampbell) -> dict[str, Any
     """Modes and excitations in SI for JSON."""
     structure, count = modes.structure, modes_in_reach(modes)
     turning = abs(structure.machine.operation.speed) / (2.0 * np.pi)
+    types = mode_types(modes)
+    stages = {
+        name: {str(k): stage.phases(structure.machine.gears).excitation(k).types
+               for k in range(1, _TYPED + 1)}
+        for name, stage in structure.machine.planets.items()
+    }  # fmt: skip
     return {
+        **({"excited_types": stages} if stages else {}),
         "speed": structure.machine.operation.speed,
         "excitations": {n: float(o) * turning for n, o in excitations(structure).items()},
         "modes": [
@@ -279,6 +386,7 @@ def modes_facts(modes: MachineModes, campbell: MachineCampbell) -> dict[str, Any
                 "frequency": float(modes.frequency[k]),
                 "damping_ratio": float(modes.damping_ratio[k]),
                 "strain_share": dict(zip(modes.parts, modes.strain_share[k].tolist(), strict=True)),
+                **({"types": {name: each[k] for name, each in types.items()}} if types else {}),
                 "speeds": dict(campbell.excited(float(modes.frequency[k]))),
             }
             for k in range(len(modes.frequency))

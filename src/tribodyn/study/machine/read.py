@@ -1,4 +1,4 @@
-"""Read a case file of any kind: a pair of gears, a machine, or a planetary stage."""
+"""Read a case file of any kind: a pair of gears, or a machine, which may be one stage."""
 
 from __future__ import annotations
 
@@ -13,13 +13,17 @@ from tribodyn.model import NO_OPTIONS
 from tribodyn.study.case.read import changed_file, key_lines, parse_toml
 from tribodyn.study.case.section import file_keys
 from tribodyn.study.case.user_input import Source
-from tribodyn.study.machine.case import MachineCase, is_machine
+from tribodyn.study.machine.case import MachineCase
 from tribodyn.study.machine.tables import HousingTable
 from tribodyn.study.machine.user_tables import changed_tables, flat_keys
-from tribodyn.study.planetary.case import PlanetaryCase
 
 if TYPE_CHECKING:
     from tribodyn.study.case.case import Case
+
+
+def is_machine(data: Mapping[str, Any]) -> bool:
+    """Whether tables of a case file describe a machine rather than a pair."""
+    return any(group in data for group in ("shafts", "meshes", "bearings", "planets"))
 
 
 def machine_files(data: Mapping[str, Any]) -> list[str]:
@@ -32,18 +36,13 @@ def machine_files(data: Mapping[str, Any]) -> list[str]:
     ]
 
 
-def is_double(stage: Any) -> bool:
-    """Whether a table of a stage has double planets."""
-    return isinstance(stage, Mapping) and stage.get("planet_type", "single") != "single"
-
-
 def read_any_case(
     text: str,
     name: str = "",
     folder: Path | None = None,
     changes: Mapping[str, Any] = NO_OPTIONS,
     by: str = "",
-) -> Case | MachineCase | PlanetaryCase:
+) -> Case | MachineCase:
     """Check the text of a case file of any kind, with values replaced by dotted key."""
     try:
         return _read(parse_toml(text, name), text, name, folder, changes, by)
@@ -66,14 +65,9 @@ def _read(
     folder: Path | None,
     changes: Mapping[str, Any],
     by: str,
-) -> Case | MachineCase | PlanetaryCase:
+) -> Case | MachineCase:
     source = Source(name or "case", partial(key_lines, text)).with_replaced(changes, by)
-    stages = data.get("planets")
-    bodies = [*stages.values()] if isinstance(stages, Mapping) else []
-    several = len(bodies) > 1 or any(is_double(body) for body in bodies)
-    if "planets" in data and not (is_machine(data) or several):
-        return PlanetaryCase(source, **changed_tables(data, changes, by=by))
-    if not (is_machine(data) or several):
+    if not is_machine(data):
         return changed_file(text, name, changes, by)
     place = Path(name).parent if folder is None else folder
     faults = data.get("faults")

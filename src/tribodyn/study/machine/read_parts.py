@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import MISSING, fields
 from typing import Any
 
@@ -13,6 +13,7 @@ from tribodyn.gear import Material
 from tribodyn.machine import ROLLING_BEARINGS, Bearing, Coupling, Gear, Section, Shaft
 from tribodyn.model import REQUIRED, Option, flag, integer, number, text
 from tribodyn.study.case.section import Section as Table
+from tribodyn.study.case.sections import MaterialData
 from tribodyn.study.case.values import (
     FaultError,
     KeyedProblems,
@@ -21,6 +22,7 @@ from tribodyn.study.case.values import (
     read_value,
     written,
 )
+from tribodyn.study.faults.section import PartFaultTable
 from tribodyn.study.machine.tables import BearingTable, CouplingTable, GearTable, ShaftTable
 
 LENGTH = number(
@@ -250,3 +252,39 @@ def table_of(kind: type[Table], body: Any, key: str, problems: KeyedProblems) ->
     count = len(problems)
     table = read_table(kind, body, key, {}, problems)
     return table if len(problems) == count else None
+
+
+def read_each(groups: Mapping[str, Any], group: str, read: Any, problems: KeyedProblems) -> Any:
+    """Parts of a group by name; those that cannot be read are left out."""
+    parts = {n: read(n, dict(body), problems) for n, body in groups[group].items()}
+    return {name: part for name, part in parts.items() if part is not None}
+
+
+def read_fault_table(name: str, body: dict[str, Any], problems: KeyedProblems) -> Any:
+    """Table of a fault."""
+    return table_of(PartFaultTable, body, f"faults.{name}", problems)
+
+
+def add_material(data: Mapping[str, Any], groups: Mapping[str, Any]) -> dict[str, Any]:
+    """Give shafts and gears the common material where they have none of their own; return it."""
+    shared = data.get("material", {})
+    values = shared if isinstance(shared, Mapping) else {}
+    common = {key: value for key, value in values.items() if key in ShaftTable.fields}
+    for name, body in groups["shafts"].items():
+        groups["shafts"][name] = {**common, **body}
+    material = {"density": Plain(MaterialData.fields["density"].default), **common}
+    for body in groups["gears"].values():
+        body.setdefault("density", material["density"])
+    return material
+
+
+def add_shafts(
+    shafts: dict[str, Any], gears: Mapping[str, Gear], stages: Sequence[Any], material: Any
+) -> tuple[str, ...]:
+    """Add rigid shafts that only gears name, or the members of stages; return their names."""
+    members = [gears[n].shaft for t in stages for n in (t.sun, t.ring) if n in gears]
+    members += [table.carrier for table in stages]
+    implied = members if shafts else [*(gear.shaft for gear in gears.values()), *members]
+    added = tuple(dict.fromkeys(name for name in implied if name not in shafts))
+    shafts.update(dict.fromkeys(added, material))
+    return added

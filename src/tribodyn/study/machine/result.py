@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, ClassVar
+from typing import TYPE_CHECKING, Any
 
 from tribodyn.drawing import draw, write_report_of
 from tribodyn.errors import Argument, InputError
@@ -18,22 +18,30 @@ from tribodyn.study.machine.motion import MachineMotion, machine_motion
 from tribodyn.study.machine.summary import summary_of
 from tribodyn.study.pipeline.parts_result import PartsResult
 from tribodyn.study.pipeline.save import new_directory
+from tribodyn.study.planetary.stage_result import StageResult
 
 if TYPE_CHECKING:
     from tribodyn.dynamics import Response, System
     from tribodyn.errors import ModelWarning
     from tribodyn.gear import Misalignment, MisalignmentStudy
-    from tribodyn.machine import Machine, MachineModes, PowerFlow, StaticBalance
+    from tribodyn.machine import (
+        Machine,
+        MachineModes,
+        PowerFlow,
+        RingSensorSignal,
+        StaticBalance,
+    )
     from tribodyn.machine.structure import MachineStructure
     from tribodyn.mesh import MeshTable
     from tribodyn.study.faults.machine_motion import MachineTurningMotion
     from tribodyn.study.machine.case import MachineCase
     from tribodyn.study.machine.load_cases import LoadCase
     from tribodyn.study.machine.modes import MachineCampbell
+    from tribodyn.types import Array
 
 
-#: Steps per cycle of the fastest mesh.
-STEPS = 128
+#: Steps per cycle of the fastest mesh, and of the only one of a stage by itself.
+STEPS, _OF_STAGE = 128, 200
 
 
 def steady_motion(
@@ -45,10 +53,16 @@ def steady_motion(
     if start is not None and start.names != tuple(system.names):
         start = None
     supports, frequency = clearance_supports(structure), structure.machine.clock.frequency
+    steps = steps_of(structure)
     if supports:
         system = without_clearance_supports(structure, system)
-        return clearance_motion(system, [*supports.values()], frequency, steps=STEPS, start=start)
-    return harmonic_balance(system, frequency, steps=STEPS, start=start)
+        return clearance_motion(system, [*supports.values()], frequency, steps=steps, start=start)
+    return harmonic_balance(system, frequency, steps=steps, start=start)
+
+
+def steps_of(structure: MachineStructure) -> int:
+    """Steps per cycle of the fastest mesh."""
+    return STEPS if structure.frame is None else _OF_STAGE
 
 
 @dataclass(frozen=True, eq=False)
@@ -76,7 +90,6 @@ class LoadResult:
         Motion of all coordinates over one period of the clock, where it is at hand.
     """
 
-    steps: ClassVar[int] = STEPS
     load: LoadCase
     structure: MachineStructure
     static: StaticBalance
@@ -95,6 +108,11 @@ class LoadResult:
     def machine(self) -> Machine:
         """The machine at this load."""
         return self.structure.machine
+
+    @property
+    def steps(self) -> int:
+        """Steps per cycle of the fastest mesh."""
+        return steps_of(self.structure)
 
     @property
     def clock_frequency(self) -> float:
@@ -127,6 +145,58 @@ class LoadResult:
         from tribodyn.machine import machine_modes
 
         return machine_modes(self.structure)
+
+    def stage(self, name: str | None = None) -> StageResult:
+        """Load sharing, motion, modes and ring sensor of a planetary stage.
+
+        Parameters
+        ----------
+        name : str, optional
+            Name of the stage; the first by default.
+
+        Returns
+        -------
+        StageResult
+
+        Raises
+        ------
+        InputError
+            If the machine has no such stage.
+        """
+        stages = [*self.machine.planets]
+        chosen = name if name is not None or not stages else stages[0]
+        if chosen not in stages:
+            why = f"Stages: {', '.join(stages) or 'none'}"
+            raise InputError(f'there is no stage "{chosen}"', Argument("name"), why, "Name one")
+        return StageResult(self, chosen)
+
+    def ring_sensor(
+        self,
+        sensor_angle: float = 0.0,
+        window: float | Callable[[Array], Array] | None = None,
+        steps: int = 256,
+    ) -> RingSensorSignal:
+        """Signal of a sensor on the ring of the first stage, which the planets pass.
+
+        Parameters
+        ----------
+        sensor_angle : float
+            Angle of the sensor from y towards z [rad].
+        window : float or function, optional
+            As for :func:`tribodyn.machine.ring_sensor_signal`.
+        steps : int
+            Samples of a mesh cycle.
+
+        Returns
+        -------
+        RingSensorSignal
+
+        Raises
+        ------
+        InputError
+            If there is no stage, or an argument is out of range.
+        """
+        return self.stage().ring_sensor(sensor_angle, window, steps)
 
     @property
     def mesh_orders(self) -> tuple[MeshOrder, ...]:

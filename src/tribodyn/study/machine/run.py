@@ -258,9 +258,12 @@ def _static(
 def structure_of(case: MachineCase, machine: Machine) -> MachineStructure:
     """Structure of a machine, reduced to the modes below the frequency limit of the case."""
     ratio, limit = case.motion.modal_damping_ratio, case.motion.frequency_limit
-    if limit is None:
-        return machine_structure(machine, damping_ratio=ratio)
-    return reduce_structure(MachineStructure(machine, ratio), limit)
+    stage = case.stages.get(case.lone_stage or "")
+    frame = None if stage is None else stage.table.carrier
+    if limit is not None or frame is not None:
+        structure = MachineStructure(machine, ratio, frame=frame)
+        return structure if limit is None else reduce_structure(structure, limit)
+    return machine_structure(machine, damping_ratio=ratio)
 
 
 def _law(inputs: MeshInputs, table: MeshTable, *, rehearsal: bool = False) -> dict[str, Any]:

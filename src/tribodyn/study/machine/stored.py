@@ -46,8 +46,12 @@ def write_machine(result: MachineResult, place: Path) -> None:
             for name, value in load.misalignment.items()
         }
         facts = {"misalignment": json.dumps(values)}
-        for mesh, table in enumerate(load.tables):
-            load.tables[table].save(place / _table_file(number, mesh, table))
+        files: dict[int, str] = {}  # planets with equal teeth have one table
+        for mesh, (name, table) in enumerate(load.tables.items()):
+            if id(table) not in files:
+                files[id(table)] = _table_file(number, mesh, name)
+                table.save(place / files[id(table)])
+        facts["tables"] = json.dumps({n: files[id(table)] for n, table in load.tables.items()})
         if number == 0:  # written last: it has the checksums of the others
             warnings = [(warning.code, warning.message) for warning in result.warnings]
             others = {path.name: _checksum(path) for path in sorted(place.iterdir())}
@@ -108,10 +112,10 @@ def _read_load(
         name: Misalignment(**value) if isinstance(value, dict) else value
         for name, value in json.loads(data.attrs["misalignment"]).items()
     }
-    tables = {
-        name: MeshTable.load(folder / _table_file(number, mesh, name))
-        for mesh, name in enumerate(misalignment)
-    }
+    names = {name: _table_file(number, mesh, name) for mesh, name in enumerate(misalignment)}
+    names |= json.loads(data.attrs.get("tables", "{}"))
+    stored = {file: MeshTable.load(folder / file) for file in dict.fromkeys(names.values())}
+    tables = {name: stored[file] for name, file in names.items()}
     static = static_with_teeth(case, load, tables, misalignment)
     structure = structure_of(case, static.linearized())
     system, motion = system_of(structure), _motion(data)

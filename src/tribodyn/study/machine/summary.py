@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from tribodyn.machine.plane_law import mean_in_space
+from tribodyn.study.planetary.common import common_figures
 from tribodyn.study.planetary.machine_stages import stage_figures
 
 if TYPE_CHECKING:
@@ -35,7 +36,8 @@ def summary_of(result: LoadResult) -> dict[str, float]:
         for name, figures in parts.items():
             prefix = f"{group}.{name}" if name else group
             values |= {f"{prefix}.{key}": value for key, value in figures.items()}
-    return {key: float(v) for key, v in values.items() if v is not None and np.isfinite(v)}
+    known = {key: float(v) for key, v in values.items() if v is not None and np.isfinite(v)}
+    return known | common_figures(result.machine, known)
 
 
 def _of_machine(result: LoadResult) -> Mapping[str, float | None]:

@@ -37,8 +37,6 @@ _OF_FLANKS = (
     "specific_heat",
     "modification",
 )
-#: Modifications by which the teeth of a gear differ.
-_DIFFERENT_TEETH = ("single_pitch_deviation", "cumulative_pitch_deviation", "run_out")
 
 
 def _is_set(table: Any, name: str) -> bool:
@@ -66,22 +64,6 @@ def unused_keys(data: Mapping[str, Any]) -> KeyedProblems:
     yield from _heat(data)
     yield from _planets(data)
     yield from _constant_meshes(data)
-
-
-def unused_keys_of_stage(data: Mapping[str, Any]) -> KeyedProblems:
-    """Keys of a planetary stage by itself that have no effect, besides those of a machine."""
-    why = "The motion of a stage by itself is in its plane"
-    remedy = "Remove it, or give the stage shafts and bearings, which make it a machine"
-    for name, body in _tables(data, "gears").items():
-        keys = ("shaft", "position", "transverse_moment_of_inertia")
-        yield from _refused(f"gears.{name}", body, keys, why, remedy)
-        of_flanks = body.get("modification")
-        place, alike = f"gears.{name}.modification", "All planets have equal teeth here"
-        yield from _refused(place, of_flanks, _DIFFERENT_TEETH, alike, remedy)
-    for name, body in _tables(data, "planets").items():
-        yield from _refused(f"planets.{name}", body, ("carrier_position",), why, remedy)
-    of_spectra = ("frequency_limit", "harmonics")
-    yield from _refused("dynamics", data.get("dynamics"), of_spectra, why, remedy)
 
 
 def _heat(data: Mapping[str, Any]) -> KeyedProblems:

@@ -22,7 +22,7 @@ from tribodyn.study.case.values import FaultError, KeyedProblems, Plain, read_va
 from tribodyn.study.case.write import written_number
 from tribodyn.study.machine.pair_cases import option_at
 from tribodyn.study.machine.read_parts import LENGTH, in_si
-from tribodyn.study.machine.tables import APART, LoadCaseTable
+from tribodyn.study.machine.tables import APART, STIFF, LoadCaseTable
 from tribodyn.study.machine.unused_keys import unused_keys
 
 if TYPE_CHECKING:
@@ -251,14 +251,35 @@ def default_assumptions(case: MachineCase) -> Iterator[Assumption]:
                 value = f"{support.radial_stiffness:g} N/m"
                 reason = f"support of shaft {stage.shaft_of(role)}, which has no bearing"
                 yield Assumption(f"bearings.{name}_{role}", value, "default", reason)
-        reason = "planets stay at their angles while all teeth turn: Coriolis forces are left out"
-        yield Assumption(f"planets.{name}: carrier", "fixed position", "default", reason)
+        if case.lone_stage is None:
+            reason = "planets stay at their angles while teeth turn: Coriolis forces are left out"
+            yield Assumption(f"planets.{name}: carrier", "fixed position", "default", reason)
+        yield from _of_stage(case, f"planets.{name}", case.data["planets"][name])
         if stage.is_stepped:
             reason = "ring meshes begin their cycle with the sun mesh of the first planet"
             yield Assumption(f"planets.{name}: phase of both gears", "0", "default", reason)
     yield from backlash_assumptions(case)
     if case.housing is None:
         yield Assumption("housing", "rigid", "default", "without [housing]")
+
+
+def _of_stage(case: MachineCase, key: str, body: Mapping[str, Any]) -> Iterator[Assumption]:
+    """What a stage does not give of its pins, its carrier and its gears."""
+    if "pin_stiffness" not in body:
+        yield Assumption(f"{key}.pin_stiffness", f"{STIFF:g} N/m", "default", "stiff")
+    if "pin_clearance" not in body:
+        yield Assumption(f"{key}.pin_clearance", "0 um", "default", "planets without clearance")
+    for name in ("carrier_mass", "carrier_moment_of_inertia"):
+        if name not in body:
+            reason = "a steel disc of the radius of the pins and the face width of the planets"
+            yield Assumption(f"{key}.{name}", "", "default", reason)
+    for role in ("sun", "planet", "ring_planet", "ring"):
+        gear = body.get(role)
+        if gear is not None and "mass" not in case.data["gears"][str(gear)]:
+            yield Assumption(f"gears.{gear}.mass", "", "default", "a solid body")
+    if case.lone_stage is not None and not body.get("helix_angle"):
+        why = "axial motion and tilting of the members are left out"
+        yield Assumption(f"{key}: motion", "in the plane", "default", why)
 
 
 def backlash_assumptions(case: PartsCase) -> Iterator[Assumption]:

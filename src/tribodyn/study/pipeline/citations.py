@@ -13,7 +13,6 @@ from tribodyn.study.case.gears import is_idle
 from tribodyn.study.case.provenance import changed_keys
 from tribodyn.study.case.section import section_at
 from tribodyn.study.machine.case import MachineCase
-from tribodyn.study.machine.user_tables import PartsCase
 
 if TYPE_CHECKING:
     from tribodyn.study.case.case import Case
@@ -36,9 +35,9 @@ def _library() -> dict[str, dict[str, Any]]:
     return tomllib.loads(text)
 
 
-def papers(case: Case | PartsCase) -> dict[str, dict[str, Any]]:
+def papers(case: Case | MachineCase) -> dict[str, dict[str, Any]]:
     """Papers behind the models that a case uses, each once."""
-    if isinstance(case, PartsCase):
+    if isinstance(case, MachineCase):
         entries = _package() | _values_source(case)
         for _, pair, _ in case.mesh_pairs():
             entries |= _papers_of_pair(pair, ("stiffness", "friction", "film"))
@@ -81,7 +80,7 @@ def _package() -> dict[str, dict[str, Any]]:
     return {"tribodyn": {"type": "misc", "author": "The tribodyn developers", "title": title}}
 
 
-def _papers_of_parts(case: PartsCase) -> list[str]:
+def _papers_of_parts(case: MachineCase) -> list[str]:
     """Keys of the papers behind shafts, bearings, reduction and planets."""
     planets = ["lin-parker", "parker-lin"]
     if not isinstance(case, MachineCase):
@@ -122,11 +121,11 @@ def _data_sources(case: Case) -> dict[str, dict[str, Any]]:
     return sources
 
 
-def _values_source(case: Case | PartsCase) -> dict[str, dict[str, Any]]:
+def _values_source(case: Case | MachineCase) -> dict[str, dict[str, Any]]:
     """The document behind the values of a case, and the values that differ from its own."""
     if not case.origin:
         return {}
-    changed = () if isinstance(case, PartsCase) else changed_keys(case)
+    changed = () if isinstance(case, MachineCase) else changed_keys(case)
     if not changed:
         return {"case": {"type": "misc", "title": f"Values of the case: {case.origin}"}}
     named = ", ".join(changed[:_NAMED])
@@ -174,7 +173,7 @@ def _bibtex(key: str, entry: dict[str, Any]) -> str:
     return f"@{entry['type']}{{{key},\n" + ",\n".join(fields) + "\n}"
 
 
-def cite(case: Case | PartsCase, style: str = "text") -> str:
+def cite(case: Case | MachineCase, style: str = "text") -> str:
     """Write the papers behind a case."""
     entries = papers(case)
     if style == "bibtex":

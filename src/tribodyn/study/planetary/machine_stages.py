@@ -28,7 +28,7 @@ from tribodyn.study.machine.tables import PlanetsTable
 
 if TYPE_CHECKING:
     from tribodyn.gear import CylindricalPair
-    from tribodyn.machine import MeshLoad
+    from tribodyn.machine import Machine, MeshLoad, PowerFlow
     from tribodyn.study.case.case import Case
     from tribodyn.study.case.user_input import Source
 
@@ -315,6 +315,38 @@ def read_stages(
     return stages
 
 
+def stage_by_itself(data: Mapping[str, Any]) -> str | None:
+    """Name of the stage of tables that describe nothing else; None of other machines."""
+    others = ("shafts", "meshes", "bearings", "couplings", "housing")
+    stages = data.get("planets", {})
+    alone = len(stages) == 1 and not any(data.get(group) for group in others)
+    return next(iter(stages)) if alone else None
+
+
+def floating_members(key: str, table: Any) -> KeyedProblems:
+    """Problems of members of a stage by itself that nothing holds across the axis."""
+    floating = [role for role in MEMBERS if getattr(table, f"{role}_support") == 0.0]
+    if len(floating) <= (table.count > 2):
+        return []
+    what = " and ".join(f"{role}_support = 0 N/m" for role in floating)
+    what += f" with {table.count} planet{'s' * (table.count != 1)}"
+    why = "The meshes of three or more planets centre one floating member, fewer none"
+    remedy = f"Give {floating[-1]}_support a stiffness, for example 1e6 N/m"
+    return [(f"{key}.{floating[-1]}_support", Problem(what, "", why, remedy))]
+
+
+def for_each_planet(tables: dict[str, Any]) -> dict[str, Any]:
+    """Tables in which one text for the errors of all planets is a list with one for each."""
+    stages = tables.get("planets")
+    for body in stages.values() if isinstance(stages, dict) else ():
+        for name in ("pin_errors", "thickness_errors"):
+            count = body.get("count") if isinstance(body, dict) else None
+            count = count.value if isinstance(count, Plain) else count
+            if isinstance(count, int) and isinstance(body.get(name), str):
+                body[name] = [body[name]] * min(max(count, 1), 99)
+    return tables
+
+
 def _double_problems(key: str, table: Any) -> KeyedProblems:
     """Double planets without a second gear, and single ones that have it."""
     if (table.planet_type == "single") == (table.ring_planet is None):
@@ -327,11 +359,27 @@ def _double_problems(key: str, table: Any) -> KeyedProblems:
     return [(f"{key}.planet_type", Problem(f"{what} with ring_planet", "", why, remedy))]
 
 
+def motion_of_stage(
+    machine: Machine, name: str, stage: PlanetaryStage, flow: PowerFlow
+) -> dict[str, float]:
+    """Ratio of a stage between input and output, power that rolls, speed of planets on pins."""
+    run = machine.operation
+    members = {stage.carrier, *(machine.gears[each].shaft for each in (stage.sun, stage.ring))}
+    start, end = (flow.shafts[shaft].speed for shaft in (run.input, run.output))
+    suns = [flow.meshes[mesh] for mesh in stage.mesh_names(name)["sun"]]
+    carrier, planet = (flow.shafts[shaft].speed for shaft in (stage.carrier, f"{name}_planet1"))
+    return {
+        **({"ratio": start / end} if {run.input, run.output} <= members else {}),
+        "rolling_power": sum(abs(mesh.torque[0] * mesh.speeds[0]) for mesh in suns),
+        "planet_speed": planet - carrier,
+    }
+
+
 def stage_figures(result: Any) -> dict[str, dict[str, float]]:
     """Figures of each stage of a machine under one load, in SI."""
     figures = {}
     machine, motion = result.machine, result.motion
-    flow, outward = result.power_flow, centrifugal_loads(machine)
+    outward = centrifugal_loads(machine)
     for name, stage in machine.planets.items():
         suns = stage.mesh_names(name)["sun"]
         rest = np.array([result.static.meshes[mesh].force for mesh in suns])
@@ -339,12 +387,12 @@ def stage_figures(result: Any) -> dict[str, dict[str, float]]:
         moving = motion.mean(motion.mesh_force[:, columns])
         pins = [motion.bearing.index(f"{name}_pin{i + 1}") for i in range(stage.count)]
         pin = motion.mean(motion.bearing_force[:, pins])
-        relative = flow.shafts[f"{name}_planet1"].speed - flow.shafts[stage.carrier].speed
+        sun = result.structure.gear(stage.sun)[1:3]
+        moved = result.response.fine.position @ sun.T
         figures[name] = {
-            "rolling_power": sum(
-                abs(flow.meshes[mesh].torque[0] * flow.meshes[mesh].speeds[0]) for mesh in suns
-            ),
-            "planet_speed": relative,
+            **motion_of_stage(machine, name, stage, result.power_flow),
+            "planets_unloaded": float((rest == 0.0).sum()),
+            "sun_orbit": float(np.hypot(*motion.rms(moved))),
             "load_factor": float(rest.max() / rest.mean()),
             "dynamic_load_factor": float(moving.max() / moving.mean()),
             "mean_pin_force": float(np.hypot(pin[:, 1], pin[:, 2]).max()),

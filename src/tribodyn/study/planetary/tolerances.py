@@ -10,13 +10,14 @@ from tribodyn.errors import Argument, InputError
 from tribodyn.machine import load_shares
 from tribodyn.machine.planetary.load_sharing import sampled_shares
 from tribodyn.record import Record, quantity, record
-from tribodyn.study.planetary.stage_modes import stage_modes
+from tribodyn.study.machine.modes import structure_at_rest
+from tribodyn.study.planetary.stage_result import plane_data
 from tribodyn.study.uncertain.lanes import draw
 from tribodyn.types import Array
 from tribodyn.uncertainty import distribution, sample
 
 if TYPE_CHECKING:
-    from tribodyn.study.planetary.case import PlanetaryCase
+    from tribodyn.study.machine.case import MachineCase
 
 #: Errors of the planets that may have tolerances.
 _KINDS = ("pin_errors", "thickness_errors")
@@ -62,7 +63,7 @@ class LoadShareStatistics(Record):
 
 
 def load_share_statistics(
-    case: PlanetaryCase | None = None,
+    case: MachineCase | None = None,
     *,
     planets: int | None = None,
     pin_errors: Any = "0 um",
@@ -75,9 +76,9 @@ def load_share_statistics(
 
     Parameters
     ----------
-    case : PlanetaryCase, optional
-        Stage with computed teeth, whose ``pin_errors`` and ``thickness_errors`` have spreads; then
-        only ``samples`` and ``seed`` are given besides.
+    case : MachineCase, optional
+        Machine with computed teeth, whose first stage has spreads of ``pin_errors`` and
+        ``thickness_errors``; then only ``samples`` and ``seed`` are given besides.
     planets : int, optional
         Number of planets, without a case.
     pin_errors, thickness_errors : str, float or distribution
@@ -105,12 +106,18 @@ def load_share_statistics(
     with other values that have spreads too.
     """
     if case is not None:
-        data = dict(stage_modes(case).data)
+        if not case.stages:
+            what, remedy = "the case has no planetary stage", "Give a case with [planets.NAME]"
+            raise InputError(what, Argument("case"), "", remedy)
+        name = next(iter(case.stages))
+        structure = structure_at_rest(case)
+        data = plane_data(structure, name)
+        suns = structure.machine.planets[name].mesh_names(name)["sun"]
         planets = int(data.pop("planets"))
         errors = (data.pop("pin_errors"), data.pop("thickness_errors"))
         stage = {**data, "carrier_speed": 0.0, **stage}
-        turn = (case.turn(case.operating_point), 1)
-        sampled = draw(case, _spread_errors(case), samples, seed=seed)
+        turn = (structure.machine.kinematics.meshes[suns[0]].sense, 1)
+        sampled = draw(case, _spread_errors(case, name), samples, seed=seed)
     else:
         if planets is None:
             what, remedy = "there is no stage", "Give a case, or planets and the data of the stage"
@@ -142,12 +149,12 @@ def load_share_statistics(
     return LoadShareStatistics(np.arange(1.0, samples + 1.0), pins, thick, shares)
 
 
-def _spread_errors(case: PlanetaryCase) -> dict[str, str]:
+def _spread_errors(case: MachineCase, name: str) -> dict[str, str]:
     """Errors of pins and teeth of a case that have a spread."""
-    names = tuple(f"planets.{case.name}.{kind}." for kind in _KINDS)
+    names = tuple(f"planets.{name}.{kind}." for kind in _KINDS)
     spreads = {key: text for key, text in case.uncertain.items() if key.startswith(names)}
     if not spreads:
-        what = f"no error of the pins or teeth of {case.name} has a spread"
-        remedy = f'Write planets.{case.name}.pin_errors = "0 um +- 10 um"'
+        what = f"no error of the pins or teeth of {name} has a spread"
+        remedy = f'Write planets.{name}.pin_errors = "0 um +- 10 um"'
         raise InputError(what, Argument("case"), "All stages would be equal", remedy)
     return spreads

@@ -28,15 +28,12 @@ from tribodyn.study.machine.run import MeshWarning, run_load
 from tribodyn.study.pipeline.assembly import whole_system
 from tribodyn.study.pipeline.motion import steps_of
 from tribodyn.study.pipeline.tooth_contact import mesh_of
-from tribodyn.study.planetary.case import PlanetaryCase
-from tribodyn.study.planetary.result import PlanetaryLoadResult
-from tribodyn.study.planetary.run import run_load as run_stage
 from tribodyn.study.studies.sweep_result import SweepPoint
 
 if TYPE_CHECKING:
     from tribodyn.dynamics import Response, System
     from tribodyn.study.case.case import Case
-    from tribodyn.study.machine.user_tables import PartsCase
+    from tribodyn.study.machine.case import MachineCase
 
 Value = TypeVar("Value")
 
@@ -89,7 +86,7 @@ def varied(
     return [members[index] for index in range(len(changes))]
 
 
-def identity(study: str, case: Case | PartsCase, over: Any, **options: Any) -> dict[str, Any]:
+def identity(study: str, case: Case | MachineCase, over: Any, **options: Any) -> dict[str, Any]:
     """Identity of a study; checkpoints are reused only if it is the same."""
     import tribodyn
 
@@ -129,27 +126,19 @@ def finished(done: Mapping[int, Value]) -> list[Value]:
     return [done[index] for index in range(count)]
 
 
-#: Result of a machine or of a planetary stage under one load.
-AnyLoadResult = LoadResult | PlanetaryLoadResult
-
-
 def result_under(
-    case: PartsCase,
+    case: MachineCase,
     progress: Progress,
     of_meshes: list[MeshWarning],
     start: Response | None = None,
-) -> AnyLoadResult:
-    """Compute a machine or a stage at its operating point, from a similar motion if any."""
-    load = case.operating_point
-    if isinstance(case, PlanetaryCase):
-        return run_stage(case, load, progress, of_meshes, start)
-    assert isinstance(case, MachineCase)
-    return run_load(case, load, progress, of_meshes, start)
+) -> LoadResult:
+    """Compute a machine at its operating point, from a similar motion if any."""
+    return run_load(case, case.operating_point, progress, of_meshes, start)
 
 
 def results_under(
-    case: PartsCase, changes: Sequence[Mapping[str, Any]], progress: Progress = SILENT
-) -> Iterator[tuple[AnyLoadResult | InputError | ComputationError, tuple[str, ...]]]:
+    case: MachineCase, changes: Sequence[Mapping[str, Any]], progress: Progress = SILENT
+) -> Iterator[tuple[LoadResult | InputError | ComputationError, tuple[str, ...]]]:
     """Results of a case at its operating point for changes of its keys, and warning codes."""
     start, stages = None, StageProgress(progress)
     for change in changes:
@@ -167,7 +156,7 @@ def results_under(
 
 
 def points_of_parts(
-    case: PartsCase,
+    case: MachineCase,
     keys: Sequence[str],
     places: Sequence[tuple[Any, ...]],
     progress: Progress = SILENT,

@@ -14,7 +14,7 @@ from tribodyn.study.machine.modes import STRAINED, MeshOrder
 from tribodyn.types import Array
 
 if TYPE_CHECKING:
-    from tribodyn.machine import MachineModes, PlanetaryModes
+    from tribodyn.machine import MachineModes
     from tribodyn.study.machine.motion import MachineMotion
 
 #: Harmonics of each mesh that are followed over the speed.
@@ -67,7 +67,7 @@ class MachineLevels(Record):
         Why a speed has no motion; empty if it has one.
     time : (n,) array, optional
         Time of a run-up [s]; None for steady motions.
-    modes : MachineModes or PlanetaryModes, optional
+    modes : MachineModes, optional
         Natural modes with the mesh stiffness of one speed in the range.
     mesh_orders : tuple of MeshOrder
         Mesh harmonics, each with its share in the strain energy of the modes.
@@ -94,7 +94,7 @@ class MachineLevels(Record):
     acceleration_line: Array = quantity("speed", "line", "node", unit="m/s^2")
     failed: Any = quantity("speed", unit="")
     time: Array | None = quantity("speed", unit="s", default=None)
-    modes: MachineModes | PlanetaryModes | None = field(default=None, repr=False)
+    modes: MachineModes | None = field(default=None, repr=False)
     mesh_orders: tuple[MeshOrder, ...] = field(default=(), repr=False)
 
     @property

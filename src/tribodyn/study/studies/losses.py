@@ -18,14 +18,14 @@ from tribodyn.study.studies.study_axes import read_speeds, read_torques
 if TYPE_CHECKING:
     from tribodyn.losses import GearboxLosses, RigPowerFlow
     from tribodyn.study.case.case import Case
-    from tribodyn.study.machine.user_tables import PartsCase
+    from tribodyn.study.machine.case import MachineCase
 
 #: Torques and speeds of a map relative to those of the case, which is one of the points.
 STEPS = np.linspace(0.25, 2.0, 8)
 
 
 def loss_map(
-    case: Case | PartsCase,
+    case: Case | MachineCase,
     *,
     torque: Any = None,
     speed: Any = None,
@@ -36,7 +36,7 @@ def loss_map(
 
     Parameters
     ----------
-    case : Case, MachineCase or PlanetaryCase
+    case : Case or MachineCase
         From :func:`tribodyn.load_case`. Teeth lose by its ``[friction]``, shafts and oil by its
         ``[losses]``; without that table the teeth alone are counted.
     torque, speed : float, str or list, optional

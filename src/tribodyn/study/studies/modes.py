@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from tribodyn.machine import MachineModes, PlanetaryModes, machine_modes
+from tribodyn.machine import MachineModes, machine_modes
 from tribodyn.progress import SILENT, Progress
 from tribodyn.study.machine.case import MachineCase
 from tribodyn.study.machine.modes import (
@@ -17,9 +17,6 @@ from tribodyn.study.machine.modes import (
     mesh_orders,
     structure_at_rest,
 )
-from tribodyn.study.machine.user_tables import PartsCase
-from tribodyn.study.planetary.case import PlanetaryCase
-from tribodyn.study.planetary.stage_modes import stage_modes
 from tribodyn.study.studies.case_grid import build_system
 from tribodyn.study.studies.study_axes import ends_of, operation_values
 
@@ -52,20 +49,20 @@ class Mode:
 
 
 def natural_modes(
-    case: Case | PartsCase, progress: Progress = SILENT
-) -> NaturalModes | MachineModes | PlanetaryModes:
+    case: Case | MachineCase, progress: Progress = SILENT
+) -> NaturalModes | MachineModes:
     """Find the natural frequencies of a case about its static load; no motion is computed.
 
     Parameters
     ----------
-    case : Case, MachineCase or PlanetaryCase
+    case : Case or MachineCase
         From :func:`tribodyn.load_case`.
     progress : Progress
         Receives the progress of the tooth contact; silent by default.
 
     Returns
     -------
-    NaturalModes, MachineModes or PlanetaryModes
+    NaturalModes or MachineModes
         With the mean stiffness of the mesh at this speed and load, contacts closed.
 
     Raises
@@ -82,13 +79,13 @@ def natural_modes(
     """
     from tribodyn.dynamics import natural_modes as compute
 
-    if isinstance(case, PartsCase):
+    if isinstance(case, MachineCase):
         return modes_at_rest(case, progress).modes
     return compute(build_system(case, progress=progress)[0])
 
 
 def campbell(
-    case: Case | PartsCase,
+    case: Case | MachineCase,
     between: tuple[Any, Any] | None = None,
     *,
     orders: Iterable[int] = ORDERS,
@@ -98,7 +95,7 @@ def campbell(
 
     Parameters
     ----------
-    case : Case, MachineCase or PlanetaryCase
+    case : Case or MachineCase
         From :func:`tribodyn.load_case`.
     between : tuple, optional
         Lowest and highest value of ``operation.speed``: floats in rad/s, or text with a unit; by
@@ -126,7 +123,7 @@ def campbell(
     >>> [(met.order, round(met.speed * 30 / np.pi)) for met in diagram.resonances]
     [(5, 3784), (4, 4730)]
     """
-    if isinstance(case, PartsCase):
+    if isinstance(case, MachineCase):
         if between is None:
             return parts_campbell(case, None, progress)
         low, high = ends_of(case, _SPEED, between)
@@ -185,25 +182,18 @@ def _describe_shares(shares: dict[str, float]) -> str:
 class ModesOfParts(NamedTuple):
     """Natural modes, and what the harmonics of the meshes strain of each of them."""
 
-    modes: MachineModes | PlanetaryModes
+    modes: MachineModes
     orders: tuple[MeshOrder, ...]
 
 
-def modes_at_rest(case: PartsCase, progress: Progress = SILENT) -> ModesOfParts:
+def modes_at_rest(case: MachineCase, progress: Progress = SILENT) -> ModesOfParts:
     """Natural modes of a machine or a stage with the teeth at its operating point."""
-    if isinstance(case, PlanetaryCase):
-        stage = stage_modes(case, progress)
-        return ModesOfParts(stage.modes, stage.orders())
-    assert isinstance(case, MachineCase)
     modes = machine_modes(structure_at_rest(case, progress))
     return ModesOfParts(modes, mesh_orders(modes))
 
 
 def parts_campbell(
-    case: PartsCase, speeds: Array | None = None, progress: Progress = SILENT
+    case: MachineCase, speeds: Array | None = None, progress: Progress = SILENT
 ) -> MachineCampbell:
     """Campbell diagram of a machine or a stage over the speed of its input [rad/s]."""
-    if isinstance(case, PlanetaryCase):
-        return stage_modes(case, progress).campbell(speeds)
-    assert isinstance(case, MachineCase)
     return campbell_of(structure_at_rest(case, progress), speeds)

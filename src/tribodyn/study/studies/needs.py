@@ -12,7 +12,7 @@ from tribodyn.errors import Argument, InputError, did_you_mean
 
 if TYPE_CHECKING:
     from tribodyn.study.case.case import Case
-    from tribodyn.study.machine.user_tables import PartsCase
+    from tribodyn.study.machine.case import MachineCase
 
 #: Kinds of cases: pairs of gears, and cases of parts with names.
 PAIRS = ("cylindrical pair", "hypoid pair", "mesh table")
@@ -53,22 +53,22 @@ STUDIES: dict[str, Need] = {
 }
 
 
-def kind_of(case: Case | PartsCase) -> str:
+def kind_of(case: Case | MachineCase) -> str:
     """Kind of a case, of :data:`KINDS`."""
     from tribodyn.study.case.case import Case
 
     if isinstance(case, Case):
         return dict(zip(("spur", "hypoid", "table"), PAIRS, strict=True))[case.gears.kind]
-    return PARTS[not hasattr(case, "machine")]
+    return case.kind.lower()
 
 
-def takes(study: str, case: Case | PartsCase) -> bool:
+def takes(study: str, case: Case | MachineCase) -> bool:
     """Whether a case, or one of its meshes, has what a study needs."""
     kind, need = kind_of(case), STUDIES[study]
     return kind in need.kinds or (need.of_mesh and kind in PARTS)
 
 
-def require(study: str, case: Case | PartsCase, where: Any = None) -> None:
+def require(study: str, case: Case | MachineCase, where: Any = None) -> None:
     """Refuse a case that lacks what a study needs."""
     if takes(study, case):
         return
@@ -87,18 +87,18 @@ class MeshPair(NamedTuple):
     gears: tuple[str, str]  #: tables of pinion and wheel, such as ``gears.z1``
 
 
-def mesh_names(case: Case | PartsCase) -> tuple[str, ...]:
+def mesh_names(case: Case | MachineCase) -> tuple[str, ...]:
     """Names of the meshes with computed teeth; of equal planets the first of each kind."""
     parts: Any = case
     if kind_of(case) in PAIRS:
         return (PAIR_MESH,)
-    if kind_of(case) == PARTS[1]:
-        return tuple(parts.pairs)
+    if (stage := parts.lone_stage) is not None:
+        return tuple(parts.machine().planets[stage].mesh_names(stage))
     groups = {parts.tooth_group(name): name for name in reversed(parts.meshes_with_teeth)}
     return tuple(reversed(groups.values()))
 
 
-def mesh_pair(study: str, case: Case | PartsCase, mesh: str | None = None) -> MeshPair:
+def mesh_pair(study: str, case: Case | MachineCase, mesh: str | None = None) -> MeshPair:
     """Pair of gears of the mesh that a study is about, misaligned as its shafts deflect."""
     require(study, case)
     parts: Any = case
@@ -118,7 +118,9 @@ def mesh_pair(study: str, case: Case | PartsCase, mesh: str | None = None) -> Me
     name = mesh or names[0]
     if kind_of(case) in PAIRS:
         return MeshPair(parts, ("gears.pinion", "gears.wheel"))
-    meshes = parts.meshes_with_teeth if hasattr(parts, "machine") else parts.pairs
+    if (stage := parts.lone_stage) is not None:
+        name = parts.machine().planets[stage].mesh_names(stage).get(name, (name,))[0]
+    meshes = parts.meshes_with_teeth
     listed = {m: MeshPair(p, g) for m, (_, p, g) in zip(meshes, parts.mesh_pairs(), strict=True)}
     pair, gears = listed[name]
     kind, need = kind_of(pair), STUDIES[study]
@@ -132,8 +134,6 @@ def _deflected(case: Any, mesh: str, pair: Case) -> Case:
     """Pair of a mesh with the misalignment by the shafts of its machine."""
     from tribodyn.study.machine.run import balanced_machine
 
-    if not hasattr(case, "machine"):
-        return pair
     load = case.operating_point
     balanced = balanced_machine(case, load, rehearsal=True)
     deflected: Case = case.pair(mesh, load, balanced.misalignment[mesh])

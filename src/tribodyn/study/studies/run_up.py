@@ -18,10 +18,9 @@ from tribodyn.study.case.to_models import locate_errors
 from tribodyn.study.case.values import FaultError, Plain, read_value
 from tribodyn.study.faults.clock import turning_clock, varies_over_turns
 from tribodyn.study.first_use import compile_in_parallel
-from tribodyn.study.machine.user_tables import PartsCase
+from tribodyn.study.machine.case import MachineCase
 from tribodyn.study.pipeline.assembly import rotation_of
-from tribodyn.study.planetary.result import PlanetaryLoadResult
-from tribodyn.study.planetary.stage_signals import common_lines
+from tribodyn.study.planetary.common import common_lines, line_labels
 from tribodyn.study.studies.case_grid import Member, result_under, results_under, varied
 from tribodyn.study.studies.levels import MachineLevels, levels_of
 from tribodyn.study.studies.study_axes import read_axes
@@ -30,7 +29,7 @@ if TYPE_CHECKING:
     from tribodyn.dynamics import RunUp, SpeedSweep, System
     from tribodyn.study.case.case import Case
     from tribodyn.study.machine.motion import MachineMotion
-    from tribodyn.study.studies.case_grid import AnyLoadResult
+    from tribodyn.study.machine.result import LoadResult
     from tribodyn.types import Array
 
 
@@ -42,7 +41,7 @@ _COARSE = 0.02
 
 
 def run_up(
-    case: Case | PartsCase,
+    case: Case | MachineCase,
     between: tuple[Any, Any] | None = None,
     duration: float = 10.0,
     *,
@@ -57,7 +56,7 @@ def run_up(
 
     Parameters
     ----------
-    case : Case, MachineCase or PlanetaryCase
+    case : Case or MachineCase
         From :func:`tribodyn.load_case`.
     between : tuple
         Lowest and highest value of ``operation.speed``: floats in rad/s, or text with a unit.
@@ -104,7 +103,7 @@ def run_up(
     from tribodyn.dynamics import speed_ramp
 
     low, high = _ends(between)
-    if isinstance(case, PartsCase):
+    if isinstance(case, MachineCase):
         ends = (low, high)
         return parts_run_up(case, ends, duration, down=down, hold=hold, progress=progress)
     count = int(tables)
@@ -215,7 +214,7 @@ def supports(system: System) -> dict[str, Any]:
 
 
 def speed_sweep(
-    case: Case | PartsCase,
+    case: Case | MachineCase,
     between: tuple[Any, Any],
     points: int = 60,
     *,
@@ -227,7 +226,7 @@ def speed_sweep(
 
     Parameters
     ----------
-    case : Case, MachineCase or PlanetaryCase
+    case : Case or MachineCase
         From :func:`tribodyn.load_case`.
     between : tuple
         Lowest and highest value of ``operation.speed``: floats in rad/s, or text with a unit.
@@ -267,7 +266,7 @@ def speed_sweep(
         )
     (axis,) = read_axes(case, {_SPEED: (*between, points)})
     speeds = np.array(axis.values, dtype=float)
-    if isinstance(case, PartsCase):
+    if isinstance(case, MachineCase):
         return parts_speed_sweep(case, speeds, progress)
     nodes = np.geomspace(speeds[0], speeds[-1], tables) if tables > 1 else [speeds.mean()]
     with locate_errors(case), collected():
@@ -283,11 +282,13 @@ def speed_sweep(
         )
 
 
-def parts_speed_sweep(case: PartsCase, speeds: Array, progress: Progress = SILENT) -> MachineLevels:
+def parts_speed_sweep(
+    case: MachineCase, speeds: Array, progress: Progress = SILENT
+) -> MachineLevels:
     """Levels of the steady motions of a machine or stage over the speed of its input [rad/s]."""
     progress.start("Speeds", speeds.size)
     failed: list[str] = []
-    middle: list[AnyLoadResult] = []
+    middle: list[LoadResult] = []
 
     def motions() -> Iterator[MachineMotion | None]:
         changes = [{"operation.speed": float(n)} for n in speeds]
@@ -311,7 +312,7 @@ def parts_speed_sweep(case: PartsCase, speeds: Array, progress: Progress = SILEN
 
 
 def parts_run_up(
-    case: PartsCase,
+    case: MachineCase,
     ends: tuple[float, float],
     duration: float,
     *,
@@ -346,12 +347,12 @@ def parts_run_up(
     return _levels_of_result(levels, result)
 
 
-def _levels_of_result(levels: MachineLevels, result: AnyLoadResult) -> MachineLevels:
+def _levels_of_result(levels: MachineLevels, result: LoadResult) -> MachineLevels:
     """Levels with the modes of a result, and what its meshes excite."""
-    changes: dict[str, Any] = {}
-    if isinstance(result, PlanetaryLoadResult):
-        changes = common_lines(levels, result.motion.planet.size)
-    return replace(levels, modes=result.modes, mesh_orders=result.mesh_orders, **changes)
+    labels = line_labels(result.machine)
+    orders = tuple(o._replace(mesh=labels.get(o.mesh, o.mesh)) for o in result.mesh_orders)
+    common = common_lines(levels, result.machine)
+    return replace(levels, modes=result.modes, mesh_orders=orders, **common)  # type: ignore[arg-type]
 
 
 def _periods(

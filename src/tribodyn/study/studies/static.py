@@ -26,7 +26,7 @@ if TYPE_CHECKING:
     from tribodyn.mesh import ComprehensiveStiffness, FilmOverOperation
     from tribodyn.stiffness import HarrisMap
     from tribodyn.study.case.case import Case
-    from tribodyn.study.machine.user_tables import PartsCase
+    from tribodyn.study.machine.case import MachineCase
 
 
 #: Torques of a map over those of the case.
@@ -46,7 +46,7 @@ class CaseTipReliefOptimum(TipReliefOptimum):
     tables: tuple[str, str] = ("gears.pinion", "gears.wheel")
 
     @property
-    def case(self) -> Case | PartsCase:
+    def case(self) -> Case | MachineCase:
         """The case that was studied, with the relief that was found."""
         tables = dict(zip(GEARS, self.tables, strict=True))
         relieved = tables.values() if self.gears == "both" else (tables[self.gears],)
@@ -56,14 +56,14 @@ class CaseTipReliefOptimum(TipReliefOptimum):
             "tip_relief_length": format_quantity(self.length, "m", "mm"),
             "tip_relief_shape": self.shape,
         }
-        changed: Case | PartsCase = self.studied.replace(
+        changed: Case | MachineCase = self.studied.replace(
             {f"{gear}.modification.{n}": v for gear in relieved for n, v in values.items()}
         )
         return changed
 
 
 def harris_map(
-    case: Case | PartsCase,
+    case: Case | MachineCase,
     torque: Any = None,
     *,
     phases: int | None = None,
@@ -73,7 +73,7 @@ def harris_map(
 
     Parameters
     ----------
-    case : Case, MachineCase or PlanetaryCase
+    case : Case or MachineCase
         From :func:`tribodyn.load_case`; its ``[stiffness]`` sets the compliance of the teeth,
         ``gears.line_stiffness`` that of hypoid gears.
     torque : list of float or str, optional
@@ -131,7 +131,7 @@ def _hypoid_map(case: Case, torques: list[float], phases: int | None) -> HarrisM
 
 
 def optimize_tip_relief(
-    case: Case | PartsCase,
+    case: Case | MachineCase,
     torque: Any = None,
     *,
     amount: Any = None,
@@ -143,7 +143,7 @@ def optimize_tip_relief(
 
     Parameters
     ----------
-    case : Case, MachineCase or PlanetaryCase
+    case : Case or MachineCase
         From :func:`tribodyn.load_case`.
     torque : tuple or list, optional
         Two ends of a range, or more torques, on the gear named by ``operation.speed_of``: floats
@@ -211,7 +211,7 @@ def _lengths(name: str, ends: Any) -> tuple[float, float] | None:
 
 
 def comprehensive_stiffness(
-    case: Case | PartsCase,
+    case: Case | MachineCase,
     *,
     torque: Any = None,
     speed: Any = None,
@@ -224,7 +224,7 @@ def comprehensive_stiffness(
 
     Parameters
     ----------
-    case : Case, MachineCase or PlanetaryCase
+    case : Case or MachineCase
         From :func:`tribodyn.load_case`; its ``[film]`` says how the film is found.
     torque : float, str or list, optional
         Torques on the gear named by ``operation.speed_of``: floats in N*m, or text with a unit.
@@ -282,7 +282,7 @@ def comprehensive_stiffness(
 
 
 def film_over_operation(
-    case: Case | PartsCase,
+    case: Case | MachineCase,
     *,
     torque: Any = None,
     speed: Any = None,
@@ -293,7 +293,7 @@ def film_over_operation(
 
     Parameters
     ----------
-    case : Case, MachineCase or PlanetaryCase
+    case : Case or MachineCase
         From :func:`tribodyn.load_case`; its ``[film]`` says how the film is found.
     torque, speed, mesh, progress
         As :func:`comprehensive_stiffness` takes them.

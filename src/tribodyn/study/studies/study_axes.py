@@ -15,8 +15,8 @@ from tribodyn.errors import InputError
 from tribodyn.study.case.section import section_at
 from tribodyn.study.case.sections import Operation
 from tribodyn.study.case.values import FaultError, Plain, read_value
+from tribodyn.study.machine.case import MachineCase
 from tribodyn.study.machine.pair_cases import unknown_key
-from tribodyn.study.machine.user_tables import PartsCase
 
 if TYPE_CHECKING:
     from tribodyn.study.case.case import Case
@@ -70,7 +70,7 @@ class Axis:
 
 
 def ends_of(
-    case: Case | PartsCase, key: str, ends: Sequence[Any], *, by: str = ""
+    case: Case | MachineCase, key: str, ends: Sequence[Any], *, by: str = ""
 ) -> tuple[float, ...]:
     """Read numbers of one key as the case file does, each on its own."""
     values = [member_value(case, key, end, by) for end in ends]
@@ -83,10 +83,10 @@ def ends_of(
     return tuple(float(value) for value in values)
 
 
-def member_value(case: Case | PartsCase, key: str, value: Any, by: str) -> Any:
+def member_value(case: Case | MachineCase, key: str, value: Any, by: str) -> Any:
     """Read a value of one key; conflicts with other keys are found when it is computed."""
     spec = case.option_of(key)
-    if spec is None and isinstance(case, PartsCase):
+    if spec is None and isinstance(case, MachineCase):
         raise InputError(replace(unknown_key(case, key), where=_location(by)))
     if spec is None and section_at(tuple(key.split("."))) is not None:
         remedy = f"Name one of its keys, such as {key}.{_first_key(case, key)}"
@@ -119,12 +119,14 @@ def _location(by: str) -> str:
     return by or "argument over"
 
 
-def _first_key(case: Case | PartsCase, key: str) -> str:
+def _first_key(case: Case | MachineCase, key: str) -> str:
     section = section_at(tuple(key.split(".")))
     return next(iter(section.fields)) if section else ""
 
 
-def read_axes(case: Case | PartsCase, over: Mapping[str, Any], *, by: str = "") -> tuple[Axis, ...]:
+def read_axes(
+    case: Case | MachineCase, over: Mapping[str, Any], *, by: str = ""
+) -> tuple[Axis, ...]:
     """Read the keys that vary with their values, and limit the number of points."""
     if not over:
         raise InputError("nothing varies", "argument over", "", _EXAMPLE)
@@ -139,7 +141,7 @@ def _check_number(points: int, by: str) -> None:
         raise InputError(f"{points} values", _location(by), why, "Take fewer points")
 
 
-def read_axis(case: Case | PartsCase, key: str, entry: Any, by: str) -> Axis:
+def read_axis(case: Case | MachineCase, key: str, entry: Any, by: str) -> Axis:
     """Read a range ``(first, last, points)`` or a list of values of one key."""
     if isinstance(entry, tuple) and len(entry) == 3:
         values = _range(case, key, entry, by)
@@ -157,7 +159,9 @@ def read_axis(case: Case | PartsCase, key: str, entry: Any, by: str) -> Axis:
     return Axis(key, values, unit, display_unit)
 
 
-def _range(case: Case | PartsCase, key: str, entry: tuple[Any, ...], by: str) -> tuple[float, ...]:
+def _range(
+    case: Case | MachineCase, key: str, entry: tuple[Any, ...], by: str
+) -> tuple[float, ...]:
     first, last, points = entry
     if isinstance(points, bool) or int(points) != points or points < 2:
         why = "A range has at least two points, both ends included"
@@ -172,7 +176,7 @@ def _range(case: Case | PartsCase, key: str, entry: tuple[Any, ...], by: str) ->
     return tuple(np.linspace(low, high, int(points)).tolist())
 
 
-def points_of(case: Case | PartsCase, key: str, values: Any, *, by: str) -> list[float]:
+def points_of(case: Case | MachineCase, key: str, values: Any, *, by: str) -> list[float]:
     """Read the values of a key; a list may have a single value."""
     if isinstance(values, list) and len(values) == 1:
         return list(ends_of(case, key, values, by=by))

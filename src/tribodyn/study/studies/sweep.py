@@ -20,7 +20,7 @@ from tribodyn.mesh.film.film_lookup import shared_films
 from tribodyn.model import known_elsewhere
 from tribodyn.progress import SILENT, Progress
 from tribodyn.study.first_use import compile_in_parallel
-from tribodyn.study.machine.user_tables import PartsCase
+from tribodyn.study.machine.case import MachineCase
 from tribodyn.study.pipeline.run import (
     PendingRun,
     PreparedRun,
@@ -47,7 +47,7 @@ _SHARED_FILM_POINTS = 4
 
 @with_old_names
 def sweep(
-    case: Case | PartsCase,
+    case: Case | MachineCase,
     over: str | Mapping[str, Any] = "operation.speed",
     between: tuple[Any, Any] | None = None,
     points: int = 40,
@@ -61,7 +61,7 @@ def sweep(
 
     Parameters
     ----------
-    case : Case, MachineCase or PlanetaryCase
+    case : Case or MachineCase
         From :func:`tribodyn.load_case`.
     over : str or mapping
         Dotted key that varies; or several, each with ``(first, last, points)``, a tuple, or a
@@ -113,9 +113,9 @@ def sweep(
     return Sweep(case, axes, _compute(axes, *sources, study, partial, progress, checkpoints))
 
 
-def _sources(case: Case | PartsCase, keys: Sequence[str]) -> tuple[PointsAt, CaseAt | None]:
+def _sources(case: Case | MachineCase, keys: Sequence[str]) -> tuple[PointsAt, CaseAt | None]:
     """What computes a case at values of its keys, and the pair whose kernels it needs first."""
-    if isinstance(case, PartsCase):
+    if isinstance(case, MachineCase):
         return partial(points_of_parts, case, keys), None
     pending_at = partial(_pending_at, case, keys)
     return partial(_points, pending_at), pending_at
@@ -172,7 +172,7 @@ def _compute(
 
 
 def points_under(
-    case: Case | PartsCase, changes: Sequence[Mapping[str, Any]], progress: Progress = SILENT
+    case: Case | MachineCase, changes: Sequence[Mapping[str, Any]], progress: Progress = SILENT
 ) -> list[SweepPoint]:
     """Compute a case for several changes of the same keys; a failed point holds its reason."""
     done: dict[int, SweepPoint] = {}

@@ -83,7 +83,7 @@ class Sweep(Record):
 
     Parameters
     ----------
-    case : Case, MachineCase or PlanetaryCase
+    case : Case or MachineCase
         The case that was varied.
     axes : tuple of Axis
         Keys that vary, each with its values.

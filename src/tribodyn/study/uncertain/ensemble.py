@@ -14,7 +14,7 @@ from tribodyn.drawing import figures_of
 from tribodyn.errors import Argument, InputError, quiet, require_one_of
 from tribodyn.progress import SILENT, Progress
 from tribodyn.record import Record, fact, quantity, record
-from tribodyn.study.machine.user_tables import PartsCase
+from tribodyn.study.machine.case import MachineCase
 from tribodyn.study.uncertain.cycles import SIGNALS, steady_cycles
 from tribodyn.study.uncertain.lanes import draw, lanes_of, points_of_values
 from tribodyn.study.uncertain.machine_ensemble import MachineEnsemble, ensemble_of
@@ -223,7 +223,7 @@ class CaseEnsemble(Record):
 
 
 def ensemble(
-    case: Case | PartsCase,
+    case: Case | MachineCase,
     distributions: Mapping[str, Any] | None = None,
     size: int = 64,
     *,
@@ -235,7 +235,7 @@ def ensemble(
 
     Parameters
     ----------
-    case : Case, MachineCase or PlanetaryCase
+    case : Case or MachineCase
         From :func:`tribodyn.load_case`.
     distributions : mapping, optional
         Inputs that are spread, as :func:`tribodyn.uncertainty.sample` reads them: keys of the
@@ -290,7 +290,7 @@ def ensemble(
         why, remedy = "", 'Give {"friction.coefficient": "0.05 +- 0.83 %"}'
         raise InputError("nothing is spread", Argument("distributions"), why, remedy)
     values = draw(case, spread, require_whole("size", size, 3), method=method, seed=seed)
-    if isinstance(case, PartsCase):
+    if isinstance(case, MachineCase):
         return _of_machine(case, values, int(seed), progress)
     lanes = lanes_of(case, values, progress)
     signals = steady_cycles(lanes, _PHASES, progress)
@@ -309,7 +309,7 @@ def ensemble(
 
 
 def _of_machine(
-    case: PartsCase, values: Mapping[str, Array], seed: int, progress: Progress
+    case: MachineCase, values: Mapping[str, Array], seed: int, progress: Progress
 ) -> MachineEnsemble:
     """Figures of a machine or a stage at the median of the values, and at each of them."""
     medians = {key: float(np.median(column)) for key, column in values.items()}

@@ -16,8 +16,8 @@ from tribodyn.study.case.case import Case
 from tribodyn.study.case.provenance import effective
 from tribodyn.study.case.to_models import locate_errors
 from tribodyn.study.case.user_input import spread_problem
+from tribodyn.study.machine.case import MachineCase
 from tribodyn.study.machine.pair_cases import unknown_key
-from tribodyn.study.machine.user_tables import PartsCase
 from tribodyn.study.pipeline.motion import steps_of
 from tribodyn.study.studies.case_grid import Member, built, contact_without_speed, varied
 from tribodyn.study.studies.sweep import points_under
@@ -61,7 +61,7 @@ class Lanes:
 
 
 def draw(
-    case: Case | PartsCase,
+    case: Case | MachineCase,
     spread: Mapping[str, Any],
     size: int,
     *,
@@ -72,12 +72,12 @@ def draw(
     return sample(distributions_of(case, spread), size, method=method, seed=seed)
 
 
-def distributions_of(case: Case | PartsCase, spread: Mapping[str, Any]) -> dict[str, Any]:
+def distributions_of(case: Case | MachineCase, spread: Mapping[str, Any]) -> dict[str, Any]:
     """Distributions of keys of a case and of factors, each in the unit that it has there."""
     distributions = {}
     for key, text in spread.items():
         spec = None if key in SCALES else case.option_of(str(key))
-        if spec is None and key not in SCALES and isinstance(case, PartsCase):
+        if spec is None and key not in SCALES and isinstance(case, MachineCase):
             raise InputError(replace(unknown_key(case, str(key)), where=f"distributions {key}"))
         if spec is None and key not in SCALES:
             # Raises an error that lists the keys.
@@ -121,7 +121,7 @@ def lanes_of(case: Case, values: Mapping[str, Array], progress: Progress = SILEN
     return Lanes(members, frequency, used, _steps(members, frequency, factors))
 
 
-def check_spread_key(case: Case | PartsCase, key: str, column: Array) -> None:
+def check_spread_key(case: Case | MachineCase, key: str, column: Array) -> None:
     """Raise if a key is no number of the case, or its least or greatest value is out of range."""
     spec = case.option_of(key)
     value = effective(case).get(key) if isinstance(case, Case) else None
@@ -136,7 +136,7 @@ def check_spread_key(case: Case | PartsCase, key: str, column: Array) -> None:
 
 
 def points_of_values(
-    case: Case | PartsCase, values: Mapping[str, Array], progress: Progress = SILENT
+    case: Case | MachineCase, values: Mapping[str, Array], progress: Progress = SILENT
 ) -> list[SweepPoint]:
     """Compute a case at values of its keys, each as a case of its own."""
     for key, column in values.items():

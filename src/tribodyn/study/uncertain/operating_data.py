@@ -10,7 +10,7 @@ import numpy as np
 from tribodyn.checks import require_whole
 from tribodyn.errors import ComputationError, warn
 from tribodyn.progress import SILENT, Progress
-from tribodyn.study.machine.user_tables import PartsCase
+from tribodyn.study.machine.case import MachineCase
 from tribodyn.study.pipeline.summary_figures import figure_of
 from tribodyn.study.studies.sweep_result import OF_PARTS, level_keys
 from tribodyn.study.uncertain.cycles import steady_cycles
@@ -35,14 +35,14 @@ RESPONSE = {
 _LOW, _HIGH, _PHASES = 0.7, 1.3, 8
 
 
-def default_ranges(case: Case | PartsCase) -> dict[str, str]:
+def default_ranges(case: Case | MachineCase) -> dict[str, str]:
     """Ranges of torque and speed about the case, of a pair also of what its teeth depend on."""
-    load = case.operating_point if isinstance(case, PartsCase) else case.operation
+    load = case.operating_point if isinstance(case, MachineCase) else case.operation
     ranges = {
         "operation.torque": _about(float(load.torque), "N*m"),
         "operation.speed": _about(float(load.speed), "rad/s"),
     }
-    if isinstance(case, PartsCase):
+    if isinstance(case, MachineCase):
         return ranges
     ranges |= dict.fromkeys(("friction_scale", "stiffness_scale"), f"{_LOW} .. {_HIGH}")
     if case.gears.composite_roughness is not None and case.friction.law not in ("none", "constant"):
@@ -55,7 +55,7 @@ def _about(value: float, unit: str) -> str:
 
 
 def operating_data(
-    case: Case | PartsCase,
+    case: Case | MachineCase,
     over: Mapping[str, Any] | None = None,
     size: int = 256,
     *,
@@ -66,7 +66,7 @@ def operating_data(
 
     Parameters
     ----------
-    case : Case, MachineCase or PlanetaryCase
+    case : Case or MachineCase
         From :func:`tribodyn.load_case`.
     over : mapping, optional
         Ranges such as ``{"operation.speed": "400 rpm .. 3000 rpm"}``, of keys of the case or of
@@ -110,7 +110,7 @@ def operating_data(
         "size": count,
         "seed": int(seed),
     }
-    if isinstance(case, PartsCase):
+    if isinstance(case, MachineCase):
         return _of_parts(case, inputs, settings, progress)
     lanes = lanes_of(case, inputs, progress)
     cycles = steady_cycles(lanes, _PHASES, progress)
@@ -126,7 +126,7 @@ def operating_data(
 
 
 def _of_parts(
-    case: PartsCase, inputs: Mapping[str, Array], settings: dict[str, Any], progress: Progress
+    case: MachineCase, inputs: Mapping[str, Array], settings: dict[str, Any], progress: Progress
 ) -> DataSet:
     """Levels of the parts of a machine or a stage, at the points that can be computed."""
     progress.start("Operating points", settings["size"])

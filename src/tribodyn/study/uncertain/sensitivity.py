@@ -21,7 +21,7 @@ from tribodyn.uncertainty import sobol_indices as indices_of
 
 if TYPE_CHECKING:
     from tribodyn.study.case.case import Case
-    from tribodyn.study.machine.user_tables import PartsCase
+    from tribodyn.study.machine.case import MachineCase
 
 #: Probability of the intervals of the indices.
 _LEVEL = 0.95
@@ -78,7 +78,7 @@ class CaseSensitivity(Record):
 
 
 def sobol_indices(
-    case: Case | PartsCase,
+    case: Case | MachineCase,
     figures: str | Sequence[str] | None = None,
     distributions: Mapping[str, Any] | None = None,
     size: int = 64,
@@ -90,7 +90,7 @@ def sobol_indices(
 
     Parameters
     ----------
-    case : Case, MachineCase or PlanetaryCase
+    case : Case or MachineCase
         From :func:`tribodyn.load_case`.
     figures : str or sequence of str, optional
         Figures of the summary; by default those that a sweep shows, as far as they vary.
@@ -179,7 +179,7 @@ class _Runs:
     """Summaries of a case by the values of its keys, each computed once."""
 
     def __init__(
-        self, case: Case | PartsCase, distributions: dict[str, Any], progress: Progress
+        self, case: Case | MachineCase, distributions: dict[str, Any], progress: Progress
     ) -> None:
         self.case, self.distributions, self.progress = case, distributions, progress
         self.summaries: dict[tuple[float, ...], Mapping[str, float]] = {}

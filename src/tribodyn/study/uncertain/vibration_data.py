@@ -29,7 +29,7 @@ from tribodyn.types import Array
 if TYPE_CHECKING:
     from tribodyn.dynamics.time.engines import FixedMarcher
     from tribodyn.study.case.case import Case
-    from tribodyn.study.machine.user_tables import PartsCase
+    from tribodyn.study.machine.case import MachineCase
 
 #: Stiffness and friction as the source of the data set spreads them.
 SPREAD = {"stiffness_scale": "1 +- 0.83 %", "friction_scale": "1 +- 0.83 %"}
@@ -137,7 +137,7 @@ def vibration_data(
 
 
 def data_set(
-    kind: str, case: Case | PartsCase, columns: dict[str, Array], settings: dict[str, Any]
+    kind: str, case: Case | MachineCase, columns: dict[str, Array], settings: dict[str, Any]
 ) -> DataSet:
     """Columns with their units and their origin."""
     signal_units = {**_TIME_COLUMNS, **SIGNALS}

@@ -1,0 +1,8 @@
+"""Names of an earlier version: a planetary stage is a machine."""
+
+from __future__ import annotations
+
+from tribodyn.study.machine.case import MachineCase
+from tribodyn.study.machine.result import LoadResult, MachineResult
+
+PlanetaryCase, PlanetaryResult, PlanetaryLoadResult = MachineCase, MachineResult, LoadResult
