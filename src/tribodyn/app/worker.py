@@ -164,19 +164,16 @@ def _written(blocks: Any, folder: Path) -> list[dict[str, Any]]:
 
 def _overlay(order: Mapping[str, Any], folder: Path, tell: Tell) -> None:
     """Overlay stored results."""
-    from tribodyn import plot
     from tribodyn.cases.stored_result import load_result
+    from tribodyn.drawing import FIGURES
     from tribodyn.report.figure_blocks import block_of_figure
-    from tribodyn.study.pipeline.result import Result
     from tribodyn.study.result_comparison import compare_results, difference_rows
 
     results = [load_result(place) for place in order["results"]]
     comparison = compare_results(*results, names=order["names"])
-    pairs = isinstance(results[0], Result)
-    figure = plot.result_comparison if pairs else plot.machine_comparison
-    block = block_of_figure(
-        figure.name, figure.heading, comparison.plot(), figure.caption_of(comparison)
-    )
+    drawn = comparison.plot()
+    figure: Any = FIGURES[comparison.results[0]._COMPARISON]
+    block = block_of_figure(figure.name, figure.heading, drawn, figure.caption_of(comparison))
     rows = list(difference_rows(comparison.values, comparison.figures))
     content = {
         "sentences": [] if rows else ["The results are equal."],

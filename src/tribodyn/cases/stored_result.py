@@ -104,7 +104,7 @@ Give the directory that tribodyn run or Result.save wrote.
         raise InputError("this result cannot be read back", str(folder), why, _REMEDY) from None
     parts = case, mesh, system, response, damping, warnings, friction
     result = Result(*parts, coupling=coupling, heat=heat)
-    vars(result)["_summary"] = summary
+    vars(result)["figures"] = summary
     return result
 
 

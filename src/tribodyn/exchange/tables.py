@@ -15,7 +15,7 @@ from tribodyn.drawing import FIGURES, draw, figures_of
 from tribodyn.errors import InputError, OutputExistsError
 from tribodyn.files import atomic_write
 from tribodyn.record import Record
-from tribodyn.study import MachineResult, Result
+from tribodyn.study import ResultOfCase
 from tribodyn.study.pipeline.summary_figures import figure_of
 from tribodyn.validated_files import csv_text
 
@@ -25,12 +25,12 @@ _nothing = "".format  # for a figure without conditions
 Table = tuple[list[str], list[Sequence[Any]]]  # heads with units, columns
 
 
-def write_tables(result: Result | MachineResult | Record, folder: str | PathLike[str]) -> Path:
+def write_tables(result: ResultOfCase | Record, folder: str | PathLike[str]) -> Path:
     """Write all tables and figures of a result into a new folder, as CSV and as JSON.
 
     Parameters
     ----------
-    result : Result, MachineResult or Record
+    result : ResultOfCase or Record
         A computed or loaded result; also sweeps, bifurcations, maps and all other results with
         ``to_xarray``.
     folder : path
@@ -70,10 +70,8 @@ def write_tables(result: Result | MachineResult | Record, folder: str | PathLike
     return target
 
 
-def _tables(
-    result: Result | MachineResult | Record,
-) -> Iterator[tuple[str, Table]]:
-    if not isinstance(result, Result | MachineResult):
+def _tables(result: ResultOfCase | Record) -> Iterator[tuple[str, Table]]:
+    if not isinstance(result, ResultOfCase):
         yield from _of_data("table", result.to_xarray())
         return
     summary = result.summary()
@@ -89,21 +87,18 @@ def _tables(
             ],
         ),
     )
-    if isinstance(result, MachineResult):
-        yield from _of_loads(result)
-        return
-    yield from _of_data("mesh", result.mesh.to_xarray())
-    yield from _of_data("motion", result.to_xarray())
+    yield from _of_loads(result)
 
 
-def _of_loads(result: MachineResult) -> Iterator[tuple[str, Table]]:
-    """Mesh tables and motions of a machine or stage; those of load cases by their number."""
-    for number, load in enumerate((result.operation, *result.load_cases)):
+def _of_loads(result: ResultOfCase) -> Iterator[tuple[str, Table]]:
+    """Mesh tables and signals of all loads; those of load cases by their number."""
+    for number, load in enumerate(result.loads.values()):
         prefix = f"load_{number}_" if number else ""
-        for mesh, name in enumerate(load.tables):
-            plain = name if name.replace("_", "").replace("-", "").isalnum() else str(mesh + 1)
-            yield from _of_data(f"{prefix}mesh_{plain}", load.tables[name].to_xarray())
-        yield from _of_data(f"{prefix}motion", load.motion.to_xarray())
+        for place, (name, table) in enumerate(load.tables.items(), 1):
+            plain = name if name.replace("_", "").replace("-", "").isalnum() else str(place)
+            kind = "mesh" if name == result._MESH else f"mesh_{plain}"
+            yield from _of_data(f"{prefix}{kind}", table.to_xarray())
+        yield from _of_data(f"{prefix}motion", load.signals)
 
 
 def _of_data(kind: str, data: Any) -> Iterator[tuple[str, Table]]:

@@ -19,6 +19,7 @@ if TYPE_CHECKING:
     from tribodyn.study.machine.motion import MachineMotion
     from tribodyn.study.machine.result import LoadResult, MachineResult
     from tribodyn.study.machine.user_tables import PartsCase
+    from tribodyn.study.pipeline.parts_result import ResultOfCase
     from tribodyn.study.pipeline.result import Result
     from tribodyn.study.pipeline.run import run
     from tribodyn.study.pipeline.summary import SUMMARY, summary_figure
@@ -77,6 +78,7 @@ __all__ = [
     "RecordingSet",
     "Result",
     "ResultComparison",
+    "ResultOfCase",
     "StageResult",
     "Sweep",
     "TurningClock",
@@ -129,6 +131,7 @@ _NAMES = {
     "machine.user_tables": "PartsCase",
     "uncertain.machine_ensemble": "MachineEnsemble",
     "studies.levels": "MachineLevels",
+    "pipeline.parts_result": "ResultOfCase",
     "pipeline.result": "Result",
     "pipeline.run": "run",
     "pipeline.summary": "SUMMARY summary_figure",

@@ -12,6 +12,7 @@ from tribodyn.drawing import draw
 from tribodyn.errors import Argument, InputError, shortened
 from tribodyn.record import Parts, Record, html_table, record
 from tribodyn.study.machine.result import MachineResult
+from tribodyn.study.pipeline.parts_result import ResultOfCase
 from tribodyn.study.pipeline.result import Result
 from tribodyn.study.pipeline.summary_figures import by_topic, figure_of
 
@@ -96,9 +97,7 @@ class ResultComparison(Record):
         -------
         plotly.graph_objects.Figure
         """
-        pairs = isinstance(self.results[0], Result)
-        name = "result_comparison" if pairs else "machine_comparison"
-        return draw(self, name, *arguments, **options)
+        return draw(self, self.results[0]._COMPARISON, *arguments, **options)
 
     def _parts(self) -> Parts:
         parts = Parts({}, {"result": (("result",), list(self.names), {})}, {})
@@ -151,8 +150,14 @@ def compare_results(*results: AnyResult, names: Sequence[str] | None = None) -> 
     >>> compare_results(base, reduced, names=("as printed", "60 N m")).values
     {'operation.torque': (10.6, 60.0)}
     """
-    kind = MachineResult if results and isinstance(results[0], MachineResult) else Result
-    invalid = [result for result in results if not isinstance(result, kind)]
+    kinds = {each._COMPARISON for each in results[:1] if isinstance(each, ResultOfCase)} or {
+        Result._COMPARISON
+    }
+    invalid = [
+        each
+        for each in results
+        if not isinstance(each, ResultOfCase) or each._COMPARISON not in kinds
+    ]
     if invalid:
         what = f"results holds {shortened(repr(invalid[0]))}"
         why = "Expected: results of tribodyn.run, of pairs or of machines"

@@ -115,6 +115,11 @@ class LoadResult:
         return steps_of(self.structure)
 
     @property
+    def signals(self) -> Any:
+        """Signals by part with units."""
+        return self.motion.to_xarray()
+
+    @property
     def clock_frequency(self) -> float:
         """Periods of the motion in a second [Hz]."""
         return self.machine.clock.frequency
@@ -353,7 +358,7 @@ class MachineResult(PartsResult):
         return spectra.assign_attrs(teeth=[abs(gear.teeth) for gear in gears])
 
     def plot(self, figure: str = "machine") -> Any:
-        """Draw a figure: ``machine``, ``machine_orders``, ``bearing_forces``, ...
+        """Draw a figure: ``machine``, ``machine_orders``, ``machine_forces``, ...
 
         Parameters
         ----------

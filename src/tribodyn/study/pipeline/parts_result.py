@@ -1,26 +1,192 @@
-"""What the results of machines and of planetary stages share: summary, sources, tables."""
+"""What the results of all cases share: loads, summary, sources, recordings, figures."""
 
 from __future__ import annotations
 
-from functools import cached_property
+from abc import ABC, abstractmethod
+from collections.abc import Callable, Mapping, Sequence
+from functools import cached_property, partial
 from typing import TYPE_CHECKING, Any, ClassVar
 
+from tribodyn.drawing import FIGURES, draw, figures_of
 from tribodyn.record import html_table
-from tribodyn.study.pipeline.result import Result
 from tribodyn.study.pipeline.summary_figures import summary_rows
 
 if TYPE_CHECKING:
+    from tribodyn.dynamics import Response, System
+    from tribodyn.measurement import Recording
+    from tribodyn.mesh import MeshTable
     from tribodyn.study.case.provenance import Assumption
     from tribodyn.study.faults.sensors import Sensors
+    from tribodyn.types import Array
+
+_PLOT = "plot_"
 
 
-class PartsResult:
+class ResultOfCase(ABC):
+    """Base class of results: loads, summary, sources, recordings and figures."""
+
+    #: Name of the only mesh, of a pair.
+    _MESH: ClassVar[str] = ""
+    #: Figure that compares results of the kind.
+    _COMPARISON: ClassVar[str] = "machine_comparison"
+
+    case: Any
+    turning_motion: Any
+
+    @property
+    @abstractmethod
+    def loads(self) -> Mapping[str, Any]:
+        """Results by load; ``"operation"`` is the operating point."""
+
+    @property
+    @abstractmethod
+    def _sensors(self) -> Sensors:
+        """What there is to sense."""
+
+    @cached_property
+    def _summary(self) -> dict[str, float]:
+        figures: dict[str, float] = {}
+        for number, (name, load) in enumerate(self.loads.items()):
+            prefix = f"load_cases.{name.removeprefix('load_cases.')}." if number else ""
+            figures |= {f"{prefix}{key}": value for key, value in load.figures.items()}
+        return figures
+
+    def summary(self) -> dict[str, float]:
+        """All figures as one flat dictionary.
+
+        Returns
+        -------
+        dict of str to float
+            In SI; :data:`tribodyn.study.SUMMARY` has unit and meaning of those of a pair. Of parts
+            the keys are dotted; those of load cases begin with ``load_cases.NAME.``.
+        """
+        return dict(self._summary)
+
+    def cite(self, style: str = "text") -> str:
+        """Name the papers behind this result.
+
+        Parameters
+        ----------
+        style : str
+            ``"text"`` or ``"bibtex"``.
+
+        Raises
+        ------
+        InputError
+            If there is no such style.
+        """
+        from tribodyn.study.pipeline.citations import cite
+
+        return cite(self.case, style)
+
+    def rows(self) -> list[tuple[str, str, str, str]]:
+        """Topic, key, value with unit and meaning of each figure of the summary.
+
+        Returns
+        -------
+        list of (str, str, str, str)
+        """
+        return summary_rows(self._summary)
+
+    def recording(
+        self,
+        sensor: str | Sequence[str],
+        duration: float,
+        sample_rate: float = 25_600.0,
+        *,
+        sensor_angle: float = 0.0,
+        window: float | Callable[[Array], Array] | None = None,
+        tacho: str | None = None,
+        noise: float = 0.0,
+        speed_fluctuation: float = 0.0,
+        tacho_jitter: float = 0.0,
+        seed: int = 0,
+    ) -> Recording:
+        """Sample the motion over whole turns as a measuring system would.
+
+        Parameters
+        ----------
+        sensor : str or sequence of str
+            Names in ``turning_motion.sensors``; several make several channels. Of a pair a signal
+            in the data of the result, such as ``"acceleration_loa_pinion"``, ``"mesh_force"`` or
+            ``"dynamic_transmission_error"``, or a rotation such as ``"pinion_theta"``, whose
+            acceleration is recorded; ``"pinion_y"`` and ``"transmission_error"`` stand for the
+            same signals. Of a machine ``"bearings.A.acceleration_y"``,
+            ``"housing.NODE.acceleration_30deg"``, ``"meshes.first.mesh_force"``, ... Of a
+            planetary stage ``"ring.acceleration"``, ``"planet_1.sun_mesh_force"``, ...
+        duration : float
+            Length of the recording [s].
+        sample_rate : float
+            Samples per second [Hz]. What lies above half of it is filtered off.
+        sensor_angle : float
+            Angle of a sensor on a ring [rad]; the first planet begins at 0.
+        window : float or function, optional
+            How a sensor on a ring feels a passing planet, as for
+            :func:`tribodyn.machine.ring_sensor_signal`.
+        tacho : str, optional
+            Gear of a pair, shaft of a machine or member of a stage with the tacho, or the planet
+            for its turns about the pin; the pinion or the input by default.
+        noise : float
+            Standard deviation of white noise, in the unit of the sensor.
+        speed_fluctuation : float
+            Standard deviation of slow changes of the speed, over the speed [1].
+        tacho_jitter : float
+            Standard deviation of the edges of the tacho over a turn [1].
+        seed : int
+            Number of the draw of the start, the noise and all that scatters.
+
+        Returns
+        -------
+        Recording
+            One channel for each sensor, and ``tacho`` with one pulse a turn.
+
+        Raises
+        ------
+        InputError
+            If there is no such sensor or shaft, a value is out of range, or the case has gears
+            from a table.
+
+        Examples
+        --------
+        >>> import tribodyn
+        >>> case = tribodyn.load_case("fzg-roughness").replace({
+        ...     "faults.crack.kind": "crack", "faults.crack.gear": "pinion",
+        ...     "faults.crack.tooth": 1, "faults.crack.depth": "1 mm"})
+        >>> tribodyn.run(case).recording("acceleration_loa_pinion", 1.0)  # doctest: +SKIP
+        """
+        from tribodyn.study.faults.machine_section import defects_of
+        from tribodyn.study.faults.recording import Scatter, recording_of
+        from tribodyn.study.faults.sensors import check_sensors
+
+        check_sensors(self._sensors, sensor, tacho)  # before the longest part
+        motion = self.turning_motion.sensed_from(tacho, sensor_angle, window)
+        scatter = Scatter(noise, speed_fluctuation, tacho_jitter, seed)
+        return recording_of(motion, defects_of(self.case), sensor, duration, sample_rate, scatter)
+
+    def __getattr__(self, name: str) -> Any:
+        """Find ``plot_<name>`` among the figures that draw a run."""
+        if not name.startswith(_PLOT):
+            raise AttributeError(f"{type(self).__name__} has no attribute {name!r}")
+        figure, figures = name.removeprefix(_PLOT), figures_of(self)
+        if figure in figures:
+            return partial(draw, self, figure)
+        if figure in FIGURES:
+            other: Any = FIGURES[figure]
+            raise AttributeError(f"{type(self).__name__} has no {name}. {other.missing(self)}")
+        listed = ", ".join(f"{_PLOT}{each}" for each in figures)
+        raise AttributeError(f"{type(self).__name__} has no figure {name!r}; it has {listed}")
+
+    def __dir__(self) -> list[str]:
+        """Attributes and figures."""
+        return sorted({*super().__dir__(), *(f"{_PLOT}{name}" for name in figures_of(self))})
+
+
+class PartsResult(ResultOfCase):
     """Result of a case of parts at its operating point and under its load cases."""
 
     case: Any
     operation: Any
     load_cases: tuple[Any, ...]
-    recording: ClassVar[Any] = Result.recording
 
     @property
     def _sensors(self) -> Sensors:
@@ -28,21 +194,45 @@ class PartsResult:
         return sensors
 
     @property
+    def loads(self) -> Mapping[str, Any]:
+        """Results by load: ``"operation"``, and each load case by its name."""
+        named = {each.load.name: each for each in self.load_cases}
+        if (same := named.pop("operation", None)) is not None:
+            named["load_cases.operation"] = same
+        return {"operation": self.operation, **named}
+
+    @property
+    def tables(self) -> Mapping[str, MeshTable]:
+        """Tooth contact by the name of the mesh at the operating point."""
+        tables: Mapping[str, MeshTable] = self.operation.tables
+        return tables
+
+    @property
+    def mesh(self) -> MeshTable | None:
+        """Tooth contact of the first mesh whose teeth are computed; None if there is none."""
+        return next(iter(self.tables.values()), None)
+
+    @property
+    def system(self) -> System:
+        """Equations of motion at the operating point."""
+        system: System = self.operation.system
+        return system
+
+    @property
+    def response(self) -> Response:
+        """Motion of all coordinates at the operating point."""
+        response: Response = self.operation.response
+        return response
+
+    @property
+    def signals(self) -> Any:
+        """Signals by part at the operating point with units, as :meth:`to_xarray`."""
+        return self.to_xarray()
+
+    @property
     def motion(self) -> Any:
         """Motion at the operating point."""
         return self.operation.motion
-
-    @cached_property
-    def _summary(self) -> dict[str, float]:
-        figures = dict(self.operation.figures)
-        for each in self.load_cases:
-            prefix = f"load_cases.{each.load.name}"
-            figures |= {f"{prefix}.{key}": value for key, value in each.figures.items()}
-        return figures
-
-    def summary(self) -> dict[str, float]:
-        """All figures in SI by dotted key; those of load cases begin with ``load_cases.NAME.``."""
-        return dict(self._summary)
 
     @property
     def assumptions(self) -> tuple[Assumption, ...]:
@@ -50,19 +240,9 @@ class PartsResult:
         assumptions: tuple[Assumption, ...] = self.case.assumptions
         return assumptions
 
-    def cite(self, style: str = "text") -> str:
-        """Name the papers behind this result, as ``"text"`` or ``"bibtex"``."""
-        from tribodyn.study.pipeline.citations import cite
-
-        return cite(self.case, style)
-
     def to_xarray(self) -> Any:
         """Motion at the operating point with units."""
         return self.motion.to_xarray()
-
-    def rows(self) -> list[tuple[str, str, str, str]]:
-        """Topic, key, value with unit and meaning of each figure of the summary."""
-        return summary_rows(self._summary)
 
     def _repr_html_(self) -> str:
         """Table of the summary by part for notebooks."""

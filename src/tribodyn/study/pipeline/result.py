@@ -4,39 +4,34 @@ from __future__ import annotations
 
 import json
 import os
-from collections.abc import Callable, Sequence
-from functools import cached_property, partial
+from collections.abc import Mapping
+from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NoReturn
 
-from tribodyn.drawing import FIGURES, draw, figures_of, write_report_of
+from tribodyn.drawing import write_report_of
 from tribodyn.errors import collected
 from tribodyn.record import Parts, html_table, record
 from tribodyn.study.case.hypoid import mounting
 from tribodyn.study.case.provenance import Assumption, assumptions
 from tribodyn.study.faults.sensors import PairSensors
 from tribodyn.study.pipeline.computed import Computed
+from tribodyn.study.pipeline.parts_result import ResultOfCase
 from tribodyn.study.pipeline.response_series import parts_of, stored, to_csv
 from tribodyn.study.pipeline.save import new_directory
 from tribodyn.study.pipeline.summary import summarize
-from tribodyn.study.pipeline.summary_figures import summary_rows
 from tribodyn.study.pipeline.summary_labels import in_words
 from tribodyn.validated_files import write_dataset
 
 if TYPE_CHECKING:
     from tribodyn.dynamics import Campbell, NaturalModes
     from tribodyn.gear import ToothContact
-    from tribodyn.measurement import Recording
-    from tribodyn.mesh import HypoidFriction
+    from tribodyn.mesh import HypoidFriction, MeshTable
     from tribodyn.study.faults.motion import TurningMotion
-    from tribodyn.types import Array
-
-
-_PLOT = "plot_"
 
 
 @record
-class Result(Computed):
+class Result(ResultOfCase, Computed):
     """What :func:`tribodyn.run` returns.
 
     Every figure that draws a run is a method: ``result.plot_mesh_force()``.
@@ -65,19 +60,28 @@ class Result(Computed):
         Heat balance of gears and oil, if ``lubricant.heat_transfer`` is given.
     """
 
+    _MESH = "mesh"
+    _COMPARISON = "result_comparison"
+
     @cached_property
-    def _summary(self) -> dict[str, float]:
+    def figures(self) -> dict[str, float]:
+        """All figures of the motion, in SI."""
         return summarize(self)
 
-    def summary(self) -> dict[str, float]:
-        """All figures as one flat dictionary.
+    @property
+    def loads(self) -> Mapping[str, Result]:
+        """The result by its load, which is that of ``[operation]``."""
+        return {"operation": self}
 
-        Returns
-        -------
-        dict of str to float
-            In SI; :data:`tribodyn.study.SUMMARY` has unit and meaning of each.
-        """
-        return dict(self._summary)
+    @property
+    def tables(self) -> Mapping[str, MeshTable]:
+        """Tooth contact by the name of the mesh; a pair has the mesh ``"mesh"``."""
+        return {self._MESH: self.mesh}
+
+    @property
+    def signals(self) -> Any:
+        """Series of the motion with units, as :meth:`to_xarray`."""
+        return self.to_xarray()
 
     @property
     def assumptions(self) -> tuple[Assumption, ...]:
@@ -135,81 +139,6 @@ class Result(Computed):
         """What there is to sense."""
         return PairSensors(self.response.names)
 
-    def recording(
-        self,
-        sensor: str | Sequence[str],
-        duration: float,
-        sample_rate: float = 25_600.0,
-        *,
-        sensor_angle: float = 0.0,
-        window: float | Callable[[Array], Array] | None = None,
-        tacho: str | None = None,
-        noise: float = 0.0,
-        speed_fluctuation: float = 0.0,
-        tacho_jitter: float = 0.0,
-        seed: int = 0,
-    ) -> Recording:
-        """Sample the motion over whole turns as a measuring system would.
-
-        Parameters
-        ----------
-        sensor : str or sequence of str
-            Names in ``turning_motion.sensors``; several make several channels. Of a pair a signal
-            in the data of the result, such as ``"acceleration_loa_pinion"``, ``"mesh_force"`` or
-            ``"dynamic_transmission_error"``, or a rotation such as ``"pinion_theta"``, whose
-            acceleration is recorded; ``"pinion_y"`` and ``"transmission_error"`` stand for the
-            same signals. Of a machine ``"bearings.A.acceleration_y"``,
-            ``"housing.NODE.acceleration_30deg"``, ``"meshes.first.mesh_force"``, ... Of a
-            planetary stage ``"ring.acceleration"``, ``"planet_1.sun_mesh_force"``, ...
-        duration : float
-            Length of the recording [s].
-        sample_rate : float
-            Samples per second [Hz]. What lies above half of it is filtered off.
-        sensor_angle : float
-            Angle of a sensor on a ring [rad]; the first planet begins at 0.
-        window : float or function, optional
-            How a sensor on a ring feels a passing planet, as for
-            :func:`tribodyn.machine.ring_sensor_signal`.
-        tacho : str, optional
-            Gear of a pair, shaft of a machine or member of a stage with the tacho, or the planet
-            for its turns about the pin; the pinion or the input by default.
-        noise : float
-            Standard deviation of white noise, in the unit of the sensor.
-        speed_fluctuation : float
-            Standard deviation of slow changes of the speed, over the speed [1].
-        tacho_jitter : float
-            Standard deviation of the edges of the tacho over a turn [1].
-        seed : int
-            Number of the draw of the start, the noise and all that scatters.
-
-        Returns
-        -------
-        Recording
-            One channel for each sensor, and ``tacho`` with one pulse a turn.
-
-        Raises
-        ------
-        InputError
-            If there is no such sensor or shaft, a value is out of range, or the case has gears
-            from a table.
-
-        Examples
-        --------
-        >>> import tribodyn
-        >>> case = tribodyn.load_case("fzg-roughness").replace({
-        ...     "faults.crack.kind": "crack", "faults.crack.gear": "pinion",
-        ...     "faults.crack.tooth": 1, "faults.crack.depth": "1 mm"})
-        >>> tribodyn.run(case).recording("acceleration_loa_pinion", 1.0)  # doctest: +SKIP
-        """
-        from tribodyn.study.faults.machine_section import defects_of
-        from tribodyn.study.faults.recording import Scatter, recording_of
-        from tribodyn.study.faults.sensors import check_sensors
-
-        check_sensors(self._sensors, sensor, tacho)  # before the longest part
-        motion = self.turning_motion.sensed_from(tacho, sensor_angle, window)
-        scatter = Scatter(noise, speed_fluctuation, tacho_jitter, seed)
-        return recording_of(motion, defects_of(self.case), sensor, duration, sample_rate, scatter)
-
     def _parts(self) -> Parts:
         """Parts of the motion, ramps of a force law as one contact, and the summary."""
         return parts_of(self, self._summary)
@@ -223,23 +152,6 @@ class Result(Computed):
             One line for each step; units are in brackets in the first line.
         """
         return to_csv(stored(self._parts(), self.response))
-
-    def cite(self, style: str = "text") -> str:
-        """Name the papers behind this result.
-
-        Parameters
-        ----------
-        style : str
-            ``"text"`` or ``"bibtex"``.
-
-        Raises
-        ------
-        InputError
-            If there is no such style.
-        """
-        from tribodyn.study.pipeline.citations import cite
-
-        return cite(self.case, style)
 
     def save(
         self, directory: str | os.PathLike[str], *, force: bool = False, csv: bool = False
@@ -276,15 +188,6 @@ class Result(Computed):
             write_report_of(self, place / "report.html")
         return target
 
-    def rows(self) -> list[tuple[str, str, str, str]]:
-        """Topic, key, value with unit and meaning of each figure of the summary.
-
-        Returns
-        -------
-        list of (str, str, str, str)
-        """
-        return summary_rows(self._summary)
-
     def _repr_html_(self) -> str:
         """Table of the summary by topic for notebooks."""
         rows = [(topic, in_words(name), *rest) for topic, name, *rest in self.rows()]
@@ -293,23 +196,6 @@ class Result(Computed):
     def __reduce__(self) -> NoReturn:
         """Refuse to be pickled: a result holds functions of the models."""
         raise TypeError("a Result cannot be pickled; keep it with save(), or pass its case")
-
-    def __getattr__(self, name: str) -> Any:
-        """Find ``plot_<name>`` among the figures that draw a run."""
-        if not name.startswith(_PLOT):
-            raise AttributeError(f"Result has no attribute {name!r}")
-        figure, figures = name.removeprefix(_PLOT), figures_of(self)
-        if figure in figures:
-            return partial(draw, self, figure)
-        if figure in FIGURES:
-            other: Any = FIGURES[figure]
-            raise AttributeError(f"Result has no {name}. {other.missing(self)}")
-        listed = ", ".join(f"{_PLOT}{each}" for each in figures)
-        raise AttributeError(f"Result has no figure {name!r}; it has {listed}")
-
-    def __dir__(self) -> list[str]:
-        """Attributes and figures."""
-        return sorted({*super().__dir__(), *(f"{_PLOT}{name}" for name in figures_of(self))})
 
     def __repr__(self) -> str:
         """One line."""
