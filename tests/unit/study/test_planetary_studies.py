@@ -12,7 +12,6 @@ import tribodyn as td
 from tribodyn.errors import InputError
 from tribodyn.machine import load_shares
 from tribodyn.mesh import sharing
-from tribodyn.study.machine import pair_cases
 from tribodyn.study.machine.read import read_any_case
 from tribodyn.study.studies.case_grid import results_under
 
@@ -80,7 +79,6 @@ def test_speeds_share_the_teeth_that_do_not_depend_on_them(case, monkeypatch):
     results = [result for result, _ in results_under(stage, changes)]
     assert len(computed) == 2  # of the sun meshes and of the ring meshes
     sys.modules["tribodyn.mesh.build"]._cached_teeth.cache_clear()
-    pair_cases._pairs.clear()
     alone = td.run(stage.replace(changes[2])).summary()
     for name, value in results[2].figures.items():
         assert alone[name] == pytest.approx(value, rel=1e-8, abs=1e-9), name

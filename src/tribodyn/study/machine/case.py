@@ -137,7 +137,6 @@ class MachineCase(PartsCase):
         if self.lone_stage in stages:
             problems += floating_members(f"planets.{self.lone_stage}", stages[self.lone_stage][0])
         tables = [table for table, *_ in stages.values()]
-        self.planet_names = tuple(n for t in tables for n in (t.planet, t.ring_planet) if n)
         self.gears: dict[str, Gear] = read_each(groups, "gears", read_gear, problems)
         self.implied_shafts = add_shafts(groups["shafts"], self.gears, tables, material)
         self.shafts: dict[str, Shaft] = read_each(groups, "shafts", read_shaft, problems)
@@ -271,6 +270,12 @@ class MachineCase(PartsCase):
     def assumptions(self) -> tuple[Assumption, ...]:
         """What is assumed: reasons in ``[assumed]``, and what the case does not give."""
         return (*stated_assumptions(self), *default_assumptions(self))
+
+    @property
+    def planet_names(self) -> tuple[str, ...]:
+        """Names of the gears that are planets of stages."""
+        bodies = self.data.get("planets", {}).values()
+        return tuple(b[k] for b in bodies for k in ("planet", "ring_planet") if k in b)
 
     @cached_property
     def lone_stage(self) -> str | None:
