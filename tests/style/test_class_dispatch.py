@@ -11,10 +11,10 @@ from source_tree import Module, modules, read
 _KINDS = {
     *("Case", "PartsCase", "MachineCase", "PlanetaryCase"),
     *("Result", "PartsResult", "MachineResult", "PlanetaryResult"),
-    *("LoadResult", "PlanetaryLoadResult"),
+    *("LoadResult", "PlanetaryLoadResult", "StageResult"),
 }
 #: Questions that are left, in all of src. Lower it with each one that goes; never raise it.
-MOST = 54
+MOST = 36
 
 
 def questions(module: Module) -> list[str]:
