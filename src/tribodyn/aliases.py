@@ -47,6 +47,7 @@ RENAMED: Mapping[str, str] = {
     "simulate(kept)": "recorded_cycles",
     "sweep(members)": "checkpoints",
     "tribodyn.checkpoints.Members": "Checkpoints",
+    "tribodyn.machine.Kinematics": "PowerFlow",
     "tribodyn.members": "tribodyn.checkpoints",
     "write_bifurcation_report(found)": "diagram",
     "write_bifurcation_report(told)": "results",
