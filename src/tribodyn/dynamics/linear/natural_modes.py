@@ -154,7 +154,7 @@ def _at_rest(system: System, nodes: Nodes) -> tuple[Mask, Array]:
 def _equilibrium(system: System, nodes: Nodes, carrying: Array, push: Array) -> Array:
     """Position at rest at every phase, (rows, stages, n); free motions get no displacement."""
     pressed = np.swapaxes(carrying[..., None] * push, -1, -2)
-    stiffness = system.stiffness + pressed @ nodes.direction
+    stiffness = np.asarray(system.stiffness) + pressed @ nodes.direction
     shift = carrying * (nodes.error + nodes.gap)
     force = nodes.force + np.einsum("rsj,rsji->rsi", shift, push)
     scale = 1.0 / np.sqrt(np.diag(np.asarray(system.mass)))

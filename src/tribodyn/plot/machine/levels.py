@@ -55,7 +55,8 @@ def levels_text(*parts: Sequence[str]) -> str:
     names = ("mesh forces (rms)", "transmission errors (peak to peak)",
              "radial bearing forces (rms)", "accelerations of the housing (rms)",
              "load factors of the planets")  # fmt: skip
-    return f"Levels without the mean: {_listed(names, parts)}."
+    listed = _listed(names, parts)
+    return f"Levels without the mean: {listed}." if listed else "No level was computed."
 
 
 def _of_all(*parts: Sequence[str]) -> str:
@@ -64,7 +65,7 @@ def _of_all(*parts: Sequence[str]) -> str:
 
 def _listed(names: Sequence[str], parts: Sequence[Sequence[str]]) -> str:
     texts = [name for name, part in zip(names, parts, strict=False) if len(part)]
-    return " and ".join(filter(None, (", ".join(texts[:-1]), texts[-1])))
+    return " and ".join(filter(None, (", ".join(texts[:-1]), *texts[-1:])))
 
 
 def _swept(study: Sweep) -> str:
