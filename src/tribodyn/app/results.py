@@ -16,7 +16,6 @@ from tribodyn.study.machine.case import MachineCase
 if TYPE_CHECKING:
     from tribodyn.app.jobs import Job
     from tribodyn.study.case.case import Case
-    from tribodyn.study.machine.case import MachineCase
 
 #: Derived values of the geometry that are displayed as cards.
 _FIRST = (

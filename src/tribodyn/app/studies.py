@@ -12,6 +12,7 @@ from tribodyn.errors import InputError
 from tribodyn.model import REQUIRED, Option, choice, integer, number, text
 from tribodyn.nomenclature import GEARS
 from tribodyn.study.case.values import FaultError, Plain, read_value
+from tribodyn.study.machine.case import MachineCase
 from tribodyn.study.studies.needs import STUDIES as NEEDS
 from tribodyn.study.studies.needs import kind_of
 from tribodyn.study.studies.range_syntax import (
@@ -25,7 +26,6 @@ from tribodyn.study.studies.range_syntax import (
 if TYPE_CHECKING:
     from tribodyn.progress import Progress
     from tribodyn.study.case.case import Case
-    from tribodyn.study.machine.case import MachineCase
 
 #: Values of a study by name: numbers and choices checked, others as text; None or empty: default.
 Values = Mapping[str, Any]

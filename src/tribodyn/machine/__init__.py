@@ -18,7 +18,7 @@ positive speed turns y towards z.
 | ``graph`` | speeds, torques, clock, directions, places and masses that follow from it |
 """
 
-from tribodyn.aliases import old_module
+from tribodyn import aliases
 from tribodyn.arguments import guard
 from tribodyn.machine.assembly import system
 from tribodyn.machine.bearing import Bearing
@@ -125,5 +125,5 @@ __all__ = [
     "system",
 ]
 
-__getattr__ = old_module(__name__)
+__getattr__ = aliases.old_module(__name__)
 guard(__name__)
