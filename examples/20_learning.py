@@ -31,7 +31,7 @@ def report(label, model, simpler):
 
 
 published = td.vibration_data(case, seed=1, trajectories=40)
-published = published.where(published["time"] > 0.2)
+published = published.where(published["time"] > 0.205)
 inputs = ["mesh_stiffness", "friction_coefficient", "backlash_function", "transmission_error"]
 settings = {"features": inputs, "targets": targets, "seed": 1}
 size = surrogate.Training(hidden=(11, 11), activations=("tansig", "relu"), patience=6)
