@@ -296,7 +296,7 @@ def _networks(
 
     with collected():
         data = vibration_data(case, seed=1, over=over, trajectories=trajectories)
-        data = data.where(data["time"] > 0.2) if over == "time" else data
+        data = data.where(data["time"] > 0.205) if over == "time" else data
         groups = "trajectory" if moving_average > 1 else ""
         figures = dict[str, float]()
         for target in targets:
