@@ -196,8 +196,12 @@ def test_a_rotational_speed_is_no_frequency(speed):
         case = load_case(name)
         with pytest.raises(InputError, match=r"operation\.speed"):
             case.replace({"operation.speed": speed})
-        same = case.replace({"operation.speed": Q(15.0, "turn/s")})
-        assert same.to_toml() == case.replace({"operation.speed": "900 rpm"}).to_toml()
+        pair = hasattr(case, "gear_pair")
+        same, text = (
+            case.replace({"operation.speed": value}) for value in (Q(15.0, "turn/s"), "900 rpm")
+        )
+        speeds = [(c.operation if pair else c.operating_point).speed for c in (same, text)]
+        assert speeds[0] == pytest.approx(speeds[1], rel=3e-16)  # pint rounds more than once
 
 
 def test_film_of_a_line_contact_from_quantities():

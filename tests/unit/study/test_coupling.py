@@ -281,7 +281,9 @@ def test_wrong_keys_are_refused(changes: dict[str, Any], message: str) -> None:
 
 def test_it_is_drawn_reported_and_read_back(dynamic: Any, tmp_path: Any) -> None:
     figure = dynamic.plot_coupling()
-    assert figure.layout.title.text.startswith("Load, film, friction and stiffness converge")
+    assert figure.layout.title.text.startswith(
+        "Load, load share, film, friction coefficient and stiffness converge"
+    )
     place = dynamic.save(tmp_path / "r")
     assert "Coupling of load, film and friction" in (place / "report.html").read_text()
     again = td.load_result(place)

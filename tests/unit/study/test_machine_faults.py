@@ -224,7 +224,7 @@ def test_an_idler_is_eccentric_in_one_direction() -> None:
         GEARED.replace("z1", "a").replace("z2", "b") + '[faults.f]\nkind = "eccentricity"\n'
         'gear = "b"\namplitude = "1 um"\nphase = "20 deg"\n'
     ).faults
-    names = {"faults": tables, "_pinion_and_wheel": lambda _, mesh: tuple(mesh)}
+    names = {"faults": tables, "stages": {}, "_pinion_and_wheel": lambda _, mesh: tuple(mesh)}
     idler: Any = type("Idler", (), names)()
     (first,), (second,) = (faults_of_mesh(idler, machine, mesh) for mesh in ("ab", "bc"))
     assert (first.gear, second.gear) == ("wheel", "pinion")

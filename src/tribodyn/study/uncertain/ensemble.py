@@ -315,7 +315,7 @@ def _of_machine(
     medians = {key: float(np.median(column)) for key, column in values.items()}
     middle = {key: case.central(key) if key in case.uncertain else medians[key] for key in values}
     drawn = {key: np.append(middle[key], column) for key, column in values.items()}
-    progress.start("Variants", 1 + len(next(iter(drawn.values()))))
+    progress.start("Variants", len(next(iter(drawn.values()))))
     points = points_of_values(case, drawn, progress)
     progress.finish()
     return ensemble_of(points, values, seed, case.title)
