@@ -25,7 +25,12 @@ _APART = {"app", "warm-up"}
 _LIGHT = {"check", "export", "friction-from-loss", "new", "signal"}
 #: Reasons for which a command for all kinds may refuse a reduced case: a gear whose mate turns with
 #: a carrier, and machines whose constant teeth excite nothing.
-_EXCUSES = {"signal": "turns with a carrier", "sobol": "the output does not vary"}
+_EXCUSES = {
+    "paper": "there are no printed tables",
+    "surrogate": "no level of the parts varies",
+    "signal": "turns with a carrier",
+    "sobol": "the output does not vary",
+}
 #: Values that make the tooth contact of a case cheap, as far as the case has the keys.
 _CHEAP = {"film.model": "none", "friction.law": "none", "friction.shear_model": None}
 

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from tribodyn.checks import require_whole
-from tribodyn.errors import ComputationError, warn
+from tribodyn.errors import Argument, ComputationError, InputError, warn
 from tribodyn.progress import SILENT, Progress
 from tribodyn.study.machine.case import MachineCase
 from tribodyn.study.pipeline.summary_figures import figure_of
@@ -52,6 +52,10 @@ def default_ranges(case: Case | MachineCase) -> dict[str, str]:
 
 def _about(value: float, unit: str) -> str:
     return f"{_LOW * value!r} {unit} .. {_HIGH * value!r} {unit}"
+
+
+#: Part of the largest figure that is rounding.
+_ROUNDING = 1e-9
 
 
 def operating_data(
@@ -142,7 +146,24 @@ def _of_parts(
     figures = [point.figures for point in points if not point.failed]
     names = [name for figure in OF_PARTS for name in level_keys(figures[0], figure)]
     response = {name: np.array([each[name] for each in figures]) for name in names}
+    response = _vibrating(response, figures[0])
+    if not response:
+        what, why = "no level of the parts varies", "Nothing excites a vibration of this case"
+        raise InputError(what, Argument("case"), why, "Give its meshes computed teeth")
     columns = {**{key: column[good] for key, column in inputs.items()}, **response}
     data = data_set("operating_data", case, columns, settings)
-    units = {name: figure_of(name).unit or "1" for name in names}
+    units = {name: figure_of(name).unit or "1" for name in response}
     return DataSet(data.columns, {**data.units, **units}, data.case, data.settings, data.version)
+
+
+def _vibrating(response: dict[str, Array], figures: Mapping[str, float]) -> dict[str, Array]:
+    """Levels that are more than the rounding of the largest figure with their unit."""
+    largest: dict[str, float] = {"m/s^2": 1.0}
+    for name, value in figures.items():
+        unit = figure_of(name).unit
+        largest[unit] = max(largest.get(unit, 0.0), abs(value))
+    return {
+        name: column
+        for name, column in response.items()
+        if column.max() > _ROUNDING * largest[figure_of(name).unit]
+    }
