@@ -1,0 +1,138 @@
+"""Weight of the package: code lines, files, ``Any``, circles of imports; run it to print them."""
+
+from __future__ import annotations
+
+import ast
+import io
+import sys
+import tokenize
+from collections import Counter
+from collections.abc import Container, Iterable, Iterator, Mapping
+from pathlib import Path
+
+import numpy as np
+from scipy.sparse import coo_array
+from scipy.sparse.csgraph import connected_components
+from source_tree import Module, modules
+
+__all__ = ["ANY", "FILES", "LINES", "import_circles", "lines_of_code", "measures", "overweight"]
+
+#: Code lines of each package. A number is raised only in the commit that brings a capability, with
+#: a comment that names it; ``python tests/style/weight.py`` prints the numbers of today.
+LINES: dict[str, int] = {
+    "__init__": 98, "__main__": 3, "aliases": 92, "analysis": 134, "app": 2047,
+    "arguments": 540, "arrays": 174, "cases": 1057, "checkpoints": 142, "checks": 56,
+    "cli": 3059, "compiled": 236, "contact": 422, "cookbook": 85, "drawing": 168,
+    "dynamics": 13958, "ehl": 9810, "errors": 224, "exchange": 1892, "faults": 1668,
+    "files": 247, "friction": 1497, "gear": 3746, "interrupt": 215, "losses": 929,
+    "lubricant": 552, "machine": 5585, "measurement": 3257, "members": 3, "mesh": 5698,
+    "model": 222, "nomenclature": 214, "nonlinear": 2433, "plot": 9211, "progress": 26,
+    "record": 177, "report": 1618, "signals": 1754, "stiffness": 5084, "study": 16254,
+    "surrogate": 777, "types": 7, "uncertainty": 290, "units": 243, "validated_files": 195,
+    "variants": 1073,
+}  # fmt: skip
+#: Modules of the package, and its annotations without a type.
+FILES, ANY = 728, 2586
+
+_NO_CODE = {
+    tokenize.COMMENT, tokenize.NL, tokenize.NEWLINE, tokenize.INDENT, tokenize.DEDENT,
+    tokenize.ENDMARKER,
+}  # fmt: skip
+_DOCUMENTED = (ast.Module, ast.ClassDef, ast.FunctionDef, ast.AsyncFunctionDef)
+
+
+def lines_of_code(module: Module) -> int:
+    """Lines with code: without docstrings, comments and empty lines."""
+    documented: set[int] = set()
+    for node in module.nodes:
+        if isinstance(node, _DOCUMENTED) and ast.get_docstring(node, clean=False) is not None:
+            text = node.body[0]
+            documented.update(range(text.lineno, (text.end_lineno or text.lineno) + 1))
+    lines: set[int] = set()
+    for token in tokenize.generate_tokens(io.StringIO(module.text).readline):
+        if token.type not in _NO_CODE:
+            lines.update(range(token.start[0], token.end[0] + 1))
+    return len(lines - documented)
+
+
+def untyped(module: Module) -> int:
+    """Times that a module says ``Any``."""
+    return sum(isinstance(node, ast.Name) and node.id == "Any" for node in module.nodes)
+
+
+def import_circles(read: Iterable[Module]) -> list[set[str]]:
+    """Modules that import each other in a circle, with the imports inside functions."""
+    dotted = {_name(module): module for module in read}
+    places = {name: place for place, name in enumerate(dotted)}
+    edges = [
+        (place, places[target])
+        for name, place in places.items()
+        for target in _imports(dotted[name], dotted)
+        if target != name and not name.startswith(f"{target}.")
+    ]
+    rows, columns = np.array(edges, dtype=int).reshape(-1, 2).T
+    size = len(places)
+    graph = coo_array((np.ones(len(rows)), (rows, columns)), shape=(size, size))
+    _, labels = connected_components(graph, connection="strong")
+    circles: dict[int, set[str]] = {}
+    for name, place in places.items():
+        circles.setdefault(int(labels[place]), set()).add(name)
+    return sorted((circle for circle in circles.values() if len(circle) > 1), key=len)[::-1]
+
+
+def _name(module: Module) -> str:
+    return ".".join(Path(module.path).with_suffix("").parts[1:]).removesuffix(".__init__")
+
+
+def _imports(module: Module, names: Container[str]) -> Iterator[str]:
+    """Modules of some names that a module imports when it runs."""
+    for_types = {
+        inner
+        for node in module.nodes
+        if isinstance(node, ast.If) and ast.unparse(node.test) == "TYPE_CHECKING"
+        for inner in ast.walk(node)
+    }
+    for node in module.nodes:
+        targets = []
+        if isinstance(node, ast.Import):
+            targets = [alias.name for alias in node.names]
+        elif isinstance(node, ast.ImportFrom) and node.module:
+            targets = [f"{node.module}.{alias.name}" for alias in node.names]
+        for target in targets if node not in for_types else []:
+            while target and target not in names:
+                target = target.rpartition(".")[0]
+            if target:
+                yield target
+
+
+def measures(read: Iterable[Module]) -> tuple[Counter[str], int, int]:
+    """Code lines by package, number of modules, and annotations without a type."""
+    lines: Counter[str] = Counter()
+    count = without = 0
+    for module in read:
+        lines[module.package] += lines_of_code(module)
+        without += untyped(module)
+        count += 1
+    return lines, count, without
+
+
+def overweight(lines: Mapping[str, int], allowed: Mapping[str, int]) -> list[str]:
+    """Packages that have more code than is allowed."""
+    return [
+        f"{package}: {count} code lines, at most {allowed.get(package, 0)}"
+        for package, count in sorted(lines.items())
+        if count > allowed.get(package, 0)
+    ]
+
+
+def _print() -> None:
+    lines, count, without = measures(modules())
+    for package, number in sorted(lines.items()):
+        print(f'    "{package}": {number},')
+    print(f"code lines {lines.total()}, files {count}, Any {without}")
+    for circle in import_circles(modules()):
+        print(f"circle of {len(circle)}: {', '.join(sorted(circle))}")
+
+
+if __name__ == "__main__":
+    sys.exit(_print())
