@@ -8,6 +8,7 @@ import numbers as numeric
 import operator
 import re
 from collections.abc import Iterator, Mapping
+from contextlib import suppress
 from dataclasses import dataclass
 from functools import lru_cache
 from importlib.resources import files
@@ -18,7 +19,7 @@ from typing import Any, NamedTuple, TypeVar
 import numpy as np
 
 from tribodyn import units
-from tribodyn.arguments.quantities import UnitRefusedError, magnitude, quantity_in
+from tribodyn.arguments.quantities import UnitRefusedError, magnitude, quantity_in, unit_text
 from tribodyn.errors import Problem, shortened
 from tribodyn.model import REQUIRED, Option
 from tribodyn.nomenclature import GEARS
@@ -136,10 +137,19 @@ def _misread(spec: Option, name: str, value: str, message: str) -> FaultError:
     return FaultError(f"{name} = {written(value)}", reason, remedy)
 
 
+def in_unit(value: Any, unit: str | None) -> Any:
+    """Number of a quantity in ``unit``, by exact factors where it is one float."""
+    number, written_float = magnitude(value, unit), getattr(quantity_in(value), "magnitude", None)
+    if unit and isinstance(written_float, float | int):
+        with suppress(units.UnitProblemError):
+            return units.convert(float(written_float), unit_text(quantity_in(value)), unit)
+    return number
+
+
 def _in_si(spec: Option, name: str, value: Any) -> Any:
     """SI number, or list of numbers, of an object with a unit."""
     try:
-        return np.asarray(magnitude(value, spec.unit)).tolist()
+        return np.asarray(in_unit(value, spec.unit)).tolist()
     except UnitRefusedError as refused:
         remedy = f"Write for example {spec.example}"
         raise FaultError(f"{name} = {written(str(value))}", str(refused), remedy) from None

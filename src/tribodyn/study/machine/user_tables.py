@@ -11,14 +11,14 @@ from typing import TYPE_CHECKING, Any, Self
 
 import numpy as np
 
-from tribodyn.arguments.quantities import without_units
+from tribodyn.arguments.quantities import quantity_in, without_units
 from tribodyn.errors import InputError, Problem
 from tribodyn.machine.fields import display
 from tribodyn.study.case.provenance import Assumption
 from tribodyn.study.case.reference import key_comment
 from tribodyn.study.case.to_models import USUAL_GEARS
 from tribodyn.study.case.user_input import Source, spread_problem
-from tribodyn.study.case.values import FaultError, KeyedProblems, Plain, read_value
+from tribodyn.study.case.values import FaultError, KeyedProblems, Plain, in_unit, read_value
 from tribodyn.study.case.write import written_number
 from tribodyn.study.machine.pair_cases import option_at
 from tribodyn.study.machine.read_parts import LENGTH, in_si
@@ -392,7 +392,9 @@ def written_value(value: Any, option: Option | None) -> str:
     if isinstance(value, list | tuple):
         return f"[{', '.join(written_value(item, option) for item in value)}]"
     if isinstance(value, Plain):
-        number = without_units(value.value, option.unit if option else None)
+        unit = option.unit if option else None
+        foreign = quantity_in(value.value) is not None
+        number = in_unit(value.value, unit) if foreign else without_units(value.value, unit)
         is_number = isinstance(number, float | int | np.number) and not isinstance(number, bool)
         if is_number and option is not None and option.kind in ("number", "numbers"):
             return written_number(option, float(number))
