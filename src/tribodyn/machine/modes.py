@@ -8,7 +8,8 @@ import numpy as np
 
 from tribodyn.arrays.eigenvectors import leading
 from tribodyn.dynamics.equations.system import Contact, System
-from tribodyn.dynamics.linear.natural_modes import frequencies_at, linear_system, natural_modes
+from tribodyn.dynamics.linear.linear_system import linear_system
+from tribodyn.dynamics.linear.natural_modes import frequencies_at, natural_modes
 from tribodyn.errors import Argument, InputError
 from tribodyn.machine.assembly import mesh_contacts, system
 from tribodyn.machine.machine import Machine

@@ -8,7 +8,7 @@ from scipy.linalg import ldl
 
 from known_systems import reference_system
 from tribodyn.dynamics import Contact, System, law_contacts, natural_modes, torsional
-from tribodyn.dynamics.linear.natural_modes import linear_system
+from tribodyn.dynamics.linear.linear_system import linear_system
 from tribodyn.errors import InputError
 from tribodyn.mesh import MeshForceLaw, phase_grid
 
@@ -199,6 +199,50 @@ def test_ramps_of_a_force_law_are_counted_at_each_phase():
     assert linear_system(system, 0.5).stiffness[0, 0] == pytest.approx(3e8, rel=1e-12)
 
 
+def solved_at_each_phase(system, contact, ramps, edge):
+    """Mean stiffness of closed springs by a solution of all equations at each phase."""
+    steps, total = 256, np.zeros(1 + len(ramps))
+    phase = (np.arange(steps) + 0.5) / steps
+    mass = 1.0 / np.sqrt(np.diag(system.mass))
+    along, springs = np.asarray(contact.direction), np.array([contact.stiffness, *ramps])
+    for at in phase:
+        push, gap = along + contact.friction(np.array([at]))[0], np.array([0.0, *edge])
+        error = contact.error(np.array([at]))[0]
+        closed = np.ones(springs.size, dtype=bool)
+        for _ in range(20):
+            carried = np.where(closed, springs, 0.0)
+            matrix = np.asarray(system.stiffness) + carried.sum() * np.outer(push, along)
+            force = np.asarray(system.force) + (carried * (error + gap)).sum() * push
+            scaled = matrix * np.outer(mass, mass)
+            place = mass * (np.linalg.pinv(scaled, rcond=1e-12) @ (mass * force))
+            closed = along @ place - error > gap
+            closed[0] = True
+        total += np.where(closed, springs, 0.0) / steps
+    return total
+
+
+@pytest.mark.parametrize("held", [True, False])
+def test_springs_closed_at_rest_are_those_of_a_solution_at_each_phase(held):
+    along, rub = np.array([1.0, -2.0, 0.0, 0.5]), np.array([0.05, 0.1, -0.2, 0.0])
+    ramps, edge = [2.0, 1.5, 1.0], [0.05, 0.2, 0.4]
+    contact = Contact(
+        along,
+        3.0,
+        error=lambda phase: 0.3 * np.cos(2.0 * np.pi * phase),
+        friction=lambda phase: np.sin(2.0 * np.pi * phase)[:, None] * rub,
+        ramp_stiffness=ramps,
+        ramp_gap=edge,
+    )
+    chained = chain([4.0 if held else 0.0, 6.0, 0.0, 5.0], [1.0, 2.0, 1.5, 3.0])
+    system = System(
+        chained.mass, chained.damping, chained.stiffness, [0.7, -0.9, 0.2, 0.1], [contact]
+    )
+    exact = solved_at_each_phase(system, contact, ramps, edge)
+    assert len(set(exact[1:])) > 1  # some open and close
+    # a spring changes between two of the sampled phases
+    assert linear_system(system).spring == pytest.approx(exact, abs=2.0 * max(ramps) / 256)
+
+
 def test_elements_can_be_prescribed():
     system = chain([2e5, 3e5], [1.0, 2.0])
     parts = {"ground": np.diag([2e5, 0.0]), "shaft": 3e5 * np.array([[1.0, -1.0], [-1.0, 1.0]])}
@@ -248,7 +292,7 @@ def test_many_contacts_over_many_phases_take_little_memory() -> None:
     import tracemalloc
 
     from tribodyn.dynamics import Contact, LoadFriction, System
-    from tribodyn.dynamics.linear.natural_modes import linear_system
+    from tribodyn.dynamics.linear.linear_system import linear_system
 
     size, count = 24, 16
     rows = np.random.default_rng(1).standard_normal((count, size))

@@ -263,7 +263,7 @@ def test_a_cracked_tooth_shows_on_its_shaft_alone() -> None:
 
 
 def test_a_ripple_on_a_shaft_forces_the_machine_at_its_order() -> None:
-    from tribodyn.dynamics.linear.natural_modes import linear_system
+    from tribodyn.dynamics.linear.linear_system import linear_system
 
     engine = {
         "kind": "torque-ripple", "shaft": "input", "orders": [1.0, 3.0],

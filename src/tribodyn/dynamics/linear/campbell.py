@@ -9,7 +9,8 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from tribodyn.dynamics.equations.system import System
-from tribodyn.dynamics.linear.natural_modes import ModePhase, natural_modes
+from tribodyn.dynamics.linear.linear_system import ModePhase
+from tribodyn.dynamics.linear.natural_modes import natural_modes
 from tribodyn.errors import InputError, require_positive
 from tribodyn.record import Parts, Record, quantity, record
 from tribodyn.types import Array

@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from tribodyn.dynamics.equations.system import System
-from tribodyn.dynamics.linear.natural_modes import LinearSystem, ModePhase, linear_system
+from tribodyn.dynamics.linear.linear_system import LinearSystem, ModePhase, linear_system
 from tribodyn.errors import InputError, require_positive
 from tribodyn.record import Record, fact, quantity, record
 from tribodyn.types import Array, ComplexArray

@@ -3,164 +3,16 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
-from typing import Literal
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from tribodyn.arrays.eigenvectors import groups_of_equal, leading, standard_rotation
-from tribodyn.dynamics.equations.grid import system_events, unrepeated
-from tribodyn.dynamics.equations.nodes import (
-    Nodes,
-    carried_load,
-    combined,
-    force_laws,
-    friction_secant,
-    friction_tangent,
-    lowest_of_each_law,
-    push_with_friction,
-    sampled,
-)
-from tribodyn.dynamics.equations.ramps import split_ramps
 from tribodyn.dynamics.equations.system import System
-from tribodyn.errors import InputError, require_between
+from tribodyn.dynamics.linear.linear_system import LinearSystem, ModePhase, linear_system
+from tribodyn.errors import InputError
 from tribodyn.record import Record, quantity, record
-from tribodyn.types import Array, ComplexArray, Index, Mask
-
-ModePhase = Literal["mean"] | float
-
-#: Steps over which a cycle is averaged, and iterations in which ramps open and close.
-_STEPS, _ROUNDS = 256, 50
-
-
-@dataclass(frozen=True)
-class LinearSystem:
-    """Matrices of a system about its static load."""
-
-    names: tuple[str, ...]  #: names of the coordinates
-    mass: Array  #: [kg or kg*m^2, N*s/m, N/m, ...]
-    damping: Array  #: [kg or kg*m^2, N*s/m, N/m, ...]
-    stiffness: Array  #: [kg or kg*m^2, N*s/m, N/m, ...]
-    friction_damping: Array
-    friction_stiffness: Array
-    contact_stiffness: Array  #: share of each contact in ``stiffness`` [N/m, ...]
-    direction: Array  #: [1 or m]
-    push: Array  #: [1 or m]
-    gyroscopic: Array | None  #: skew matrix of the gyroscopic moments [N*s/m, ...]
-    spring: Array  #: stiffness of each contact, mean over the cycle [N/m]
-    damper: Array  #: damping of each contact, mean over the cycle [N*s/m]
-    bundle: Index  #: number of the force law to which each contact belongs
-
-
-def linear_system(system: System, phase: ModePhase = "mean") -> LinearSystem:
-    """Replace every contact by the spring and the damper that act at the static load; cached."""
-    if phase not in system._linear:
-        system._linear[phase] = _linearised(split_ramps(system), phase)
-    linear: LinearSystem = system._linear[phase]
-    return linear
-
-
-def _linearised(system: System, phase: ModePhase) -> LinearSystem:
-    nodes, weight = _rows(system, phase)
-    closed, push = _at_rest(system, nodes)
-    along, rub = nodes.direction, combined(np.subtract, push, nodes.direction)
-    spring = weight[:, :, None] * np.where(closed, nodes.stiffness, 0.0)
-    free = np.array([contact.damping_in_gap for contact in system.contacts], dtype=bool)
-    damper = weight[:, :, None] * np.where(closed | free, nodes.damping, 0.0)
-    contact_stiffness = _over_cycle(spring, along, along)
-    return LinearSystem(
-        names=tuple(system.names),
-        mass=np.asarray(system.mass),
-        damping=np.asarray(system.damping) + _over_cycle(damper, along, along).sum(axis=0),
-        stiffness=np.asarray(system.stiffness) + contact_stiffness.sum(axis=0),
-        friction_damping=_over_cycle(damper, rub, along).sum(axis=0),
-        friction_stiffness=_over_cycle(spring, rub, along).sum(axis=0),
-        contact_stiffness=contact_stiffness,
-        direction=_mean(weight, along),
-        push=_mean(weight, push),
-        gyroscopic=None if system.gyroscopic is None else np.asarray(system.gyroscopic),
-        spring=spring.sum(axis=(0, 1)),
-        damper=damper.sum(axis=(0, 1)),
-        bundle=force_laws(nodes),
-    )
-
-
-def _mean(weight: Array, directions: Array) -> Array:
-    """Mean of directions over the cycle, (contacts, n)."""
-    directions = unrepeated(directions, 2)
-    weight = weight if directions.shape[:2] == weight.shape else np.ones((1, 1))
-    return np.asarray(np.einsum("rs,rsji->ji", weight, directions))
-
-
-def _over_cycle(factor: Array, rows: Array, columns: Array) -> Array:
-    """Sum over the cycle of a factor times two directions, for each contact (contacts, n, n)."""
-    rows, columns = unrepeated(rows, 2), unrepeated(columns, 2)
-    if rows.shape[:2] == columns.shape[:2] == (1, 1):
-        factor = factor.sum(axis=(0, 1), keepdims=True)
-    shape = (factor.shape[0] * factor.shape[1], *rows.shape[2:])
-    left = (factor[..., None] * rows).reshape(shape).transpose(1, 2, 0)
-    return np.asarray(
-        left @ (columns + np.zeros_like(factor[..., None])).reshape(shape).transpose(1, 0, 2)
-    )
-
-
-def _rows(system: System, phase: ModePhase) -> tuple[Nodes, Array]:
-    """Rows of the system with weights of sum 1: over the whole cycle, or at one phase."""
-    if phase == "mean":
-        _, nodes = sampled(system, max(_STEPS * system.cycles, 4 * len(system_events(system))))
-        return nodes, nodes.weight
-    if isinstance(phase, str):
-        why = '"mean" or a mesh phase in [0, 1)'
-        raise InputError(f'phase = "{phase}"', "argument phase", why, "Choose one of the two")
-    at = float(phase)
-    require_between("phase", at, 0.0, np.nextafter(1.0, 0.0), "")
-    clocked = system.clocked_contacts
-    contacts = tuple(replace(contact, events=(*contact.events, at)) for contact in clocked)
-    marked = replace(system, contacts=contacts, frictions=system.clocked_frictions)
-    grid, nodes = sampled(marked, 4 * len(system_events(marked)))
-    row = int(np.argmin(np.abs(grid.left - at)))
-    single = Nodes(*(part[row : row + 1, :1] for part in nodes))
-    return single, np.ones((1, 1))
-
-
-def _at_rest(system: System, nodes: Nodes) -> tuple[Mask, Array]:
-    """Contacts that are closed at rest, and the generalized force per newton with friction."""
-    lowest = np.broadcast_to(lowest_of_each_law(nodes), nodes.stiffness.shape)
-    push = nodes.force_direction
-    if lowest.all() and not system.frictions:
-        return np.array(lowest), push
-    closed = np.ones(nodes.stiffness.shape, dtype=bool)
-    position = np.zeros(nodes.force.shape)
-    load = np.zeros((*nodes.stiffness.shape[:2], len(system.frictions)))
-    for _ in range(_ROUNDS):
-        carrying = np.where(closed, nodes.stiffness, 0.0)
-        last, position = position, _equilibrium(system, nodes, carrying, push)
-        compression = np.einsum("rsji,rsi->rsj", nodes.direction, position) - nodes.error
-        updated = lowest | (compression > nodes.gap)
-        done = np.array_equal(updated, closed)
-        if system.frictions:
-            load = carried_load(system, carrying * (compression - nodes.gap))
-            ratio = friction_secant(system, nodes.friction_coefficients, load)
-            push = push_with_friction(system, nodes, ratio)
-            done &= bool(np.abs(position - last).max() <= 1e-12 * np.abs(position).max())
-        if done:
-            break
-        closed = updated
-    tangent = friction_tangent(system, nodes.friction_coefficients, load)
-    return closed, push_with_friction(system, nodes, tangent)
-
-
-def _equilibrium(system: System, nodes: Nodes, carrying: Array, push: Array) -> Array:
-    """Position at rest at every phase, (rows, stages, n); free motions get no displacement."""
-    pressed = np.swapaxes(carrying[..., None] * push, -1, -2)
-    stiffness = np.asarray(system.stiffness) + pressed @ nodes.direction
-    shift = carrying * (nodes.error + nodes.gap)
-    force = nodes.force + np.einsum("rsj,rsji->rsi", shift, push)
-    scale = 1.0 / np.sqrt(np.diag(np.asarray(system.mass)))
-    inverse = np.linalg.pinv(stiffness * np.outer(scale, scale), rcond=1e-12)
-    return np.asarray(scale * np.einsum("rsik,rsk->rsi", inverse, scale * force))
-
+from tribodyn.types import Array, ComplexArray
 
 #: Squared frequencies below this share of the largest are rounding: the mode is rigid.
 _RIGID = 1e-12

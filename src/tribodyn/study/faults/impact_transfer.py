@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from tribodyn.dynamics.linear.natural_modes import linear_system
+from tribodyn.dynamics.linear.linear_system import linear_system
 from tribodyn.study.faults.recording import anti_alias
 from tribodyn.types import Array, ComplexArray, Index
 
