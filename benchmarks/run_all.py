@@ -20,6 +20,7 @@ SCRIPTS = (
     "planetary_speed",
     "bifurcation_speed",
     "parameter_map",
+    "gpu_speed",
     "film_speed",
     "film_batch",
     "friction_speed",

@@ -8,6 +8,7 @@ step generated as straight-line code for the structure. Numba's simulator
 from __future__ import annotations
 
 import importlib.util
+import warnings
 from functools import lru_cache
 from importlib.metadata import version
 from traceback import walk_tb
@@ -107,10 +108,8 @@ def march_on_gpu(
     new, codes = np.empty_like(state), np.empty(len(state), dtype=np.int64)
     for first in range(0, len(state), _LANES):
         lanes = slice(first, first + _LANES)
-        lanes_record = np.zeros((0, state.shape[1], codes[lanes].size))
-        lanes_record = (
-            lanes_record if record is None else np.empty((record.shape[0], *lanes_record.shape[1:]))
-        )
+        rows = 0 if record is None else record.shape[0]
+        lanes_record = np.empty((rows, state.shape[1], codes[lanes].size))
         sums = None if statistics is None else np.ascontiguousarray(statistics.moments[:, lanes])
         lane_arrays = member[lanes], period[lanes], load[lanes], state[lanes]
         try:
@@ -162,12 +161,11 @@ def _march(
     harmonics = waves.shape[2]
     tables = np.stack([program.rows for program in programs])
     fixed = first.code, first.reads, tables, first.width, first.restart, *lane_arrays
-    program_arrays = [cuda.to_device(np.ascontiguousarray(part)) for part in fixed]
+    device_copy = lambda part: cuda.to_device(np.ascontiguousarray(part))  # noqa: E731
+    program_arrays = [device_copy(part) for part in fixed]
     lane_slots = cuda.device_array((kernel.slots, lanes))
     scratch = cuda.device_array((lanes, kernel.ends[-1] + 6 * harmonics))
-    statistics_arrays = [
-        cuda.to_device(np.ascontiguousarray(part)) for part in (outputs, waves.reshape(-1))
-    ]
+    statistics_arrays = device_copy(outputs), device_copy(waves.reshape(-1))
     device_moments = cuda.to_device(np.zeros((0, lanes)) if sums is None else sums)
     ended = cuda.to_device(np.full(lanes, -1, dtype=np.int64))
     steps = first.width.size
@@ -177,10 +175,12 @@ def _march(
         count = min(most, cycles - done)
         rows = slice(done * steps, (done + count) * steps + 1) if len(record) else slice(0, 0)
         states = cuda.device_array((rows.stop - rows.start, double, lanes))
-        kernel.march[-(-lanes // threads), threads](
-            *program_arrays, count, done * steps, lane_slots, scratch, states, *statistics_arrays,
-            harmonics, device_moments, 1.0 / cycles, ended,
-        )  # fmt: skip
+        with warnings.catch_warnings():
+            warnings.filterwarnings("ignore", ".*Grid size")  # few lanes are no fault of the caller
+            kernel.march[-(-lanes // threads), threads](
+                *program_arrays, count, done * steps, lane_slots, scratch, states,
+                *statistics_arrays, harmonics, device_moments, 1.0 / cycles, ended,
+            )  # fmt: skip
         cuda.synchronize()
         states.copy_to_host(record[rows])
         if stop_flag()[0] != 0:
