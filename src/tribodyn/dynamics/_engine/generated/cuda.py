@@ -161,11 +161,12 @@ def _march(
     harmonics = waves.shape[2]
     tables = np.stack([program.rows for program in programs])
     fixed = first.code, first.reads, tables, first.width, first.restart, *lane_arrays
-    device_copy = lambda part: cuda.to_device(np.ascontiguousarray(part))  # noqa: E731
-    program_arrays = [device_copy(part) for part in fixed]
+    host = *fixed, outputs, waves.reshape(-1)
+    *program_arrays, device_outputs, device_waves = [
+        cuda.to_device(np.ascontiguousarray(part)) for part in host
+    ]
     lane_slots = cuda.device_array((kernel.slots, lanes))
     scratch = cuda.device_array((lanes, kernel.ends[-1] + 6 * harmonics))
-    statistics_arrays = device_copy(outputs), device_copy(waves.reshape(-1))
     device_moments = cuda.to_device(np.zeros((0, lanes)) if sums is None else sums)
     ended = cuda.to_device(np.full(lanes, -1, dtype=np.int64))
     steps = first.width.size
@@ -179,7 +180,7 @@ def _march(
             warnings.filterwarnings("ignore", ".*Grid size")  # few lanes are no fault of the caller
             kernel.march[-(-lanes // threads), threads](
                 *program_arrays, count, done * steps, lane_slots, scratch, states,
-                *statistics_arrays, harmonics, device_moments, 1.0 / cycles, ended,
+                device_outputs, device_waves, harmonics, device_moments, 1.0 / cycles, ended,
             )  # fmt: skip
         cuda.synchronize()
         states.copy_to_host(record[rows])
