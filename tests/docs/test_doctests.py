@@ -24,7 +24,7 @@ NAMES = [name for name in FOUND if not name.endswith("__main__") and _has_exampl
 SLOW = {
     "tribodyn.ehl.transient.transient",
     "tribodyn.dynamics.time.adaptive_solution",
-    "tribodyn.dynamics.orbits.speed_sweep",
+    "tribodyn.dynamics.running_up.speed_sweep",
     "tribodyn.dynamics.running_up.run_up",
 }
 EACH = [pytest.param(name, marks=pytest.mark.slow if name in SLOW else ()) for name in NAMES]

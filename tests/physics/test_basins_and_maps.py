@@ -12,7 +12,7 @@ from references.backlash_orbits import HIGH, LOW
 from tribodyn.analysis import basins, bifurcation, parameter_map, phase_portrait
 from tribodyn.dynamics import Contact, System, continuation, simulate, steady_state
 from tribodyn.dynamics.equations.compiled import compile_for
-from tribodyn.dynamics.orbits.coordinates import static_start
+from tribodyn.dynamics.equations.orbit_coordinates import static_start
 from tribodyn.errors import InputError
 from tribodyn.nonlinear.attractors import Motions, settle
 from tribodyn.nonlinear.survey import step_verdict

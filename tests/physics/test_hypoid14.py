@@ -20,7 +20,7 @@ from tribodyn.dynamics import (
     torsional,
 )
 from tribodyn.dynamics.equations.compiled import compile_for
-from tribodyn.dynamics.orbits.coordinates import static_start
+from tribodyn.dynamics.equations.orbit_coordinates import static_start
 from tribodyn.errors import InputError
 from tribodyn.gear import EaseOff
 from tribodyn.gear.hypoid.conjugate import ConjugateFlanks

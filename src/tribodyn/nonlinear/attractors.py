@@ -20,8 +20,7 @@ from tribodyn.checkpoints import Checkpoints
 from tribodyn.dynamics._engine.blocks import march, marching_on, on_gpu
 from tribodyn.dynamics.equations.compiled import Compiled
 from tribodyn.dynamics.equations.lane_parameters import LaneParameters
-from tribodyn.dynamics.orbits.coordinates import orbit_coordinates
-from tribodyn.dynamics.orbits.orbit_map import Balance
+from tribodyn.dynamics.equations.orbit_coordinates import Balance, orbit_coordinates
 from tribodyn.errors import ComputationError
 from tribodyn.interrupt import in_threads
 from tribodyn.progress import SILENT, Progress

@@ -8,8 +8,8 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from tribodyn.dynamics.equations.compiled import Compiled, compile_for
+from tribodyn.dynamics.equations.orbit_coordinates import static_start
 from tribodyn.dynamics.equations.system import System
-from tribodyn.dynamics.orbits.coordinates import static_start
 from tribodyn.dynamics.time.simulate import read_start
 from tribodyn.errors import InputError
 from tribodyn.nonlinear.attractors import Motions

@@ -13,7 +13,7 @@ import numpy as np
 
 from tribodyn.arrays.products import lengths
 from tribodyn.dynamics.equations.compiled import Compiled
-from tribodyn.dynamics.orbits.coordinates import static_start
+from tribodyn.dynamics.equations.orbit_coordinates import static_start
 from tribodyn.nonlinear.attractors import Motions, settle
 from tribodyn.nonlinear.survey import Outcomes, Points, Survey, each_in_threads, march_group
 from tribodyn.progress import SILENT, Progress

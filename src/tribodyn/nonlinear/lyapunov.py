@@ -18,8 +18,8 @@ from tribodyn.checks import require_whole
 from tribodyn.dynamics._engine.blocks import march
 from tribodyn.dynamics.equations.compiled import compile_for
 from tribodyn.dynamics.equations.motion import sides
+from tribodyn.dynamics.equations.orbit_coordinates import OrbitCoordinates, static_start
 from tribodyn.dynamics.equations.system import System
-from tribodyn.dynamics.orbits.coordinates import OrbitCoordinates, static_start
 from tribodyn.dynamics.time.simulate import read_force, read_start
 from tribodyn.errors import ComputationError, InputError
 from tribodyn.nonlinear.lyapunov_products import (

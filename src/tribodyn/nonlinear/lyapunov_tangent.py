@@ -30,7 +30,7 @@ from tribodyn.dynamics.equations.motion import (
     rows_within,
 )
 from tribodyn.dynamics.equations.nodes import Nodes, push_with_friction
-from tribodyn.dynamics.orbits.coordinates import orbit_coordinates
+from tribodyn.dynamics.equations.orbit_coordinates import orbit_coordinates
 from tribodyn.errors import ComputationError, InputError
 from tribodyn.types import Array, Index, Mask
 

@@ -10,8 +10,8 @@ from numpy.typing import ArrayLike
 
 from tribodyn.drawing import draw
 from tribodyn.dynamics.equations.compiled import Compiled, compile_for
+from tribodyn.dynamics.equations.orbit_coordinates import orbit_coordinates, static_start
 from tribodyn.dynamics.equations.system import System
-from tribodyn.dynamics.orbits.coordinates import orbit_coordinates, static_start
 from tribodyn.dynamics.orbits.periods import closed_period, open_period
 from tribodyn.dynamics.time.response import Response
 from tribodyn.dynamics.time.simulate import read_force, read_start

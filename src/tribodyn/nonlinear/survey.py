@@ -19,9 +19,9 @@ from tribodyn.arrays.products import each_times, lengths
 from tribodyn.checkpoints import Checkpoints
 from tribodyn.dynamics._engine.statistics import Statistics
 from tribodyn.dynamics.equations.compiled import Compiled, compile_lanes
+from tribodyn.dynamics.equations.orbit_coordinates import static_start
 from tribodyn.dynamics.equations.step_limit import LIMIT
 from tribodyn.dynamics.equations.system import System
-from tribodyn.dynamics.orbits.coordinates import static_start
 from tribodyn.dynamics.orbits.periods import open_period
 from tribodyn.errors import ComputationError, InputError
 from tribodyn.interrupt import in_threads

@@ -8,11 +8,11 @@ from known_random_machines import random_machine
 from tribodyn.dynamics import Contact, System, harmonic_balance
 from tribodyn.dynamics.equations.grid import PointEvaluator, system_events
 from tribodyn.dynamics.equations.nodes import evaluate_rows
-from tribodyn.dynamics.harmonic.closed_structure import ClosedStructure
-from tribodyn.dynamics.harmonic.contact_equations import _basis
 from tribodyn.dynamics.harmonic.harmonic_balance import prepare
 from tribodyn.dynamics.harmonic.newton import solve_linear
 from tribodyn.dynamics.harmonic.orbit_response import series
+from tribodyn.dynamics.modal.closed_structure import ClosedStructure
+from tribodyn.dynamics.modal.contact_equations import _basis
 from tribodyn.errors import quiet
 from tribodyn.mesh import phase_grid
 from tribodyn.mesh.grid import MonotonePhaseFunction, PhaseFunction

@@ -26,7 +26,7 @@ from tribodyn.dynamics import (
 )
 from tribodyn.dynamics.equations.compiled import compile_for
 from tribodyn.dynamics.equations.nodes import friction_force, friction_tangent
-from tribodyn.dynamics.orbits.coordinates import static_start
+from tribodyn.dynamics.equations.orbit_coordinates import static_start
 from tribodyn.errors import InputError
 
 AT_REST = (np.zeros(6), np.zeros(6))

@@ -18,8 +18,8 @@ from tribodyn.dynamics import (
 )
 from tribodyn.dynamics.equations.compiled import sample_system
 from tribodyn.dynamics.equations.motion import forces
+from tribodyn.dynamics.equations.orbit_coordinates import static_start
 from tribodyn.dynamics.equations.ramps import split_ramps
-from tribodyn.dynamics.orbits.coordinates import static_start
 from tribodyn.errors import InputError
 
 #: Position and velocity after which the back flanks touch too [m], [m/s].

@@ -8,7 +8,6 @@ import numpy as np
 import pytest
 
 from tribodyn.contact import path_of_contact
-from tribodyn.plot.gear.path import pair_ages
 from tribodyn.plot.mesh.cycle import (
     CYCLES,
     cycles,
@@ -18,6 +17,7 @@ from tribodyn.plot.mesh.cycle import (
     pair_lives,
     roll_angle_positions,
 )
+from tribodyn.plot.theme.path import pair_ages
 
 DRIVERS = pytest.mark.parametrize("driver", ["pinion", "wheel"])
 

@@ -7,7 +7,7 @@ from itertools import pairwise
 import numpy as np
 import pytest
 
-from tribodyn.plot.gear.path import further_changes, sharing_sentence
+from tribodyn.plot.theme.path import further_changes, sharing_sentence
 
 RATIOS = pytest.mark.parametrize("ratio", [1.33, 1.9, 2.0, 2.214, 2.75, 3.4])
 

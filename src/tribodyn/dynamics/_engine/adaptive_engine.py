@@ -14,10 +14,10 @@ from tribodyn.dynamics.equations.divergence import Failed, adaptive_failure, cha
 from tribodyn.dynamics.equations.grid import system_events
 from tribodyn.dynamics.equations.lane_parameters import LaneParameters, kinds_of
 from tribodyn.dynamics.equations.nodes import sampled
+from tribodyn.dynamics.equations.orbit_coordinates import static_start
 from tribodyn.dynamics.equations.program import lane_load
 from tribodyn.dynamics.equations.step_limit import largest_rate, state_roots
 from tribodyn.dynamics.equations.system import System
-from tribodyn.dynamics.orbits.coordinates import static_start
 from tribodyn.errors import InputError, real_numbers, require_between
 from tribodyn.interrupt import refuse_stopped, stop_flag
 from tribodyn.types import Array, Index

@@ -12,6 +12,7 @@
 | `program` | the equations in flat arrays for the compiled kernels |
 | `lane_parameters` | factors by which the lanes of an ensemble differ |
 | `compiled` | one system, or one per lane, evaluated on a grid |
+| `orbit_coordinates` | reduced coordinates in which a motion is periodic, static equilibrium |
 | `step_limit` | largest stable step, recommended number of steps |
 | `divergence` | error messages of failed integrations |
 """

@@ -17,24 +17,24 @@ from numpy.typing import ArrayLike
 from tribodyn.checks import require_flag, require_number, require_whole
 from tribodyn.dynamics.equations.compiled import Compiled, sample_system
 from tribodyn.dynamics.equations.grid import system_events
-from tribodyn.dynamics.equations.system import System
-from tribodyn.dynamics.harmonic.closed_structure import ClosedStructure
-from tribodyn.dynamics.harmonic.contact_equations import (
-    ContactEquations,
-    close_contacts,
-    contact_equations,
-)
-from tribodyn.dynamics.harmonic.modal_kernel import Trace
-from tribodyn.dynamics.harmonic.modal_march import ModalMotion
-from tribodyn.dynamics.harmonic.newton import Residual, Solution, newton, refined
-from tribodyn.dynamics.harmonic.orbit_response import orbit_response, starting_state
-from tribodyn.dynamics.harmonic.phase_balance import phase_balance
-from tribodyn.dynamics.orbits.coordinates import (
+from tribodyn.dynamics.equations.orbit_coordinates import (
     refuse_disconnected,
     static_start,
     structure_coordinates,
     warn_of_unbalanced,
 )
+from tribodyn.dynamics.equations.system import System
+from tribodyn.dynamics.harmonic.newton import Residual, Solution, newton, refined
+from tribodyn.dynamics.harmonic.orbit_response import orbit_response, starting_state
+from tribodyn.dynamics.harmonic.phase_balance import phase_balance
+from tribodyn.dynamics.modal.closed_structure import ClosedStructure
+from tribodyn.dynamics.modal.contact_equations import (
+    ContactEquations,
+    close_contacts,
+    contact_equations,
+)
+from tribodyn.dynamics.modal.modal_kernel import Trace
+from tribodyn.dynamics.modal.modal_march import ModalMotion
 from tribodyn.dynamics.time.response import Response, build_response
 from tribodyn.dynamics.time.simulate import read_start
 from tribodyn.errors import ComputationError, InputError, require_positive, warn

@@ -12,8 +12,8 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from tribodyn.dynamics.harmonic.closed_structure import ClosedStructure
-from tribodyn.dynamics.harmonic.contact_equations import Breaks, ContactEquations, Law
+from tribodyn.dynamics.modal.closed_structure import ClosedStructure
+from tribodyn.dynamics.modal.contact_equations import Breaks, ContactEquations, Law
 from tribodyn.types import Array, Mask
 
 #: Newton steps, halvings of a step, and steps over which the residual may rise.

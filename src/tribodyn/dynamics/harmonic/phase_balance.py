@@ -8,19 +8,19 @@ from typing import Any
 import numpy as np
 
 from tribodyn.checks import require_whole
-from tribodyn.dynamics.equations.phases import read_frequencies
-from tribodyn.dynamics.equations.system import System
-from tribodyn.dynamics.harmonic.closed_structure import ClosedStructure
-from tribodyn.dynamics.harmonic.contact_equations import close_contacts
-from tribodyn.dynamics.harmonic.newton import Solution, newton
-from tribodyn.dynamics.harmonic.phase_grid import PhaseContacts, PhaseGrid, PhaseResidual
-from tribodyn.dynamics.harmonic.phase_response import PhaseResponse, phase_response
-from tribodyn.dynamics.harmonic.phase_rows import PhaseRows
-from tribodyn.dynamics.orbits.coordinates import (
+from tribodyn.dynamics.equations.orbit_coordinates import (
     orbit_coordinates,
     refuse_disconnected,
     static_start,
 )
+from tribodyn.dynamics.equations.phases import read_frequencies
+from tribodyn.dynamics.equations.system import System
+from tribodyn.dynamics.harmonic.newton import Solution, newton
+from tribodyn.dynamics.harmonic.phase_grid import PhaseContacts, PhaseGrid, PhaseResidual
+from tribodyn.dynamics.harmonic.phase_response import PhaseResponse, phase_response
+from tribodyn.dynamics.harmonic.phase_rows import PhaseRows
+from tribodyn.dynamics.modal.closed_structure import ClosedStructure
+from tribodyn.dynamics.modal.contact_equations import close_contacts
 from tribodyn.errors import InputError, warn
 from tribodyn.types import Array, Index, Mask
 

@@ -15,11 +15,11 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from tribodyn.dynamics.harmonic.closed_structure import ClosedStructure
-from tribodyn.dynamics.harmonic.contact_equations import ContactEquations, with_dead_zone
 from tribodyn.dynamics.harmonic.meshwise_inverse import MeshwiseInverse
 from tribodyn.dynamics.harmonic.newton import VECTORS, Residual, State, solve_linear
 from tribodyn.dynamics.harmonic.phase_rows import Mesh, PhaseRows
+from tribodyn.dynamics.modal.closed_structure import ClosedStructure
+from tribodyn.dynamics.modal.contact_equations import ContactEquations, with_dead_zone
 from tribodyn.types import Array, ComplexArray, Index, Mask
 
 #: Part of the largest frequency that is none.

@@ -19,7 +19,7 @@ from tribodyn.dynamics.equations.grid import PointEvaluator, RowEvaluator, build
 from tribodyn.dynamics.equations.nodes import Nodes, evaluate_rows
 from tribodyn.dynamics.equations.phases import Turning, phase_sum
 from tribodyn.dynamics.equations.system import System
-from tribodyn.dynamics.harmonic.contact_equations import Rows, jumping_events, project_rows
+from tribodyn.dynamics.modal.contact_equations import Rows, jumping_events, project_rows
 from tribodyn.errors import InputError
 from tribodyn.types import Array, Index
 

@@ -13,6 +13,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from tribodyn.dynamics.equations.nodes import lowest_of_each_law
+from tribodyn.dynamics.equations.orbit_coordinates import static_start
 from tribodyn.dynamics.equations.system import System
 from tribodyn.dynamics.harmonic.harmonic_balance import TOLERANCE
 from tribodyn.dynamics.orbits.continuation_path import (
@@ -29,7 +30,6 @@ from tribodyn.dynamics.orbits.continuation_path import (
     tests_of_multipliers,
     with_values,
 )
-from tribodyn.dynamics.orbits.coordinates import static_start
 from tribodyn.dynamics.orbits.orbit_map import OrbitMap
 from tribodyn.dynamics.orbits.search import find_orbit
 from tribodyn.dynamics.orbits.solution_branch import Branch, SpecialPoint

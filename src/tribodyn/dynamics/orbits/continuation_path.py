@@ -16,8 +16,8 @@ from itertools import pairwise
 import numpy as np
 
 from tribodyn.dynamics.equations.compiled import Compiled, compile_for
+from tribodyn.dynamics.equations.orbit_coordinates import OrbitCoordinates
 from tribodyn.dynamics.equations.system import System
-from tribodyn.dynamics.orbits.coordinates import OrbitCoordinates
 from tribodyn.dynamics.orbits.orbit_map import OrbitMap
 from tribodyn.errors import ComputationError, InputError
 from tribodyn.progress import Progress

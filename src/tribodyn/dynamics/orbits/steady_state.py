@@ -20,6 +20,7 @@ from numpy.typing import ArrayLike
 from tribodyn.checks import require_number, require_whole
 from tribodyn.dynamics.equations.compiled import compile_for
 from tribodyn.dynamics.equations.nodes import halved_nodes
+from tribodyn.dynamics.equations.orbit_coordinates import static_start
 from tribodyn.dynamics.equations.program import build_program
 from tribodyn.dynamics.equations.system import System
 from tribodyn.dynamics.harmonic.harmonic_balance import (
@@ -27,7 +28,6 @@ from tribodyn.dynamics.harmonic.harmonic_balance import (
     TOLERANCE,
     harmonic_balance,
 )
-from tribodyn.dynamics.orbits.coordinates import static_start
 from tribodyn.dynamics.orbits.orbit_map import OrbitMap, newton_step
 from tribodyn.dynamics.orbits.periods import find_any_orbit, shortest_period
 from tribodyn.dynamics.orbits.search import OrbitPoint, find_orbit, finish_orbit, motion_size

@@ -2,23 +2,28 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from tribodyn.dynamics._engine.method import RungeKutta4
 from tribodyn.dynamics._engine.statistics import Statistics
-from tribodyn.dynamics.equations.compiled import Compiled
+from tribodyn.dynamics.equations.compiled import Compiled, sample_system
 from tribodyn.dynamics.equations.divergence import chattering_step
 from tribodyn.dynamics.equations.motion import compression, forces, has_gap, sides
 from tribodyn.dynamics.equations.nodes import Nodes
+from tribodyn.dynamics.equations.orbit_coordinates import (
+    Balance,
+    OrbitCoordinates,
+    orbit_coordinates,
+)
 from tribodyn.dynamics.equations.program import Program
 from tribodyn.dynamics.equations.system import System
-from tribodyn.dynamics.orbits.coordinates import OrbitCoordinates, orbit_coordinates
-from tribodyn.dynamics.orbits.orbit_map import Balance
+from tribodyn.dynamics.modal.modal_march import ModalMarcher
 from tribodyn.dynamics.running_up.run_up_profile import SpeedProfile
 from tribodyn.dynamics.running_up.run_up_tables import Table, Tables, blend_weight
+from tribodyn.dynamics.time.response import Response, build_response
 from tribodyn.errors import ComputationError
 from tribodyn.interrupt import refuse_stopped, stop_flag
 from tribodyn.types import Array
@@ -237,3 +242,28 @@ class Samples:
             "contact_force": self.force.reshape(cycles * samples, -1),
             "output": flat @ outputs.T,
         }
+
+
+def periods_at(
+    system: System, frequencies: Iterable[float], start: Response, steps: int, every: int = 1
+) -> Iterator[Response | None]:
+    """Integrate in modal coordinates one period of the clock at each frequency [Hz].
+
+    Each begins at the end of the one before, the first where ``start`` does, whose balancing torque
+    acts all along. Of ``every`` so many periods one is recorded, others are None.
+    """
+    compiled = sample_system(system, steps)
+    frequency, extra = np.array([start.mesh_frequency]), start.extra_force
+    marcher = ModalMarcher(compiled, frequency, extra[None])
+    state = np.concatenate((start.position[0], start.velocity[0]))[None]
+    rate = marcher.compiled.step_number * start.mesh_frequency
+    for number, hertz in enumerate(frequencies):
+        frequency[0] = hertz
+        if number % every:
+            state = marcher.march(state, 1)
+            yield None
+            continue
+        record = np.empty((compiled.grid.steps + 1, state.size, 1))
+        state = marcher.march(state, 1, record=record)
+        grid = replace(marcher.compiled, step_number=rate / hertz)
+        yield build_response(grid, hertz, record[:, :, 0], extra, engine="modal")

@@ -9,17 +9,14 @@ from typing import Any, Literal, NamedTuple
 
 import numpy as np
 
-from tribodyn.dynamics._engine.adaptive_engine import (
-    Tolerance,
-    adaptive_lanes,
-)
+from tribodyn.dynamics._engine.adaptive_engine import Tolerance, adaptive_lanes
 from tribodyn.dynamics._engine.blocks import Backend, LaneBlock, Run, march, marching_on
 from tribodyn.dynamics._engine.method import Newmark, RungeKutta4
 from tribodyn.dynamics._engine.statistics import Statistics
 from tribodyn.dynamics.equations.compiled import Compiled, compile_lanes, sample_system
 from tribodyn.dynamics.equations.lane_parameters import LaneParameters
 from tribodyn.dynamics.equations.system import System
-from tribodyn.dynamics.harmonic.modal_march import ModalMarcher
+from tribodyn.dynamics.modal.modal_march import ModalMarcher
 from tribodyn.dynamics.time.newmark import newmark_law, newmark_method
 from tribodyn.errors import InputError, require_one_of
 from tribodyn.interrupt import in_threads

@@ -9,11 +9,11 @@ import numpy as np
 from tribodyn.drawing import Need, drawing
 from tribodyn.ehl.load_share import REGIME_LIMITS, REGIMES
 from tribodyn.plot.film.path import Path, gaps_sentence
-from tribodyn.plot.gear.path import roll_label
 from tribodyn.plot.mesh.cycle import TABLE, roll_angle_positions, sharing_under_load
 from tribodyn.plot.theme.curves import FROM_ZERO, ZERO, curves
 from tribodyn.plot.theme.labels import axis_label, display_unit, displayed, rounded, significant
 from tribodyn.plot.theme.panels import Panel, event_lines, stack
+from tribodyn.plot.theme.path import roll_label
 from tribodyn.plot.theme.style import MUTED, PAIR_COLORS, PINION, TOTAL, WHEEL, figure, line
 from tribodyn.types import Array
 

@@ -9,7 +9,6 @@ import numpy as np
 
 from tribodyn.drawing import Need
 from tribodyn.nomenclature import GEARS
-from tribodyn.plot.gear.path import roll_label
 from tribodyn.plot.mesh.cycle import (
     driving_roll_angle,
     pair_life,
@@ -20,6 +19,7 @@ from tribodyn.plot.mesh.cycle import (
 from tribodyn.plot.theme.curves import FROM_ZERO, ZERO, curve, curves
 from tribodyn.plot.theme.labels import axis_label, display_unit, displayed, rounded, significant
 from tribodyn.plot.theme.panels import Panel, event_lines, stack
+from tribodyn.plot.theme.path import roll_label
 from tribodyn.plot.theme.style import MUTED, PAIR_COLORS, PINION, TOTAL, WHEEL, Trace, line
 from tribodyn.types import Array, Mask
 

@@ -12,6 +12,5 @@ module                  what it draws
 ``hypoid_motion``       kinematics of hypoid flanks along their contact lines
 ``mesh_deformation``    deformation of the teeth under load
 ``outlines``            outlines of both gears, unloaded and deformed
-``path``                positions A to E of a tooth pair, number of pairs in contact
 ======================  ===============================================================
 """

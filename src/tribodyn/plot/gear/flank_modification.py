@@ -15,11 +15,11 @@ from tribodyn.gear import (
     profile_gap,
     tooth_positions,
 )
-from tribodyn.plot.gear.path import pair_letters, roll_angle_of, roll_label
 from tribodyn.plot.mesh.cycle import RUN
 from tribodyn.plot.theme.curves import curve
 from tribodyn.plot.theme.labels import axis_label, display_unit, displayed, rounded
 from tribodyn.plot.theme.panels import Panel, Row, stack_rows
+from tribodyn.plot.theme.path import pair_letters, roll_angle_of, roll_label
 from tribodyn.plot.theme.style import PINION, TOTAL, WHEEL, Trace, bars
 from tribodyn.types import Array
 

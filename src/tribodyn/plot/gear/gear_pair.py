@@ -16,9 +16,9 @@ from tribodyn.plot.gear.outlines import (
     tooth_angles,
     wheel_center,
 )
-from tribodyn.plot.gear.path import further_changes, sharing_sentence
 from tribodyn.plot.mesh.cycle import RUN
 from tribodyn.plot.theme.labels import axis_label, displayed
+from tribodyn.plot.theme.path import further_changes, sharing_sentence
 from tribodyn.plot.theme.style import FILLS, INK, MUTED, PAIR_COLORS, PINION, WHEEL, Trace, figure
 from tribodyn.types import Array
 

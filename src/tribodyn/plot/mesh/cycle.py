@@ -15,8 +15,8 @@ import numpy as np
 from tribodyn.drawing import drawing
 from tribodyn.mesh.face.lines import middle_delay, pair_column
 from tribodyn.mesh.loaded_intervals import loaded_ages, sharing_parts, teeth_shares
-from tribodyn.plot.gear.path import mesh_marks, number_word, pair_ages, roll_angle_of
 from tribodyn.plot.theme.labels import display_unit, displayed
+from tribodyn.plot.theme.path import mesh_marks, number_word, pair_ages, roll_angle_of
 from tribodyn.types import Array
 
 if TYPE_CHECKING:

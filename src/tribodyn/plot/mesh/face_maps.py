@@ -7,10 +7,10 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from tribodyn.mesh.face.maps import face_map
-from tribodyn.plot.gear.path import pair_letters, roll_label
 from tribodyn.plot.mesh.cycle import table_drawing
 from tribodyn.plot.theme.labels import axis_label, display_unit, displayed, rounded
 from tribodyn.plot.theme.panels import event_lines
+from tribodyn.plot.theme.path import pair_letters, roll_label
 from tribodyn.plot.theme.style import HEAT, Trace, figure, heat
 
 if TYPE_CHECKING:

@@ -9,11 +9,11 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from tribodyn.drawing import drawing
-from tribodyn.plot.gear.path import corner_shades, pair_letters, roll_angle_of, roll_label
 from tribodyn.plot.mesh.cycle import between
 from tribodyn.plot.theme.curves import curve
 from tribodyn.plot.theme.labels import axis_label, display_unit, displayed, rounded
 from tribodyn.plot.theme.panels import Panel, event_lines, from_zero, stack
+from tribodyn.plot.theme.path import corner_shades, pair_letters, roll_angle_of, roll_label
 from tribodyn.plot.theme.style import TOTAL, Trace, line
 from tribodyn.types import Array, Mask
 

@@ -7,11 +7,11 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from tribodyn.drawing import Need, drawing
-from tribodyn.plot.gear.path import mesh_marks, pair_letters, roll_label
 from tribodyn.plot.mesh.loaded_contact import in_legend, torque_colors, torque_names, whole_cycles
 from tribodyn.plot.theme.curves import FROM_ZERO, curve, curves
 from tribodyn.plot.theme.labels import axis_label, display_unit, displayed, rounded
 from tribodyn.plot.theme.panels import Panel, Row, event_lines, stack, stack_rows
+from tribodyn.plot.theme.path import mesh_marks, pair_letters, roll_label
 from tribodyn.plot.theme.style import (
     INK,
     MUTED,

@@ -7,7 +7,6 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from tribodyn.plot.gear.path import corner_shades, pair_letters, roll_angle_of, roll_label
 from tribodyn.plot.mesh.cycle import (
     CYCLES,
     between,
@@ -24,6 +23,7 @@ from tribodyn.plot.mesh.cycle import (
 from tribodyn.plot.theme.curves import curve, points
 from tribodyn.plot.theme.labels import axis_label, display_unit, displayed, rounded, significant
 from tribodyn.plot.theme.panels import Panel, Row, event_lines, from_zero, stack, stack_rows
+from tribodyn.plot.theme.path import corner_shades, pair_letters, roll_angle_of, roll_label
 from tribodyn.plot.theme.style import MUTED, PAIR_COLORS, TOTAL, Trace, bars, line
 from tribodyn.types import Array
 

@@ -7,5 +7,6 @@ module      contents
 ``curves``  curves of quantities in their display units, panels of them
 ``panels``  stacked panels with a common axis or one axis each, event lines
 ``labels``  axis labels, display units and rounding of values
+``path``    positions A to E of a tooth pair, number of pairs in contact
 ==========  ===================================================================
 """

@@ -80,7 +80,7 @@ def _transient(
     """Simulate from the static equilibrium; a balancing torque is that of the steady state."""
     from tribodyn.dynamics import simulate, steady_state
     from tribodyn.dynamics.equations.compiled import compile_for
-    from tribodyn.dynamics.orbits.coordinates import static_start
+    from tribodyn.dynamics.equations.orbit_coordinates import static_start
 
     cycles = effective(case)["solver.cycles"]
     extra = None

@@ -186,7 +186,7 @@ def _plane_about_equilibrium(
 ) -> tuple[tuple[float, float], tuple[float, float]]:
     """Ranges of transmission error and rate about the static equilibrium."""
     from tribodyn.dynamics.equations.compiled import compile_for
-    from tribodyn.dynamics.orbits.coordinates import static_start
+    from tribodyn.dynamics.equations.orbit_coordinates import static_start
     from tribodyn.nonlinear.start_plane import MESH_PLANE, start_plane
 
     compiled = compile_for(system, mesh_frequency, steps)

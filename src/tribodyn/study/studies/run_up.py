@@ -322,7 +322,7 @@ def parts_run_up(
 ) -> MachineLevels:
     """Levels of a machine or stage along a run-up between speeds of its input [rad/s]."""
     # The speed rises from period to period; teeth and gyroscopic moments are of the mean speed.
-    from tribodyn.dynamics.harmonic.varying_speed import periods_at
+    from tribodyn.dynamics.running_up.run_up_march import periods_at
 
     middle = case.replace({"operation.speed": float(np.sqrt(ends[0] * ends[1]))})
     with collected(), single_blas_thread():

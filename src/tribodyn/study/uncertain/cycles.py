@@ -9,8 +9,8 @@ import numpy as np
 from tribodyn.dynamics._engine.blocks import marching_on
 from tribodyn.dynamics.equations.motion import Forces, Scales, forces, with_middles
 from tribodyn.dynamics.equations.nodes import Nodes
+from tribodyn.dynamics.equations.orbit_coordinates import static_start
 from tribodyn.dynamics.equations.system import System
-from tribodyn.dynamics.orbits.coordinates import static_start
 from tribodyn.errors import ComputationError, warn
 from tribodyn.mesh import MeshTable
 from tribodyn.nomenclature import GEARS

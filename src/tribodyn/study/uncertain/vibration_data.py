@@ -214,7 +214,7 @@ class _March:
 
     def __init__(self, case: Case, lanes: Lanes) -> None:
         from tribodyn.dynamics import LaneParameters, steady_state
-        from tribodyn.dynamics.orbits.coordinates import static_start
+        from tribodyn.dynamics.equations.orbit_coordinates import static_start
         from tribodyn.dynamics.time.engines import Setting, prepare
 
         self.lanes, self.member = lanes, lanes.members[0]

@@ -11,9 +11,9 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from tribodyn.dynamics.equations.system import System
-from tribodyn.dynamics.orbits.speed_sweep_follow import Followed, Follower, SpeedFamily, follow
 from tribodyn.dynamics.running_up.run_up import read_outputs
 from tribodyn.dynamics.running_up.run_up_tables import Tables, systems_by_frequency
+from tribodyn.dynamics.running_up.speed_sweep_follow import Followed, Follower, SpeedFamily, follow
 from tribodyn.dynamics.time.simulate import read_start
 from tribodyn.errors import InputError, require_positive
 from tribodyn.interrupt import in_threads

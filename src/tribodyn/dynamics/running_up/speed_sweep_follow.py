@@ -10,8 +10,8 @@ import numpy as np
 from tribodyn.dynamics._engine.blocks import march
 from tribodyn.dynamics._engine.statistics import Statistics
 from tribodyn.dynamics.equations.compiled import Compiled
+from tribodyn.dynamics.equations.orbit_coordinates import orbit_coordinates, static_start
 from tribodyn.dynamics.equations.program import Program
-from tribodyn.dynamics.orbits.coordinates import orbit_coordinates, static_start
 from tribodyn.dynamics.orbits.orbit_map import OrbitMap, Orbits, newton
 from tribodyn.dynamics.running_up.run_up_tables import Table, Tables, blend_weight
 from tribodyn.errors import ComputationError

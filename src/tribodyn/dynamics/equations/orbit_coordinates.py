@@ -11,11 +11,12 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import Protocol
+from typing import NamedTuple, Protocol
 
 import numpy as np
 
 from tribodyn.arrays.memo import Memo
+from tribodyn.arrays.products import each_times
 from tribodyn.dynamics.equations.compiled import Compiled
 from tribodyn.dynamics.equations.grid import unrepeated
 from tribodyn.dynamics.equations.motion import compression
@@ -93,6 +94,39 @@ class OrbitCoordinates:
         for part, basis in ((slice(size), self.elastic), (slice(size, None), self.moving)):
             matrix[part, part] = self.lower @ basis @ basis.T @ self.inverse
         return matrix
+
+
+class Balance(NamedTuple):
+    """The torque that balances a free motion of the drive."""
+
+    direction: Array  #: the free motion that it drives
+    force: Array  #: force for a gain of 1 m/s in 1 s [N or N*m]
+    strength: float
+    momentum: Array  #: mass times the free motion (n, 1)
+
+    @classmethod
+    def of(cls, system: System, coordinates: OrbitCoordinates) -> Balance | None:
+        """Balance of a system, None without one."""
+        if system.balance is None:
+            return None
+        force = np.asarray(system.balance)
+        push = coordinates.free.T @ np.linalg.solve(coordinates.lower, force)
+        strength = float(np.linalg.norm(push))
+        if strength < 1e-12 * float(np.linalg.norm(np.linalg.solve(coordinates.lower, force))):
+            what = "balance does not drive any free motion"
+            why = "The structure supports the drive, so no torque needs balancing"
+            raise InputError(what, "System.balance", why, "Leave balance out")
+        direction = push / strength
+        momentum = coordinates.lower @ coordinates.free @ direction[:, None]
+        return cls(direction, force / strength, strength, momentum)
+
+    def gain(self, states: Array) -> Array:
+        """Velocity of the free motion in states (..., 2 n), in the mass metric."""
+        return each_times(states[..., len(self.momentum) :], self.momentum)[..., 0]
+
+    def torque(self, gain: Array, span: Array) -> Array:
+        """Force (lanes, n) that makes a gain (lanes,) [m/s] in a time (lanes,) [s]."""
+        return np.asarray(gain[:, None] * self.force / np.asarray(span)[:, None])
 
 
 def orbit_coordinates(compiled: Compiled, mesh_frequency: float) -> OrbitCoordinates:

@@ -1,7 +1,7 @@
 """Time integration of machines in modal coordinates.
 
 The linear structure with its contacts closed at their mean stiffness is integrated exactly, mode by
-mode (:class:`~tribodyn.dynamics.harmonic.closed_structure.ClosedStructure`). Its modes are the
+mode (:class:`~tribodyn.dynamics.modal.closed_structure.ClosedStructure`). Its modes are the
 complex ones of the first-order form: they take damping that is not proportional and gyroscopic
 moments without an explicit force. Free rotations of the drive follow from integrals of the forces.
 """
@@ -15,9 +15,9 @@ import numpy as np
 
 from tribodyn.dynamics.equations.compiled import Compiled
 from tribodyn.dynamics.equations.nodes import Nodes, springs
-from tribodyn.dynamics.harmonic.closed_structure import ClosedStructure
-from tribodyn.dynamics.harmonic.contact_equations import close_contacts, with_dead_zone
-from tribodyn.dynamics.harmonic.modal_kernel import (
+from tribodyn.dynamics.modal.closed_structure import ClosedStructure
+from tribodyn.dynamics.modal.contact_equations import close_contacts, with_dead_zone
+from tribodyn.dynamics.modal.modal_kernel import (
     CHATTER,
     UNSETTLED,
     Contacts,

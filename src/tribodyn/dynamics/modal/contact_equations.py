@@ -26,13 +26,13 @@ from tribodyn.dynamics.equations.nodes import (
     lowest_of_each_law,
     springs,
 )
-from tribodyn.dynamics.equations.system import System
-from tribodyn.dynamics.harmonic.closed_structure import ClosedStructure
-from tribodyn.dynamics.orbits.coordinates import (
+from tribodyn.dynamics.equations.orbit_coordinates import (
     OrbitCoordinates,
     static_start,
     structure_coordinates,
 )
+from tribodyn.dynamics.equations.system import System
+from tribodyn.dynamics.modal.closed_structure import ClosedStructure
 from tribodyn.types import Array, Index, Mask
 
 if TYPE_CHECKING:

@@ -15,9 +15,8 @@ from functools import cached_property
 
 import numpy as np
 
+from tribodyn.dynamics.equations.orbit_coordinates import Balance, OrbitCoordinates
 from tribodyn.dynamics.equations.system import System
-from tribodyn.dynamics.orbits.coordinates import OrbitCoordinates
-from tribodyn.dynamics.orbits.orbit_map import Balance
 from tribodyn.errors import ComputationError, Problem
 from tribodyn.types import Array, ComplexArray
 
