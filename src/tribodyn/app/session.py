@@ -10,13 +10,20 @@ from typing import TYPE_CHECKING, Any
 from tribodyn.app.case_form import CaseForm, key_label
 from tribodyn.app.jobs import Job, Jobs
 from tribodyn.app.machine_form import MachineForm
-from tribodyn.app.studies import STUDIES, first_values, form_of, numeric_keys, offered
+from tribodyn.app.studies import (
+    STUDIES,
+    first_names,
+    first_values,
+    form_of,
+    numeric_keys,
+    offered,
+    with_paths,
+)
 from tribodyn.app.workspace import Workspace
 from tribodyn.cases.catalogue import cases
 from tribodyn.cases.load import load_case
 from tribodyn.errors import InputError, TribodynError, collected
 from tribodyn.model import Option
-from tribodyn.nomenclature import GEARS
 from tribodyn.study.machine.case import MachineCase
 from tribodyn.study.result_comparison import differing
 from tribodyn.units import UnitProblemError, format_quantity, parse, split
@@ -62,6 +69,11 @@ class TabSession:
         self.name = name
         if self.study and not offered(self.study, case):
             self.study = ""
+        self.values = {  # with the meshes and sensors of this case
+            kind: {**values, **first_names(kind, case)}
+            for kind, values in self.values.items()
+            if offered(kind, case)
+        }
         self.typed: dict[str, str] = {}
         self.units: dict[str, str] = {}
         self.faults: list[dict[str, str]] = []
@@ -114,7 +126,7 @@ class TabSession:
         form_data: dict[str, Any] = {"case": {"groups": form.groups(), "faults": self.faults}}
         if self.study:
             keys = numeric_keys(form.options())
-            form_data["study"] = form_of(self.study, self.values[self.study], keys)
+            form_data["study"] = form_of(self.study, self.values[self.study], self.case, keys)
         return form_data
 
     def choose_study(self, kind: str) -> None:
@@ -135,7 +147,7 @@ class TabSession:
         order = {
             "case": self.case.to_toml(),
             "study": self.study,
-            "values": self.values[self.study],
+            "values": with_paths(self.study, self.values[self.study], self.folder),
         }
         job = self._start("study", STUDIES[self.study].title, order)
         self.studies.append(job)
@@ -160,9 +172,8 @@ class TabSession:
             self.case = self.case.replace(relief, by=_BY)
         self.edits += 1
         self.view = "pair"
-        gears = [g for g in GEARS if f"gears.{g}.modification.tip_relief" in relief]
-        values = [relief[f"gears.{gears[0]}.modification.{name}"] for name in _RELIEF]
-        of = " over ".join(values)
+        gears = list(dict.fromkeys(key.split(".")[1] for key in relief))
+        of = " over ".join(relief[f"gears.{gears[0]}.modification.{name}"] for name in _RELIEF)
         self.tell(
             f"The case has a tip relief of {of} now: {' and '.join(gears)}. It is not saved yet."
         )

@@ -2,41 +2,30 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from tribodyn.app.case_form import field_of
+from tribodyn.app.study_functions import FUNCTIONS, MEASURED, RANGE, Shown, Values
 from tribodyn.errors import InputError
-from tribodyn.model import REQUIRED, Option, choice, integer, number, text
+from tribodyn.model import REQUIRED, Option, choice, file_path, integer, number, text
 from tribodyn.nomenclature import GEARS
+from tribodyn.report.study_report_data import MEASUREMENT
 from tribodyn.study.case.values import FaultError, Plain, read_value
-from tribodyn.study.machine.case import MachineCase
+from tribodyn.study.studies.needs import PAIR_MESH, study_meshes, takes
 from tribodyn.study.studies.needs import STUDIES as NEEDS
-from tribodyn.study.studies.needs import kind_of
-from tribodyn.study.studies.range_syntax import (
-    UnreadError,
-    read_list,
-    read_range,
-    read_values,
-    toml_value,
-)
+from tribodyn.study.studies.range_syntax import toml_value
 
 if TYPE_CHECKING:
+    from tribodyn.app.workspace import Workspace
     from tribodyn.progress import Progress
     from tribodyn.study.case.case import Case
+    from tribodyn.study.machine.case import MachineCase
 
-#: Values of a study by name: numbers and choices checked, others as text; None or empty: default.
-Values = Mapping[str, Any]
-#: What a study shows: ``sentences``, ``tables``, and figures as (heading, figure, caption).
-Shown = dict[str, Any]
-
-#: Ends of the keys of a tip relief.
-_RELIEF = ("", "_length", "_shape")
 #: Kinds of options whose values are checked before the study begins.
 _CHECKED = ("number", "integer", "choice")
-_RANGE = "400..3500 rpm:20, or 50, 150, 300 N*m"
 _ENDS = "400..3500 rpm"
 
 
@@ -52,219 +41,42 @@ class Study:
     title: str
     meaning: str
     options: Mapping[str, Option]
-    function: Callable[[Any, Values, Progress, Path], Shown]
 
-    def compute(
-        self, case: Case | MachineCase, texts: Mapping[str, str], progress: Progress, target: Path
-    ) -> Shown:
-        """Check the typed values, compute the study and write its directory."""
+    def read(self, texts: Mapping[str, str]) -> Values:
+        """Check the typed values."""
         values: dict[str, Any] = {}
         problems = []
         for name, option in self.options.items():
             values[name] = text = texts.get(name) or default_of(option)
-            if texts.get(name) and option.kind in _CHECKED and not name.endswith("key"):
+            named = option.names is not None and not option.names()
+            if texts.get(name) and option.kind in _CHECKED and not named:
                 try:
                     values[name] = read_value(option, name, Plain(toml_value(text)))
                 except FaultError as fault:
                     problems.append(replace(fault.problem, where=name))
         if problems:
             raise InputError(problems)
-        return self.function(case, values, progress, target)
-
-
-def _varied(values: Values) -> Iterator[tuple[str, Any]]:
-    for key, name in (("key", "values"), ("second_key", "second_values")):
-        if values[key]:
-            yield values[key], _read(name, values[name] or "", read_values)
-
-
-def _read(name: str, text: str, read: Callable[[str], Any]) -> Any:
-    """Parse a range or a list in the syntax of the commands."""
-    try:
-        return read(text)
-    except UnreadError as fault:
-        raise InputError(f'cannot read "{text}"', name, str(fault), f"Write {_RANGE}") from None
-
-
-def _ends(name: str, text: str) -> tuple[Any, Any]:
-    low, high, _ = _read(name, f"{text}:2", read_range)
-    return low, high
-
-
-def _points(case: Case, key: str, text: str) -> list[float] | None:
-    """Parse torques or speeds like the keys of the case."""
-    from tribodyn.study.studies.study_axes import points_of
-
-    return points_of(case, key, _read(key, text, read_values), by="study") if text else None
-
-
-def _operation(case: Case, values: Values) -> list[list[float] | None]:
-    return [_points(case, f"operation.{n}", values[n] or "") for n in ("torque", "speed")]
-
-
-def _of(answer: Any, kind: str, case: Case, target: Path) -> Shown:
-    from tribodyn.report.study_report_data import save_study
-
-    save_study(kind, case, target, answer)
-    table = ["Table", list(answer.head), [list(row) for row in answer.rows]]
-    return {"sentences": list(answer.statements), "tables": [table], "figures": answer.figures}
-
-
-def _sweep(case: Case, values: Values, progress: Progress, target: Path) -> Shown:
-    from tribodyn import plot
-    from tribodyn.report.study_report_data import figure_with_caption
-    from tribodyn.study.pipeline.summary_labels import in_words
-    from tribodyn.study.studies.sweep import sweep
-
-    result = sweep(case, dict(_varied(values)), by="study", progress=progress)
-    result.save(target)
-    names = result.displayed_figures()
-    if not plot.machine_sweep.missing(result):
-        names = []
-    figures = [(in_words(name), result.plot(name), "") for name in names]
-    figures[:1] = [(*figures[0][:2], plot.sweep.caption_of(result))] if figures else []
-    if not names:
-        figures = [figure_with_caption(plot.machine_sweep, result)]
-    failed = dict.fromkeys(point.failed for point in result.points if point.failed)
-    return {
-        "sentences": [f"{len(result.points)} values.", *failed],
-        "tables": [],
-        "figures": figures,
-    }
-
-
-def _bifurcation(case: Case, values: Values, progress: Progress, target: Path) -> Shown:
-    from tribodyn import plot
-    from tribodyn.report.study_report_data import figure_with_caption, save_bifurcation
-    from tribodyn.study.studies.bifurcation import Findings, bifurcation
-
-    low, high, points = _read("values", values["values"], read_range)
-    options = {name: values[name] for name in ("sweep", "cycles", "transient")}
-    result = bifurcation(
-        case,
-        values["key"],
-        (low, high),
-        points,
-        by="study",
-        progress=progress,
-        keep=min(48, values["cycles"]),
-        **options,
-    )
-    findings = Findings(case, result)
-    save_bifurcation(result, case, findings, target)
-    head, rows = findings.rows()
-    return {
-        "sentences": list(findings.sentences()),
-        "tables": [["Table", list(head), [list(row) for row in rows]]],
-        "figures": [figure_with_caption(plot.bifurcation, result)],
-    }
-
-
-def _losses(case: Case, values: Values, progress: Progress, target: Path) -> Shown:
-    from tribodyn.report.study_report_data import losses_report_data
-
-    torque, speed = _operation(case, values)
-    return _of(losses_report_data(case, torque, speed, progress), "losses", case, target)
-
-
-def _film(case: Case, values: Values, progress: Progress, target: Path) -> Shown:
-    from tribodyn.report.study_report_data import film_report_data
-
-    torque, speed = _operation(case, values)
-    return _of(film_report_data(case, torque, speed, progress), "film", case, target)
-
-
-def _relief(case: Case, values: Values, progress: Progress, target: Path) -> Shown:
-    from tribodyn.report.study_report_data import relief_report_data
-
-    progress.start("Tip relief")
-    torque = _read("torque", values["torque"], read_list) if values["torque"] else None
-    answer = relief_report_data(case, torque, values["gears"])
-    content = _of(answer, "relief", case, target)
-    gears = list(GEARS) if values["gears"] == "both" else [values["gears"]]
-    reliefs = [f"gears.{g}.modification.tip_relief{part}" for g in gears for part in _RELIEF]
-    changes = getattr(answer.best, "user_input", {})
-    return {**content, "relief": {key: changes[key] for key in reliefs if key in changes}}
-
-
-def _harris(case: Case, values: Values, progress: Progress, target: Path) -> Shown:
-    from tribodyn.report.study_report_data import harris_report_data
-
-    progress.start("Static transmission error")
-    torque = _read("torque", values["torque"], read_list) if values["torque"] else None
-    return _of(harris_report_data(case, torque), "harris", case, target)
-
-
-def _modes(case: Case, values: Values, progress: Progress, target: Path) -> Shown:
-    from tribodyn.report.modes_report_data import any_modes_report_data
-
-    ends = _ends("speeds", values["speeds"]) if values["speeds"] else None
-    return _of(any_modes_report_data(case, ends, progress), "modes", case, target)
-
-
-def _run_up(case: Case, values: Values, progress: Progress, target: Path) -> Shown:
-    from tribodyn.report.study_report_data import run_up_report_data
-
-    ends = _ends("speeds", values["speeds"])
-    answer = run_up_report_data(case, ends, values["duration"], progress=progress)
-    return _of(answer, "run-up", case, target)
-
-
-def _continuation(case: Case, values: Values, progress: Progress, target: Path) -> Shown:
-    from tribodyn.report.nonlinear_report_data import continuation_report_data
-
-    ends, step = _ends("ends", values["ends"]), values["longest_step"]
-    answer = continuation_report_data(
-        case, values["key"], ends, values["periods"], step, "study", progress
-    )
-    return _of(answer, "continuation", case, target)
-
-
-def _basins(case: Case, values: Values, progress: Progress, target: Path) -> Shown:
-    from tribodyn.report.nonlinear_report_data import basins_report_data
-
-    error, rate = (
-        _ends(name, values[name]) if values[name] else None
-        for name in ("transmission_error", "rate")
-    )
-    answer = basins_report_data(case, error, rate, values["points"], progress=progress)
-    return _of(answer, "basins", case, target)
-
-
-def _lyapunov(case: Case, values: Values, progress: Progress, target: Path) -> Shown:
-    from tribodyn.report.nonlinear_report_data import lyapunov_report_data
-
-    answer = lyapunov_report_data(case, values["cycles"], values["transient"], progress)
-    return _of(answer, "lyapunov", case, target)
-
-
-def _sobol(case: Case, values: Values, progress: Progress, target: Path) -> Shown:
-    from tribodyn.report.nonlinear_report_data import sobol_report_data
-
-    pairs = (("key", "tolerance"), ("second_key", "second_tolerance"))
-    spread = {values[key]: values[tolerance] or "" for key, tolerance in pairs if values[key]}
-    for key, tolerance in spread.items():
-        if not any(sign in tolerance for sign in ("+-", "±", "..")):
-            what = f'"{tolerance}" is no tolerance of {key}'
-            why = "It is a value with its tolerance"
-            remedy = 'Write "90 N*m +- 5 %" or "80 .. 100 N*m"'
-            raise InputError(what, "tolerance", why, remedy)
-    figures = (values["figures"] or "").replace(",", " ").split()
-    spread_case = case.replace(spread, by="study")
-    answer = sobol_report_data(spread_case, figures, values["size"], 0, progress)
-    return _of(answer, "sobol", case, target)
+        return values
 
 
 _TORQUES = _text(None, "torques; 8 up to twice that of the case where it is empty", "50..300 N*m:6")
 _SPEEDS = _text(None, "speeds; 8 up to twice that of the case where it is empty", "400, 1400 rpm")
 _LIST = _text(None, "torques", "60 N*m, 120 N*m")
+_MESH = choice(None, list, meaning="which mesh of the case")
 _KEY = "operation.speed"
 _GUARD = "guards against a slip of the keyboard"
 
 
+def _time(unit: str, default: float, high: float, meaning: str) -> Option:
+    option: Option = number(
+        default, 1e-3, high, _GUARD, unit=unit, meaning=meaning, example=f'"{default:g} {unit}"'
+    )
+    return option
+
+
 def offered(kind: str, case: Case | MachineCase) -> bool:
     """Whether the page offers a study for a case."""
-    return kind_of(case) in NEEDS[kind].kinds
+    return takes(kind, case) and (not NEEDS[kind].of_mesh or bool(study_meshes(kind, case)))
 
 
 STUDIES: dict[str, Study] = {
@@ -273,23 +85,20 @@ STUDIES: dict[str, Study] = {
         "The whole case at many values of one of its keys, or at a grid of two.",
         {
             "key": choice(REQUIRED, list, meaning="what varies"),
-            "values": _text(REQUIRED, "its values", _RANGE),
+            "values": _text(REQUIRED, "its values", RANGE),
             "second_key": choice(None, list, meaning="what varies besides"),
-            "second_values": _text(None, "its values", _RANGE),
+            "second_values": _text(None, "its values", RANGE),
         },
-        _sweep,
     ),
     "losses": Study(
         "Operating map",
         "Losses and efficiency over torque and speed; no motion is computed.",
-        {"torque": _TORQUES, "speed": _SPEEDS},
-        _losses,
+        {"mesh": _MESH, "torque": _TORQUES, "speed": _SPEEDS},
     ),
     "film": Study(
         "Oil film over operation",
         "Least film and lubrication regime over torque and speed.",
-        {"torque": _TORQUES, "speed": _SPEEDS},
-        _film,
+        {"mesh": _MESH, "torque": _TORQUES, "speed": _SPEEDS},
     ),
     "bifurcation": Study(
         "Bifurcation",
@@ -303,7 +112,6 @@ STUDIES: dict[str, Study] = {
             "cycles": integer(64, 2, 4096, _GUARD, meaning="mesh cycles of the statistics"),
             "transient": integer(300, 0, 100000, _GUARD, meaning="mesh cycles before"),
         },
-        _bifurcation,
     ),
     "continuation": Study(
         "Branch of motions",
@@ -316,7 +124,6 @@ STUDIES: dict[str, Study] = {
                 0.02, 1e-4, 1.0, _GUARD, meaning="longest step, relative to the range"
             ),
         },
-        _continuation,
     ),
     "basins": Study(
         "Basins",
@@ -328,7 +135,6 @@ STUDIES: dict[str, Study] = {
             "rate": _text(None, "range of its rate", "-400000..400000 um/s"),
             "points": integer(21, 2, 201, _GUARD, meaning="values of each"),
         },
-        _basins,
     ),
     "lyapunov": Study(
         "Lyapunov exponents",
@@ -337,7 +143,6 @@ STUDIES: dict[str, Study] = {
             "cycles": integer(1000, 2, 100000, _GUARD, meaning="mesh cycles of the mean"),
             "transient": integer(300, 0, 100000, _GUARD, meaning="mesh cycles before"),
         },
-        _lyapunov,
     ),
     "sobol": Study(
         "Tolerances",
@@ -350,25 +155,25 @@ STUDIES: dict[str, Study] = {
             "figures": _text(None, "figures of the summary", "peak_mesh_force, efficiency"),
             "size": integer(32, 2, 4096, _GUARD, meaning="size of the sample, a power of two"),
         },
-        _sobol,
     ),
     "relief": Study(
         "Tip relief",
         "The tip relief that leaves least transmission error, and the case with it.",
         {
+            "mesh": _MESH,
             "torque": _LIST,
             "gears": choice("both", ("both", *GEARS), meaning="gears with relief"),
         },
-        _relief,
     ),
     "harris": Study(
-        "Harris map", "The static transmission error over the torque.", {"torque": _LIST}, _harris
+        "Harris map",
+        "The static transmission error over the torque.",
+        {"mesh": _MESH, "torque": _LIST},
     ),
     "modes": Study(
         "Natural modes",
         "Natural frequencies and critical speeds; no motion is computed.",
         {"speeds": _text(None, "speeds of the Campbell diagram", _ENDS)},
-        _modes,
     ),
     "run-up": Study(
         "Run-up",
@@ -377,9 +182,42 @@ STUDIES: dict[str, Study] = {
             "speeds": _text(REQUIRED, "lowest and highest speed", _ENDS),
             "duration": number(10.0, 0.1, 1e4, _GUARD, meaning="length of the rise in seconds"),
         },
-        _run_up,
+    ),
+    "recording": Study(
+        "Recording",
+        "What a sensor records of the motion, faults included, and its analysis.",
+        {
+            "sensor": choice(REQUIRED, list, meaning="what is recorded"),
+            "duration": _time("s", 1.0, 1e4, "length of the recording"),
+            "sample_rate": _time("Hz", 25600.0, 1e7, "samples per second"),
+            "noise": number(0.0, 0.0, 1e9, _GUARD, meaning="deviation of white noise, in SI"),
+            "seed": integer(0, 0, 10**9, _GUARD, meaning="number of the draw of all that scatters"),
+            "format": choice("mat", ("mat", "wav", "h5", "uff", "csv"), meaning="kind of file"),
+        },
+    ),
+    "friction-from-loss": Study(
+        "Friction from losses",
+        "Friction coefficients from the torque losses that a rig measured with these gears.",
+        {
+            "mesh": _MESH,
+            "file": replace(
+                file_path(
+                    meaning="CSV file of the folder with the losses, or fzg-wheel-driven",
+                    example="losses.csv",
+                ),
+                default=REQUIRED,
+            ),
+            **{name: MEASUREMENT[name] for name in MEASURED},
+        },
     ),
 }
+
+
+def compute(
+    kind: str, case: Case | MachineCase, texts: Mapping[str, str], progress: Progress, target: Path
+) -> Shown:
+    """Check the typed values of a study, compute it and write its directory."""
+    return FUNCTIONS[kind](case, STUDIES[kind].read(texts), progress, target)
 
 
 def numeric_keys(options: Mapping[str, Option]) -> list[str]:
@@ -388,11 +226,10 @@ def numeric_keys(options: Mapping[str, Option]) -> list[str]:
 
 
 def first_values(kind: str, case: Case | MachineCase) -> dict[str, str]:
-    """Values to begin with: speeds about that of the case."""
+    """Values to begin with: speeds about that of the case, the first mesh and sensor."""
     from tribodyn.units import convert
 
-    point = case.operating_point if isinstance(case, MachineCase) else case.operation
-    rpm = abs(convert(point.speed, "rad/s", "rpm"))
+    rpm = abs(convert(dict(case.values())[_KEY], "rad/s", "rpm"))
     about = f"{0.5 * rpm:.4g}..{2.0 * rpm:.4g} rpm"
     first = {
         "key": _KEY,
@@ -402,16 +239,38 @@ def first_values(kind: str, case: Case | MachineCase) -> dict[str, str]:
         "tolerance": f"{rpm:.4g} rpm +- 2 %",
     }
     required = [n for n, o in STUDIES[kind].options.items() if o.required]
-    return {name: value for name, value in first.items() if name in required}
+    chosen = {name: value for name, value in first.items() if name in required}
+    return {**chosen, **first_names(kind, case)}
 
 
-def form_of(kind: str, values: Values, keys: list[str]) -> dict[str, Any]:
-    """The form of a study as data."""
+def first_names(kind: str, case: Case | MachineCase) -> dict[str, str]:
+    """Mesh and sensor that a study begins with: the first mesh, and its force."""
+    listed = _listed(kind, case).items()
+    return {k: next((n for n in names if "mesh_force" in n), names[0]) for k, names in listed}
+
+
+def _listed(kind: str, case: Case | MachineCase) -> dict[str, tuple[str, ...]]:
+    """Names in the case that a study chooses from; a pair has but one mesh."""
+    meshes = study_meshes(kind, case) if NEEDS[kind].of_mesh else (PAIR_MESH,)
+    listed = {} if meshes == (PAIR_MESH,) else {"mesh": meshes}
+    return {**listed, **({"sensor": case._sensors.names} if kind == "recording" else {})}
+
+
+def form_of(
+    kind: str, values: Values, case: Case | MachineCase, keys: Sequence[str]
+) -> dict[str, Any]:
+    """The form of a study as data; ``keys`` of the case can vary."""
     study, fields = STUDIES[kind], []
+    listed = {"key": keys, "second_key": keys, **_listed(kind, case)}
     for name, option in study.options.items():
+        if name == "mesh" and name not in listed:
+            continue
         field = field_of(name, option, values.get(name, ""), default_of(option))
-        if name.endswith("key"):
-            field["names"] = [["", "nothing"]] * (not option.required) + [[k, k] for k in keys]
+        if name in listed:
+            empty = [["", "nothing"]] * (name == "second_key")
+            field["names"] = [*empty, *([each, each] for each in listed[name])]
+        if option.unit:  # what is typed may have a unit of its own
+            field |= {"value": values.get(name, ""), "units": [option.display_unit]}
         fields.append(field)
     group = {
         "key": kind,
@@ -424,6 +283,17 @@ def form_of(kind: str, values: Values, keys: list[str]) -> dict[str, Any]:
         "groups": [],
     }
     return {"groups": [group], "faults": []}
+
+
+def with_paths(kind: str, values: Values, folder: Workspace) -> dict[str, str]:
+    """Values of a study with the paths of files of the folder; built-in tables have none."""
+    from tribodyn.losses.loss_table import TABLES
+
+    files = [name for name, option in STUDIES[kind].options.items() if option.kind == "file"]
+    paths = {
+        n: str(folder.inside(values[n])) for n in files if values.get(n, "") not in ("", *TABLES)
+    }
+    return {**values, **paths}
 
 
 def default_of(option: Option) -> Any:

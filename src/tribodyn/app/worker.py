@@ -13,6 +13,7 @@ from importlib import import_module
 from pathlib import Path
 from queue import SimpleQueue
 from typing import TYPE_CHECKING, Any
+from warnings import catch_warnings, simplefilter
 
 if TYPE_CHECKING:
     from tribodyn.study.case.case import Case
@@ -185,18 +186,20 @@ def _overlay(order: Mapping[str, Any], folder: Path, tell: Tell) -> None:
 
 def _study(order: Mapping[str, Any], folder: Path, tell: Tell) -> None:
     """Compute a study, send its contents, and write the directory of its command."""
-    from tribodyn.app.studies import STUDIES
-    from tribodyn.errors import collected
+    from tribodyn.app.studies import compute
+    from tribodyn.errors import ModelWarning, collected
     from tribodyn.report.figure_blocks import block_of_figure
 
-    with collected() as warnings:
-        study = STUDIES[order["study"]]
-        content = study.compute(_case(order), order["values"], Teller(tell), folder / "result")
+    with collected() as warnings, catch_warnings(record=True) as of_runs:
+        simplefilter("always")
+        order_of_study = order["study"], _case(order), order["values"]
+        content = compute(*order_of_study, Teller(tell), folder / "result")
     blocks = [
         block_of_figure(f"figure-{number}", heading, figure, caption)
         for number, (heading, figure, caption) in enumerate(content.pop("figures"), 1)
     ]
-    content["warnings"] = list(dict.fromkeys(map(str, warnings)))
+    model_warnings = [each.message for each in of_runs if isinstance(each.message, ModelWarning)]
+    content["warnings"] = list(dict.fromkeys(map(str, [*warnings, *model_warnings])))
     tell(state="done", content={**content, "blocks": _written(blocks, folder)}, task="", saved=True)
 
 

@@ -21,7 +21,11 @@ from tribodyn.report.figure_blocks import Block, block_of_figure
 from tribodyn.report.html import embedded_figures, plotly_script, template, text_of
 from tribodyn.report.numbers import Number, describe
 from tribodyn.report.provenance import operating_point, provenance, version
-from tribodyn.report.study_report_data import StudyReportData, figure_with_caption
+from tribodyn.report.study_report_data import (
+    StudyReportData,
+    figure_with_caption,
+    modes_report_data,
+)
 from tribodyn.study.case.values import FaultError, read_value
 from tribodyn.study.machine.modes import (
     MODES_HEAD,
@@ -36,8 +40,10 @@ from tribodyn.study.machine.tables import OperationTable
 from tribodyn.study.pipeline.save import write_file
 from tribodyn.study.pipeline.summary_figures import by_topic
 from tribodyn.study.pipeline.summary_labels import in_words
+from tribodyn.study.studies.needs import PAIRS, kind_of
 
 if TYPE_CHECKING:
+    from tribodyn.study.case.case import Case
     from tribodyn.study.machine.case import MachineCase
     from tribodyn.study.machine.result import MachineResult
 
@@ -191,6 +197,15 @@ def render_machine_report(result: MachineResult) -> str:
             plotly_js=plotly_script(),
         )
     )
+
+
+def any_modes_report_data(
+    case: Case | MachineCase, ends: Any, progress: Progress = SILENT
+) -> StudyReportData:
+    """Natural modes of a pair or a machine; ``ends`` limits the speeds."""
+    if kind_of(case) in PAIRS:
+        return modes_report_data(case, ends, progress)  # type: ignore[arg-type]
+    return machine_modes_report_data(case, ends, progress)  # type: ignore[arg-type]
 
 
 def machine_modes_report_data(

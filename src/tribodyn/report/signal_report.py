@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -17,6 +17,7 @@ from tribodyn.measurement.modulating_shaft import explain_modulation, modulating
 from tribodyn.measurement.sideband_cursors import sideband_cursors
 from tribodyn.plot.signals.analysed import visible_frequency
 from tribodyn.plot.theme.labels import readable, significant
+from tribodyn.progress import SILENT, Progress
 from tribodyn.report.study import write_study_report
 from tribodyn.report.study_report_data import StudyReportData
 from tribodyn.signals import cepstrum, narrowband_demodulation
@@ -24,10 +25,12 @@ from tribodyn.signals import cepstrum, narrowband_demodulation
 if TYPE_CHECKING:
     from tribodyn.drawing import Drawing
     from tribodyn.errors import Problem
-    from tribodyn.measurement import SignalAnalysis
+    from tribodyn.measurement import Recording, SignalAnalysis
     from tribodyn.measurement.shaft_speed import ShaftSpeed
     from tribodyn.signals.synchronous_average import SynchronousAverage
 
+#: Keys of the truth beside the faults, in SI.
+_OPERATION = tuple(f"operation.{key}" for key in ("torque", "speed", "speed_of", "input", "output"))
 HEAD = ("Figure", "Value", "Unit", "Meaning")
 _RPM = 30.0 / np.pi
 #: Digits of a number in the table, and number of marked mesh harmonics.
@@ -383,3 +386,28 @@ def _diagnosis(analysis: SignalAnalysis) -> list[Figure]:
     if analysis.coherence is not None:
         figures.append(_sketched(plot.cyclic_coherence, analysis.coherence))
     return figures
+
+
+def recorded_motion(
+    case: Any, sensors: Sequence[str], progress: Progress = SILENT, **settings: Any
+) -> tuple[Recording, dict[str, Any]]:
+    """Record the motion of a case; return the recording and its operation and faults in SI."""
+    from tribodyn.cases.load import run
+    from tribodyn.study.faults.sensors import check_sensors
+
+    check_sensors(case._sensors, sensors)
+    recording: Recording = run(case, progress).recording(sensors, **settings)
+    faults: Any = getattr(case, "faults", None) or {}
+    truth = {
+        name: {key: value for key, value in vars(fault).items() if value is not None}
+        for name, fault in (faults if isinstance(faults, dict) else vars(faults)).items()
+    }
+    operation = {key: value for key, value in case.values() if key in _OPERATION}
+    return recording, {**operation, "faults": truth}
+
+
+def recording_report_data(recording: Recording, channel: str) -> StudyReportData:
+    """Analysis of a channel of a recording with its tacho."""
+    from tribodyn.measurement import analyse_signal
+
+    return signal_report_data(analyse_signal(recording, channel, tacho="tacho"))

@@ -2,21 +2,27 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
 from tribodyn import plot
+from tribodyn.errors import InputError
+from tribodyn.model import Option, number
 from tribodyn.progress import SILENT, Progress
 from tribodyn.report.study import write_bifurcation_report, write_study_report
 from tribodyn.study.machine.summary import ALTERNATING
 from tribodyn.study.pipeline.save import new_directory
+from tribodyn.study.studies.needs import mesh_pair
+from tribodyn.units import convert
 
 if TYPE_CHECKING:
     from tribodyn.drawing import Drawing
-    from tribodyn.losses import GearboxLosses
+    from tribodyn.losses import FrictionFromLoss, GearboxLosses, PowerLossTable
     from tribodyn.nonlinear.bifurcation import Bifurcation
     from tribodyn.study.case.case import Case
     from tribodyn.study.machine.case import MachineCase
@@ -42,6 +48,7 @@ class StudyReportData(NamedTuple):
     rows: Sequence[Sequence[str]]
     facts: dict[str, Any]  #: in SI
     best: Case | MachineCase | None = None  #: resulting case, such as the optimum
+    table_file: str = ""  #: name of a file of the table
 
 
 def figure_with_caption(figure: Drawing, result: Any) -> Picture:
@@ -55,16 +62,20 @@ def _title(picture: Picture) -> str:
 
 def save_study(
     kind: str,
-    case: Case | MachineCase,
+    case: Case | MachineCase | None,
     target: Path,
     report: StudyReportData,
     force: bool = False,
 ) -> None:
     """Write case, data set and report of a study to a directory."""
-    from tribodyn.validated_files import write_dataset
+    from tribodyn.validated_files import csv_text, write_dataset
 
     with new_directory(target, force=force) as place:
-        (place / "case.toml").write_text(case.to_toml(), encoding="utf-8")
+        if case is not None:
+            (place / "case.toml").write_text(case.to_toml(), encoding="utf-8")
+        if report.table_file:
+            table = csv_text([report.head, *report.rows])
+            (place / report.table_file).write_text(table, encoding="utf-8")
         if report.best is not None:
             (place / "best.toml").write_text(report.best.to_toml(), encoding="utf-8")
         write_dataset(report.data.to_xarray(), place / "study.nc")
@@ -193,7 +204,6 @@ def run_up_report_data(
     from tribodyn.analysis import overall_level
     from tribodyn.study.studies.levels import MachineLevels
     from tribodyn.study.studies.run_up import run_up
-    from tribodyn.units import convert
 
     run = run_up(case, ends, duration, down=down, progress=progress)
     if isinstance(run, MachineLevels):
@@ -210,8 +220,6 @@ def run_up_report_data(
 
 def _levels_report_data(run: MachineLevels) -> StudyReportData:
     """Levels of a machine over the speed, and the harmonics of meshes behind them."""
-    from tribodyn.units import convert
-
     rpm = convert(1.0, "rad/s", "rpm") * run.speed
     figures = [
         figure_with_caption(each, run) for each in (plot.machine_levels, plot.machine_level_lines)
@@ -266,7 +274,6 @@ def losses_report_data(
 def _losses(gearbox: GearboxLosses) -> tuple[list[str], list[list[str]]]:
     """Table of the efficiency over torque and speed, or of all losses for a single row."""
     from tribodyn.losses.gearbox import PARTS
-    from tribodyn.units import convert
 
     torque, speed = gearbox.pinion_torque, gearbox.pinion_speed * convert(1.0, "rad/s", "rpm")
     percent = 100.0 * gearbox.efficiency
@@ -294,13 +301,17 @@ def _losses(gearbox: GearboxLosses) -> tuple[list[str], list[list[str]]]:
 
 
 def film_report_data(
-    case: Case, torque: Any = None, speed: Any = None, progress: Progress = SILENT
+    case: Case | MachineCase,
+    torque: Any = None,
+    speed: Any = None,
+    progress: Progress = SILENT,
+    mesh: str | None = None,
 ) -> StudyReportData:
     """Minimum film and lubrication regime over torque and speed."""
     from tribodyn.study.studies.losses import STEPS
     from tribodyn.study.studies.static import film_over_operation
-    from tribodyn.units import convert
 
+    case = mesh_pair("film", case, mesh).pair
     operation = case.operation
     torque = list(STEPS * operation.torque) if torque is None else torque
     speed = list(STEPS * operation.speed) if speed is None else speed
@@ -321,3 +332,110 @@ def film_report_data(
         "least_film": least.tolist(),
     }
     return StudyReportData(films, figures, [f"{_title(figures[0])}."], head, rows, facts)
+
+
+_GUARD = "guards against a wrong unit"
+
+
+def _torque(default: float | None, meaning: str) -> Any:
+    format_options = {"unit": "N*m", "display_unit": "N*m", "example": '"0.1 N*m"'}
+    return number(default, 0.0, 1e6, _GUARD, meaning=meaning, **format_options)
+
+
+#: Data of a measurement beside its table.
+MEASUREMENT: dict[str, Option] = {
+    "gear_loss_factor": number(None, 1e-3, 2.0, "gears lie between 0.05 and 0.5", meaning="H_V"),
+    "gear_loss_factor_uncertainty": number(0.0, 0.0, 1.0, _GUARD, meaning="of H_V"),
+    "gear_sets": number(1.0, 1.0, 2.0, "test gears alone, or equal slave gears too", meaning="k"),
+    "no_load_torque": _torque(5.0, "rows up to it are without load"),
+    "other_loss": _torque(0.0, "what bearings and seals lose more under load"),
+    "torque_loss_uncertainty": _torque(None, "of one reading"),
+    "torque_uncertainty": _torque(0.0, "of the torque"),
+    "other_loss_uncertainty": _torque(0.0, "of other_loss"),
+}
+
+
+def measured_losses(
+    file: str,
+    case: Case | MachineCase | None,
+    mesh: str | None,
+    options: Mapping[str, float],
+) -> PowerLossTable:
+    """Read a table of losses, or the built-in one of this name; a case gives the loss factor."""
+    from tribodyn.losses import gear_loss_factor, power_loss_table, read_power_loss_table
+    from tribodyn.losses.loss_table import TABLES
+
+    more: dict[str, Any] = dict(options)
+    factor = more.pop("gear_loss_factor", None)
+    if case is not None:
+        factor = gear_loss_factor(mesh_pair("friction-from-loss", case, mesh).pair.gear_pair)
+    if file in TABLES and not Path(file).exists():
+        changes: dict[str, Any] = {} if factor is None else {"gear_loss_factor": factor}
+        return replace(power_loss_table(file), **changes, **more)
+    if factor is None:
+        why = "Friction is the loss over the torque and the gear loss factor H_V"
+        remedy = 'Name the gears with --case, or write --set "gear_loss_factor=0.30"'
+        raise InputError("the gear loss factor is missing", "", why, remedy)
+    return read_power_loss_table(file, factor, **more)
+
+
+def friction_report_data(losses: PowerLossTable, friction: FrictionFromLoss) -> StudyReportData:
+    """Friction coefficients of all points with their uncertainty."""
+    head, rows = _friction_rows(friction)
+    figure = figure_with_caption(plot.friction_from_loss, friction)
+    statements = [
+        f"{figure[1].layout.title.text}.",
+        f"H_V = {losses.gear_loss_factor:.5g}. Source: {losses.source}.",
+    ]
+    facts = _friction_facts(friction, losses)
+    return StudyReportData(
+        friction, [figure], statements, head, rows, facts, table_file="friction.csv"
+    )
+
+
+_COLUMNS = (
+    "speed",
+    "torque",
+    "friction_coefficient",
+    "standard_uncertainty",
+    "monte_carlo_uncertainty",
+    "degrees_of_freedom",
+    "low",
+    "high",
+    "sensitivity",
+)
+
+
+def _friction_facts(friction: FrictionFromLoss, loss_table: PowerLossTable) -> dict[str, Any]:
+    """Return columns in SI; infinite degrees of freedom, which JSON cannot express, are null."""
+    columns = {name: getattr(friction, name).tolist() for name in _COLUMNS}
+    freedom = columns["degrees_of_freedom"]
+    columns["degrees_of_freedom"] = [None if math.isinf(value) else value for value in freedom]
+    facts = {"gear_loss_factor": loss_table.gear_loss_factor, "source": loss_table.source}
+    return {**facts, **columns, "verdict": list(friction.verdict)}
+
+
+def _friction_rows(friction: FrictionFromLoss) -> tuple[list[str], list[list[str]]]:
+    head = [
+        "speed [rpm]",
+        "torque [N*m]",
+        "mu",
+        "u(mu)",
+        "u(mu) drawn",
+        "low 95 %",
+        "high 95 %",
+        "mu per 0.1 N*m",
+        "verdict",
+    ]
+    columns = (
+        friction.speed * convert(1.0, "rad/s", "rpm"),
+        friction.torque,
+        friction.friction_coefficient,
+        friction.standard_uncertainty,
+        friction.monte_carlo_uncertainty,
+        friction.low,
+        friction.high,
+        0.1 * friction.sensitivity,
+    )
+    rows = [[f"{value:.4g}" for value in row] for row in zip(*columns, strict=True)]
+    return head, [[*row, verdict] for row, verdict in zip(rows, friction.verdict, strict=True)]

@@ -14,7 +14,7 @@ from tests.unit.study.test_machine_run import GEARED
 
 from tribodyn.app import results, worker
 from tribodyn.app.session import TabSession
-from tribodyn.app.studies import STUDIES, first_values
+from tribodyn.app.studies import STUDIES, compute, first_values, with_paths
 from tribodyn.app.workspace import Workspace
 from tribodyn.cases.load import load_case
 from tribodyn.errors import InputError
@@ -77,9 +77,47 @@ def test_the_machine_is_drawn_with_speeds_and_assumptions(desk: TabSession) -> N
         assert part in text
     assert "two-stage-spur" in texts(results.files(desk))
     kinds = {kind for kind, study in STUDIES.items() if study.title in texts(results.studies(desk))}
-    assert kinds == {"sweep", "sobol", "modes", "run-up"}
-    desk.choose_study("harris")  # of a stale page
+    of_mesh = {"harris", "losses", "film", "relief", "friction-from-loss"}
+    assert kinds == {"sweep", "sobol", "modes", "run-up", "recording", *of_mesh}
+    desk.choose_study("bifurcation")  # of a stale page
     assert desk.study == ""
+
+
+def test_studies_of_one_mesh_list_the_meshes_that_they_take(desk: TabSession) -> None:
+    desk.choose_study("harris")
+    mesh = desk.forms()["study"]["groups"][0]["fields"][0]
+    assert (mesh["value"], mesh["names"]) == ("first", [["first", "first"], ["second", "second"]])
+    desk.choose_study("recording")
+    sensor = desk.forms()["study"]["groups"][0]["fields"][0]
+    assert sensor["names"] == [[name, name] for name in desk.case._sensors.names]
+    desk.take(load_case("fzg-roughness"), "")
+    desk.choose_study("harris")
+    assert [f["key"] for f in desk.forms()["study"]["groups"][0]["fields"]] == ["torque"]
+    desk.take(load_case("hypoid-axle"), "")
+    assert desk.values["harris"]["mesh"] == desk.case.meshes[0]
+    desk.choose_study("relief")  # flanks of hypoid gears are relieved by their cutter
+    assert desk.study == "harris"
+
+
+def test_a_relief_of_a_mesh_is_that_of_its_gears(tmp_path: Path) -> None:
+    case = load_case("two-stage-spur").replace({"stiffness.model": "analytic"}, by="test")
+    values = {"mesh": "second", "torque": "150 N*m", "gears": "wheel"}
+    shown = compute("relief", case, values, SILENT, tmp_path / "result")
+    assert {key.split(".")[1] for key in shown["relief"]} == {"z4"}
+    best = load_case(tmp_path / "result" / "best.toml")
+    relief = best.data["gears"]["z4"]["modification"]
+    assert relief["tip_relief"] == shown["relief"]["gears.z4.modification.tip_relief"]
+
+
+def test_files_of_a_study_are_those_of_the_folder(desk: TabSession, tmp_path: Path) -> None:
+    values = {"file": "losses.csv", "mesh": "first"}
+    paths = with_paths("friction-from-loss", values, desk.folder)
+    assert paths == {"file": str(tmp_path / "losses.csv"), "mesh": "first"}
+    built_in = {"file": "fzg-wheel-driven"}
+    assert with_paths("friction-from-loss", built_in, desk.folder) == built_in
+    for place in ("/etc/passwd", "../losses.csv"):
+        with pytest.raises(InputError):
+            with_paths("friction-from-loss", {"file": place}, desk.folder)
 
 
 def test_a_saved_machine_takes_its_housing_along(desk: TabSession, tmp_path: Path) -> None:
@@ -120,14 +158,25 @@ def test_the_worker_computes_and_overlays_machines(tmp_path: Path) -> None:
     assert messages[-1]["content"]["blocks"][0]["name"] == "machine_comparison"
 
 
-@pytest.mark.parametrize("kind", ["sweep", "modes", "run-up"])
+#: Few points, to be quick.
+FEW = {
+    "sweep": {"values": "2900..3000 rpm:2"},
+    "run-up": {"speeds": "2900..2950 rpm", "duration": "0.1"},
+    "harris": {"torque": "60 N*m, 90 N*m"},
+    "losses": {"torque": "60, 90 N*m", "speed": "900 rpm"},
+    "recording": {"duration": "0.1", "format": "wav"},
+    "friction-from-loss": {"file": "fzg-wheel-driven"},
+}
+
+
+@pytest.mark.filterwarnings("ignore::tribodyn.errors.ModelWarning")  # the page lists them
+@pytest.mark.parametrize("kind", ["modes", *FEW])
 def test_studies_of_machines_display_and_save_their_result(kind: str, tmp_path: Path) -> None:
     case = read_any_case(MACHINE)
-    few = {"sweep": {"values": "2900..3000 rpm:2"}, "run-up": {"duration": "0.1"}}
-    values = first_values(kind, case) | few.get(kind, {})
-    if kind == "run-up":
-        values["speeds"] = "2900..2950 rpm"
-    shown = STUDIES[kind].compute(case, values, SILENT, tmp_path / "result")
+    if kind in ("harris", "losses", "friction-from-loss"):  # of meshes with computed teeth
+        case = load_case("two-stage-spur").replace({"friction.law": "schlenk"}, by="test")
+    values = first_values(kind, case) | FEW.get(kind, {})
+    shown = compute(kind, case, values, SILENT, tmp_path / "result")
     assert shown["sentences"]
     assert shown["figures"]
     assert all(figure.data for _, figure, _ in shown["figures"])

@@ -31,7 +31,8 @@ def test_every_value_of_a_stage_has_its_field(desk: TabSession) -> None:
     assert displayed["planets.low.count"]["value"] == "3"
     assert "gears.sun.shaft" not in displayed
     kinds = {kind for kind in STUDIES if offered(kind, desk.case)}
-    assert kinds == {"sweep", "sobol", "modes", "run-up"}
+    of_mesh = {"harris", "losses", "film", "relief", "friction-from-loss"}
+    assert kinds == {"sweep", "sobol", "modes", "run-up", "recording", *of_mesh}
 
 
 def test_typed_values_change_the_stage_and_planets_that_do_not_fit_are_marked(

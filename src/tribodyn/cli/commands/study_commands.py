@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from tribodyn.cli.console import say, say_json, table, tell
+from tribodyn.cli.console import say, say_json, show_warnings, table, tell
 from tribodyn.cli.settings import (
     CaseName,
     Flag,
@@ -21,6 +21,7 @@ from tribodyn.cli.settings import (
 )
 
 if TYPE_CHECKING:
+    from tribodyn.errors import ModelWarning
     from tribodyn.report.study_report_data import StudyReportData
     from tribodyn.study.case.case import Case
     from tribodyn.study.machine.case import MachineCase
@@ -43,20 +44,25 @@ def stripped(texts: Sequence[str]) -> list[str]:
 
 def finish(
     kind: str,
-    case: Case | MachineCase,
+    case: Case | MachineCase | None,
     target: Path,
     answer: StudyReportData,
     force: bool,
     json: bool,
+    warnings: Sequence[ModelWarning] = (),
 ) -> None:
-    """Write the directory of a study and print its results."""
+    """Write the directory of a study and print its results, with warnings that it raised."""
     from tribodyn.report.study_report_data import save_study
 
-    save_study(kind, case, target, answer, force)
+    messages = [warning.message for warning in warnings]
+    report = answer._replace(statements=[*answer.statements, *messages])
+    save_study(kind, case, target, report, force)
     if json:
         say_json(answer.facts)
     else:
-        say("\n".join([case.title, *answer.statements, table([answer.head, *answer.rows])]))
+        heading = [] if case is None else [case.title]
+        say("\n".join([*heading, *answer.statements, table([answer.head, *answer.rows])]))
+    show_warnings(warnings)
     tell(f"Report: {target / 'report.html'}")
 
 
@@ -82,7 +88,7 @@ def modes(
         Write the modes in SI as one JSON object to stdout.
     """
     from tribodyn.cli.progress_bar import progress_bar
-    from tribodyn.report.modes_report_data import any_modes_report_data
+    from tribodyn.report.machine_report import any_modes_report_data
 
     ready, target = prepare_study("modes", case, out, set_, force)
     ends = None if between is None else read_ends(between)

@@ -98,6 +98,17 @@ def mesh_names(case: Case | MachineCase) -> tuple[str, ...]:
     return tuple(reversed(groups.values()))
 
 
+def study_meshes(study: str, case: Case | MachineCase) -> tuple[str, ...]:
+    """Meshes of a case, of :func:`mesh_names`, that have what a study of one mesh needs."""
+    parts: Any = case
+    names = mesh_names(case)
+    if kind_of(case) in PAIRS:
+        return names
+    pairs: Any = zip(parts.meshes_with_teeth, parts.mesh_pairs(), strict=True)
+    unfit = [mesh for mesh, (_, pair, _) in pairs if kind_of(pair) not in STUDIES[study].kinds]
+    return tuple(name for name in names if name not in unfit)
+
+
 def mesh_pair(study: str, case: Case | MachineCase, mesh: str | None = None) -> MeshPair:
     """Pair of gears of the mesh that a study is about, misaligned as its shafts deflect."""
     require(study, case)

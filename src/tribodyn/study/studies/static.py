@@ -46,19 +46,21 @@ class CaseTipReliefOptimum(TipReliefOptimum):
     tables: tuple[str, str] = ("gears.pinion", "gears.wheel")
 
     @property
-    def case(self) -> Case | MachineCase:
-        """The case that was studied, with the relief that was found."""
+    def changes(self) -> dict[str, str]:
+        """Relief by key of the case, as text in the units of the file."""
         tables = dict(zip(GEARS, self.tables, strict=True))
         relieved = tables.values() if self.gears == "both" else (tables[self.gears],)
-        # As text in the units of the case file, which then shows these digits.
         values = {
             "tip_relief": format_quantity(self.amount, "m", "um"),
             "tip_relief_length": format_quantity(self.length, "m", "mm"),
             "tip_relief_shape": self.shape,
         }
-        changed: Case | MachineCase = self.studied.replace(
-            {f"{gear}.modification.{n}": v for gear in relieved for n, v in values.items()}
-        )
+        return {f"{gear}.modification.{n}": v for gear in relieved for n, v in values.items()}
+
+    @property
+    def case(self) -> Case | MachineCase:
+        """The case that was studied, with the relief that was found."""
+        changed: Case | MachineCase = self.studied.replace(self.changes)
         return changed
 
 

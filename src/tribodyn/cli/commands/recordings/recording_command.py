@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import Annotated, Any
 
 from cyclopts import Parameter
 
@@ -19,9 +19,6 @@ from tribodyn.cli.settings import (
 )
 from tribodyn.errors import Argument, InputError, Problem, TribodynError, collected
 
-if TYPE_CHECKING:
-    from tribodyn.measurement import Recording
-
 #: Options of the command by the arguments of the functions behind it.
 _OPTIONS = {
     name: f"--{name.replace('_', '-')}"
@@ -30,8 +27,6 @@ _OPTIONS = {
         *("tacho_jitter", "seed", "repeats"),
     )
 } | {"path": "--out", "folder": "--out"}
-#: Keys of the truth beside the faults, in SI.
-_OPERATION = tuple(f"operation.{key}" for key in ("torque", "speed", "speed_of", "input", "output"))
 
 
 def _help(text: str) -> Any:
@@ -125,10 +120,9 @@ def _record(
     case: str, out: Path | None, sampling: Sampling, set_: Settings, force: bool
 ) -> tuple[dict[str, Any], list[str]]:
     """Write one recording and its truth; return facts and lines of text."""
-    from tribodyn.cases.load import run
     from tribodyn.cli.progress_bar import progress_bar
     from tribodyn.measurement.writers import check_ending
-    from tribodyn.study.faults.sensors import check_sensors
+    from tribodyn.report.signal_report import recorded_motion
 
     file = out if out is not None else Path(f"{Path(case).stem}-recording.mat")
     settings = sampling.settings()
@@ -139,20 +133,12 @@ def _record(
     check_ending(file)
     ready = changed_any_case(case, set_ or [])
     names = [name.strip() for name in sampling.sensor.split(",")]
-    check_sensors(ready._sensors, names)
     with progress_bar() as progress:
-        result: Any = run(ready, progress)
-        recorded: Recording = result.recording(names, settings.pop("duration"), **settings)
-    faults: Any = getattr(ready, "faults", None) or {}
-    truth = {
-        name: {key: value for key, value in vars(fault).items() if value is not None}
-        for name, fault in (faults if isinstance(faults, dict) else vars(faults)).items()
-    }
-    operation = {key: value for key, value in ready.values() if key in _OPERATION}
-    recorded.save(file, truth={"title": ready.title, **operation, "faults": truth})
+        recorded, truth = recorded_motion(ready, names, progress, **settings)
+    recorded.save(file, truth={"title": ready.title, **truth})
     rate, size = recorded.sample_rate, next(iter(recorded.channels.values())).size
     facts = {"file": str(file), "sample_rate": rate, "samples": size}
-    return {**facts, "units": dict(recorded.units), **operation, "faults": truth}, [
+    return {**facts, "units": dict(recorded.units), **truth}, [
         f"{ready.title}\n{recorded}",
         f"Recording: {file}, truth: {file.with_suffix('.json')}",
         f"Analyse it: tribodyn signal {file} --channel {names[0]} --tacho tacho",
