@@ -7,7 +7,7 @@
 
 Everything is loaded when it is first used: the names below, and the packages ``gear``, ``contact``,
 ``lubricant``, ``ehl``, ``friction``, ``losses``, ``stiffness``, ``mesh``, ``dynamics``,
-``machine``, ``analysis``, ``measurement``, ``uncertainty``,
+``machine``, ``rating``, ``analysis``, ``measurement``, ``uncertainty``,
 ``exchange``, ``study``, ``cases``, ``cookbook``, ``variants``, ``plot`` and ``report``.
 """
 
@@ -105,8 +105,8 @@ _ELSEWHERE = {
 _PACKAGES = (
     "analysis", "cases", "contact", "cookbook", "dynamics", "ehl", "errors", "exchange",
     "faults", "friction", "gear", "losses", "lubricant", "machine", "measurement", "mesh",
-    "nomenclature", "plot", "progress", "report", "stiffness", "study", "surrogate", "uncertainty",
-    "units", "variants",
+    "nomenclature", "plot", "progress", "rating", "report", "stiffness", "study", "surrogate",
+    "uncertainty", "units", "variants",
 )  # fmt: skip
 
 

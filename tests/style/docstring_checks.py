@@ -37,6 +37,7 @@ PHYSICS = {
     "signals",
     "machine",
     "faults",
+    "rating",
 }
 #: Types of options of commands that bring their own text.
 OPTIONS = {

@@ -39,23 +39,25 @@ def _require_oil(points: tuple[TemperaturePoint, TemperaturePoint]) -> None:
         )
 
 
-def _require_inside(temperature: float, cold: float, warm: float) -> None:
+def _require_inside(temperature: float, cold: float, warm: float, margin: float = MARGIN) -> None:
     """Refuse a temperature that lies too far outside the data."""
-    if cold - MARGIN <= temperature <= warm + MARGIN:
+    if cold - margin <= temperature <= warm + margin:
         return
     low, high = cold - ZERO_CELSIUS, warm - ZERO_CELSIUS
     raise InputError(
         f"temperature = {temperature - ZERO_CELSIUS:g} degC",
         where=Argument("temperature"),
         why=f"the viscosity is known at {low:g} and {high:g} degC, and the line through "
-        f"these points is not trusted more than {MARGIN:g} K beyond them",
-        remedy=f"Stay between {low - MARGIN:g} and {high + MARGIN:g} degC, "
+        f"these points is not trusted more than {margin:g} K beyond them",
+        remedy=f"Stay between {low - margin:g} and {high + margin:g} degC, "
         "or give the properties at the working temperature",
     )
 
 
 def walther_viscosity(
-    temperature: float, points: tuple[TemperaturePoint, TemperaturePoint]
+    temperature: float,
+    points: tuple[TemperaturePoint, TemperaturePoint],
+    margin: float = MARGIN,
 ) -> float:
     """Kinematic viscosity at a temperature from two measured points.
 
@@ -67,6 +69,8 @@ def walther_viscosity(
         Wanted temperature.
     points : tuple of two (float [K], float [m^2/s])
         Temperature and kinematic viscosity, the colder point first.
+    margin : float [K]
+        How far outside of the points the line may be used.
 
     Returns
     -------
@@ -75,7 +79,8 @@ def walther_viscosity(
     Raises
     ------
     InputError
-        If the points make no falling line, or the temperature lies more than 30 K outside them.
+        If the points make no falling line, or the temperature lies outside them by more than the
+        margin.
 
     Valid for liquid petroleum products above 2 mm^2/s. Source: Walther (1931); ASTM D341.
 
@@ -88,7 +93,7 @@ def walther_viscosity(
     _require_oil(points)
     (cold, thick), (warm, thin) = points
     require_positive("temperature", temperature, "K")
-    _require_inside(temperature, cold, warm)
+    _require_inside(temperature, cold, warm, margin)
     slope = (_ordinate(thin) - _ordinate(thick)) / math.log10(warm / cold)
     ordinate = _ordinate(thick) + slope * math.log10(temperature / cold)
     return float(10.0 ** (10.0**ordinate) - _SHIFT) * 1e-6

@@ -396,10 +396,11 @@ def test_slices_out_of_range_are_refused():
 
 
 def test_stiffness_of_iso_6336_of_a_helical_pair():
-    """Method B by hand: virtual teeth z/cos^3(beta), cos(beta) on the single stiffness."""
+    """Method B by hand: z/(cos^2(beta_b) cos(beta)), cos(beta) on the single stiffness."""
     pair = helical(pinion_profile_shift_coefficient=0.2, wheel_profile_shift_coefficient=0.1)
     cosine, x1, x2 = math.cos(math.radians(21.0)), 0.2, 0.1
-    z1, z2 = 27 / cosine**3, 51 / cosine**3
+    base = math.cos(math.asin(math.sin(math.radians(21.0)) * math.cos(math.radians(20.0))))
+    z1, z2 = 27 / (base**2 * cosine), 51 / (base**2 * cosine)
     q = 0.04723 + 0.15551 / z1 + 0.25791 / z2 - 0.00635 * x1 - 0.11654 * x1 / z1
     q += -0.00193 * x2 - 0.24188 * x2 / z2 + 0.00529 * x1**2 + 0.00182 * x2**2
     rack = 1.0 + 0.5 * (1.2 - pair.pinion.rack.dedendum_coefficient)

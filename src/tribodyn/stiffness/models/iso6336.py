@@ -83,7 +83,7 @@ def iso6336_single_stiffness(
 def _deflection_coefficient(pair: SpurPair) -> float:
     """Minimum of the pair's flexibility per width ``q'`` [mm um/N]."""
     # Teeth of the virtual spur gears; a ring counts as a rack.
-    virtual = 1.0 / np.cos(pair.helix_angle) ** 3
+    virtual = 1.0 / (np.cos(pair.base_helix_angle) ** 2 * np.cos(pair.helix_angle))
     z1 = pair.pinion.teeth * virtual
     z2 = np.inf if pair.is_internal else pair.wheel.teeth * virtual
     x1, x2 = pair.pinion.profile_shift_coefficient, pair.wheel.profile_shift_coefficient

@@ -1,0 +1,57 @@
+"""Load capacity of gears by ISO 6336.
+
+| module | content |
+| --- | --- |
+| `pair_rating` | pitting and bending of a cylindrical gear pair under one load |
+| `spectrum` | the same under a load spectrum, damage by Miner: ISO 6336-6 |
+| `factor` | a factor with unit, source and branch |
+| `conditions` | application factor, life, edition, design of the leads, required safeties |
+| `rated_gear` | material, accuracy, roughness and load cycles of a gear; its cutter and shaft |
+| `materials` | strength by type, grade and hardness: ISO 6336-5 |
+| `oil` | the oil as ratings need it |
+| `tolerances` | deviations by accuracy grade: ISO 1328-1 |
+| `mesh_load` | forces and speeds of one mesh |
+| `influence` | K_v, K_Hbeta, K_Halpha: ISO 6336-1 |
+| `pitting` | contact stress and its limit: ISO 6336-2 |
+| `root_section`, `bending`, `root_strength` | root stress and its limit: ISO 6336-3 |
+| `life` | Z_NT, Y_NT and cycles to failure |
+"""
+
+from tribodyn.arguments import guard
+from tribodyn.rating.conditions import RatingConditions
+from tribodyn.rating.factor import Factor
+from tribodyn.rating.influence.dynamic_factor import DynamicFactor, dynamic_factor
+from tribodyn.rating.influence.face_load import face_load_factor
+from tribodyn.rating.life import cycles_to_failure, life_factor
+from tribodyn.rating.materials import GearMaterial
+from tribodyn.rating.oil import GearOil
+from tribodyn.rating.pair_rating import GearRating, PairRating, rate_pair
+from tribodyn.rating.rated_gear import PinionShaft, RatedGear, ShaperCutter
+from tribodyn.rating.spectrum import GearDamage, LoadCase, SpectrumRating, rate_spectrum
+from tribodyn.rating.tolerances import Deviations, gear_tolerances
+
+__all__ = [
+    "Deviations",
+    "DynamicFactor",
+    "Factor",
+    "GearDamage",
+    "GearMaterial",
+    "GearOil",
+    "GearRating",
+    "LoadCase",
+    "PairRating",
+    "PinionShaft",
+    "RatedGear",
+    "RatingConditions",
+    "ShaperCutter",
+    "SpectrumRating",
+    "cycles_to_failure",
+    "dynamic_factor",
+    "face_load_factor",
+    "gear_tolerances",
+    "life_factor",
+    "rate_pair",
+    "rate_spectrum",
+]
+
+guard(__name__)

@@ -1,0 +1,173 @@
+"""Bending of the tooth root: ISO 6336-3, method B.
+
+``sigma_F0 = F_t/(b m_n) Y_F Y_S Y_beta Y_B Y_DT``,
+``sigma_F = sigma_F0 K_A K_gamma K_v K_Fbeta K_Falpha``,
+``sigma_FG = sigma_Flim Y_ST Y_NT Y_drelT Y_RrelT Y_X``, ``S_F = sigma_FG/sigma_F``, with
+``Y_F = 6 h_Fe cos(alpha_Fen)/(s_Fn^2 cos(alpha_n)) f_eps`` (lengths over m_n) for a load at the
+outer point of single contact of the virtual gear, and
+``Y_S = (1.2 + 0.13 L) q_s^(1/(1.21 + 2.3/L))``, ``L = s_Fn/h_Fe``, ``q_s = s_Fn/(2 rho_F)``.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import Final, NamedTuple
+
+from tribodyn.errors import Argument, InputError
+from tribodyn.gear import CylindricalGear
+from tribodyn.gear.curves import involute
+from tribodyn.rating.factor import Factors, check_range
+from tribodyn.rating.mesh_load import PRACTICE, MeshLoad
+from tribodyn.rating.root_section import RootSection, root_section, virtual_teeth
+
+PART_3: Final = "ISO 6336-3"
+
+
+class LeverArm(NamedTuple):
+    """Load at the outer point of single contact of the virtual gear."""
+
+    bending_arm: float  #: h_Fe over m_n
+    load_angle: float  #: alpha_Fen [rad]
+    pressure_angle: float  #: alpha_en [rad]
+
+
+def virtual_contact_ratio(mesh: MeshLoad) -> float:
+    """eps_alpha,n = eps_alpha/cos^2(beta_b)."""
+    return mesh.pair.transverse_contact_ratio / math.cos(mesh.pair.base_helix_angle) ** 2
+
+
+def lever_arm(gear: CylindricalGear, section: RootSection, contact_ratio: float) -> LeverArm:
+    """Lever arm and angle of the load; lengths over the normal module."""
+    z, angle = virtual_teeth(gear), gear.normal_pressure_angle
+    sign, module = gear.sign, gear.normal_module
+    base = abs(z) * math.cos(angle)
+    tip = abs(z) + 2.0 * (gear.tip_radius - gear.reference_radius) / module
+    reach = math.sqrt((0.5 * tip) ** 2 - (0.5 * base) ** 2)
+    reach -= sign * math.pi * math.cos(angle) * (contact_ratio - 1.0)
+    at_load = math.atan(reach / (0.5 * base))
+    shift = gear.generating_shift_coefficient
+    half = (math.pi / 2.0 + 2.0 * shift * math.tan(angle)) / z + involute(angle) - involute(at_load)
+    load_angle = at_load - half
+    center = 0.5 * base / math.cos(load_angle)
+    return LeverArm(sign * (center - section.center_distance), load_angle, at_load)
+
+
+def form_factor(
+    lever: LeverArm, section: RootSection, pressure_angle: float, overlap_factor: float
+) -> float:
+    """Y_F."""
+    bending = 6.0 * lever.bending_arm * math.cos(lever.load_angle)
+    return bending / (section.chord**2 * math.cos(pressure_angle)) * overlap_factor
+
+
+def load_distribution_factor(
+    contact_ratio: float, overlap: float, edition: int
+) -> tuple[float, str]:
+    """f_eps of the 2019 form factor, and its rule."""
+    if edition == 2006:
+        return 1.0, "edition 2006"
+    if overlap == 0.0:
+        return (1.0, "spur") if contact_ratio < 2.0 else (0.7, "spur, eps_alpha,n >= 2")
+    if overlap >= 1.0:
+        return contact_ratio**-0.5, "eps_beta >= 1"
+    share = 1.0 - overlap
+    if contact_ratio >= 2.0:
+        return math.sqrt(0.5 * share + overlap / contact_ratio), "eps_beta < 1, eps_alpha,n >= 2"
+    return math.sqrt(share + overlap / contact_ratio), "eps_beta < 1"
+
+
+def _helix_factor(mesh: MeshLoad) -> float:
+    """Y_beta."""
+    beta, overlap = mesh.pair.helix_angle, mesh.pair.overlap_ratio
+    degrees = math.degrees(beta)
+    check_range("beta", degrees, 0.0, 30.0, f"Y_beta of {PART_3}, in deg")
+    value = 1.0 - min(overlap, 1.0) * min(degrees, 30.0) / 120.0
+    if mesh.conditions.edition == 2019:
+        value /= math.cos(beta) ** 3
+    branch = f"edition {mesh.conditions.edition}" + ("; beta limited to 30 deg" * (degrees > 30.0))
+    return mesh.factors.record("Y_beta", value, f"{PART_3}, helix angle factor", branch=branch)
+
+
+def _rim_factor(gear: CylindricalGear, name: str) -> tuple[float, str, str]:
+    """Y_B, its rule and source."""
+    height = abs(gear.tip_radius - gear.root_radius)
+    rim = abs(gear.rim_radius - gear.root_radius)
+    if gear.is_ring:
+        ratio, limits, source = rim / gear.normal_module, (1.75, 3.5), PRACTICE
+        symbol, value = "s_R/m_n", 1.15 * math.log(8.324 / ratio)
+    else:
+        ratio, limits, source = rim / height, (0.5, 1.2), PART_3
+        symbol, value = "s_R/h_t", 1.6 * math.log(2.242 / ratio)
+    if gear.bore_diameter == 0.0 and not gear.is_ring:
+        return 1.0, "solid", source
+    if ratio >= limits[1]:
+        return 1.0, f"{symbol} = {ratio:.4g}", source
+    if ratio >= limits[0]:
+        return value, f"thin rim, {symbol} = {ratio:.4g}", source
+    raise InputError(
+        f"rim of {rim * 1e3:.4g} mm behind the teeth of the {name}: {symbol} = {ratio:.4g}",
+        where=Argument("rim_diameter" if gear.is_ring else "bore_diameter", name),
+        why=f"The rim factor Y_B holds from {symbol} = {limits[0]:g}",
+        remedy="Make the rim thicker, or give the factor Y_B from a computed root stress",
+    )
+
+
+def _deep_tooth_factor(
+    mesh: MeshLoad, contact_ratio: float, grade: int | None
+) -> tuple[float, str]:
+    """Y_DT and its rule."""
+    if contact_ratio <= 2.05 or grade is None or grade > 4:
+        return (
+            1.0,
+            "eps_alpha,n <= 2.05" if contact_ratio <= 2.05 else "grade above 4 or not stated",
+        )
+    if contact_ratio <= 2.5:
+        return 2.366 - 0.666 * contact_ratio, "eps_alpha,n up to 2.5"
+    return 0.7, "eps_alpha,n above 2.5"
+
+
+def record_root_stress(mesh: MeshLoad, index: int, factors: Factors) -> float:
+    """sigma_F of a gear (0 pinion, 1 wheel) with its Y factors."""
+    gear, rated, mate = mesh.gears[index], mesh.rated[index], mesh.gears[1 - index]
+    record, module = factors.record, gear.normal_module
+    ratio = virtual_contact_ratio(mesh)
+    section = root_section(gear, rated.cutter, mesh.conditions.edition)
+    lever = lever_arm(gear, section, ratio)
+    lengths = {"s_Fn": section.chord, "h_Fe": lever.bending_arm, "rho_F": section.fillet_radius}
+    chord, arm, fillet = (
+        record(name, value * module, f"{PART_3}, critical section", unit="m", branch=section.tool)
+        for name, value in lengths.items()
+    )
+    record("alpha_Fen", lever.load_angle, f"{PART_3}, angle of the load", unit="rad")
+    f_eps, rule = load_distribution_factor(ratio, mesh.pair.overlap_ratio, mesh.conditions.edition)
+    f_eps = record("f_eps", f_eps, PRACTICE, branch=rule)
+    y_f = form_factor(lever, section, gear.normal_pressure_angle, f_eps)
+    y_f = record("Y_F", y_f, f"{PART_3}, form factor", branch=section.tool)
+    slender, notch = (
+        chord / arm,
+        record("q_s", chord / (2.0 * fillet), f"{PART_3}, notch parameter"),
+    )
+    check_range("q_s", notch, 1.0, 8.0, f"Y_S of {PART_3}")
+    y_s = (1.2 + 0.13 * slender) * notch ** (1.0 / (1.21 + 2.3 / slender))
+    y_s = record("Y_S", y_s, f"{PART_3}, stress correction factor")
+    if "Y_B" in factors.replacements:
+        y_b = record("Y_B", 1.0, f"{PART_3}, rim factor")
+    else:
+        y_b, rule, source = _rim_factor(gear, ("pinion", "wheel")[index])
+        y_b = record("Y_B", y_b, f"{source}, rim factor", branch=rule)
+    y_dt, rule = _deep_tooth_factor(mesh, ratio, rated.grade)
+    y_dt = record("Y_DT", y_dt, f"{PART_3}, deep tooth factor", branch=rule)
+    width = min(gear.face_width, mate.face_width + 2.0 * module)
+    nominal = mesh.tangential_force / (width * module) * y_f * y_s * y_b * y_dt
+    nominal *= mesh.factors["Y_beta"]
+    nominal = record("sigma_F0", nominal, f"{PART_3}, nominal root stress", unit="Pa")
+    names = ("K_A", "K_gamma", "K_v", "K_Fbeta", "K_Falpha")
+    stress = nominal * math.prod(mesh.factors[name] for name in names)
+    return record("sigma_F", stress, f"{PART_3}, root stress", unit="Pa")
+
+
+def record_helix_factor(mesh: MeshLoad) -> None:
+    """Y_beta and eps_alpha,n of a mesh."""
+    ratio = virtual_contact_ratio(mesh)
+    mesh.factors.record("eps_alphan", ratio, f"{PART_3}, virtual contact ratio")
+    _helix_factor(mesh)

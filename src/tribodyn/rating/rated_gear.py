@@ -1,0 +1,214 @@
+"""What a rating needs of a gear beyond its geometry: material, accuracy, roughness, loads."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+from tribodyn.errors import Argument, InputError, require_between, require_positive
+from tribodyn.gear import CylindricalGear
+from tribodyn.rating.materials import GearMaterial
+from tribodyn.rating.tolerances import Deviations, gear_tolerances
+
+#: Accuracy grade that is assumed where neither a grade nor deviations are stated.
+ASSUMED_GRADE = 6
+
+
+@dataclass(frozen=True, kw_only=True)
+class ShaperCutter:
+    """Gear-shaped cutter that made a gear; its addendum is the dedendum of the gear's rack.
+
+    Parameters
+    ----------
+    teeth : int
+        Number of teeth z_0.
+    profile_shift_coefficient : float
+        x_0, of the state of the cutter.
+    tip_radius_coefficient : float
+        Radius of its tip round over the module.
+
+    Raises
+    ------
+    InputError
+        If a value is out of range.
+
+    Examples
+    --------
+    >>> ShaperCutter(teeth=25, tip_radius_coefficient=0.2).teeth
+    25
+    """
+
+    teeth: int
+    profile_shift_coefficient: float = 0.0
+    tip_radius_coefficient: float = 0.2
+
+    def __post_init__(self) -> None:
+        require_between("teeth", self.teeth, 5, 500)
+        require_between("profile_shift_coefficient", self.profile_shift_coefficient, -2.0, 2.0)
+        require_between("tip_radius_coefficient", self.tip_radius_coefficient, 0.0, 1.0)
+
+
+@dataclass(frozen=True, kw_only=True)
+class RatedGear:
+    """Data of one gear for its rating.
+
+    Parameters
+    ----------
+    material : GearMaterial
+        Strength and elastic constants.
+    accuracy_grade : int, optional
+        Grade of ISO 1328-1; 6 is assumed where deviations are missing too.
+    tolerance_edition : int
+        Edition of ISO 1328-1, 1995 or 2013.
+    pitch_deviation, profile_deviation, helix_deviation : float, optional
+        f_pt, f_fa and f_Hb [m]; by default the tolerances of the grade.
+    flank_roughness : float
+        Rz of the flank [m].
+    root_roughness : float
+        Rz of the root [m].
+    arithmetic_roughness : float, optional
+        Ra of the flank [m]; a sixth of Rz by default.
+    cutter : ShaperCutter, optional
+        Cutter that made the root; by default the gear's basic rack, of a ring the arc of its tip.
+    load_cycles : float, optional
+        Number of load cycles N, pure number; by default from the required life.
+    meshes_per_turn : int
+        Load cycles of a flank per turn: meshes of the gear that load the same flank.
+    stress_ratio : float
+        Least over greatest root stress R, pure number: 0 for pulsating load, -1.2 for an idler.
+
+    Raises
+    ------
+    InputError
+        If a value is out of range.
+
+    Examples
+    --------
+    >>> RatedGear(accuracy_grade=5, load_cycles=1e8).material.kind
+    'Eh'
+    """
+
+    material: GearMaterial = field(default_factory=GearMaterial)
+    accuracy_grade: int | None = None
+    tolerance_edition: int = 1995
+    pitch_deviation: float | None = None
+    profile_deviation: float | None = None
+    helix_deviation: float | None = None
+    flank_roughness: float = 4e-6
+    root_roughness: float = 16e-6
+    arithmetic_roughness: float | None = None
+    cutter: ShaperCutter | None = None
+    load_cycles: float | None = None
+    meshes_per_turn: int = 1
+    stress_ratio: float = 0.0
+
+    def __post_init__(self) -> None:
+        for name in ("pitch_deviation", "profile_deviation", "helix_deviation"):
+            if (deviation := getattr(self, name)) is not None:
+                require_between(name, deviation, 0.0, 1e-3, "m")
+        for name in ("flank_roughness", "root_roughness", "arithmetic_roughness"):
+            if getattr(self, name) is not None:
+                require_between(name, getattr(self, name), 1e-9, 1e-3, "m")
+        if self.load_cycles is not None:
+            require_positive("load_cycles", self.load_cycles)
+        require_between("meshes_per_turn", self.meshes_per_turn, 1, 100)
+        require_between("stress_ratio", self.stress_ratio, -2.0, 1.0 - 1e-9)
+
+    @property
+    def roughness_ra(self) -> float:
+        """Ra of the flank [m]."""
+        ra = self.arithmetic_roughness
+        return self.flank_roughness / 6.0 if ra is None else ra
+
+    @property
+    def grade_text(self) -> str:
+        """Where the deviations come from."""
+        if self.accuracy_grade is not None:
+            return f"grade {self.accuracy_grade} of ISO 1328-1:{self.tolerance_edition}"
+        return "stated" if self._stated else f"grade {ASSUMED_GRADE} assumed"
+
+    @property
+    def _stated(self) -> bool:
+        stated = (self.pitch_deviation, self.profile_deviation, self.helix_deviation)
+        return all(deviation is not None for deviation in stated)
+
+    @property
+    def grade(self) -> int | None:
+        """Accuracy grade; None where only deviations are stated."""
+        if self.accuracy_grade is None and not self._stated:
+            return ASSUMED_GRADE
+        return self.accuracy_grade
+
+    def deviations(self, gear: CylindricalGear) -> Deviations:
+        """Return the deviations of a gear: those stated, else the tolerances of its grade.
+
+        Parameters
+        ----------
+        gear : CylindricalGear
+            The gear.
+        """
+        stated = (self.pitch_deviation, self.profile_deviation, self.helix_deviation)
+        if self._stated:
+            return Deviations(*(deviation or 0.0 for deviation in stated))
+        grade = ASSUMED_GRADE if self.accuracy_grade is None else self.accuracy_grade
+        tolerances = gear_tolerances(gear, grade, self.tolerance_edition)
+        return Deviations(
+            *(
+                tolerance if deviation is None else deviation
+                for deviation, tolerance in zip(stated, tolerances, strict=True)
+            )
+        )
+
+
+@dataclass(frozen=True, kw_only=True)
+class PinionShaft:
+    """Shaft of the pinion between its bearings, for the deflection in the mesh.
+
+    Parameters
+    ----------
+    bearing_span : float [m]
+        l, between the bearings.
+    offset : float [m]
+        s, of the pinion from the middle of the span.
+    diameter : float [m]
+        d_sh of the shaft.
+    arrangement : str
+        ``a`` to ``e``: pinion between the bearings on the side of the output (a) or the input (b),
+        overhung (c), in the middle of a train between the bearings (d, e), as drawn in the source.
+
+    Raises
+    ------
+    InputError
+        If a value is out of range, or s/l is 0.3 or more.
+
+    Examples
+    --------
+    >>> PinionShaft(bearing_span=0.2, offset=0.02, diameter=0.04).arrangement
+    'a'
+    """
+
+    bearing_span: float
+    offset: float
+    diameter: float
+    arrangement: str = "a"
+
+    def __post_init__(self) -> None:
+        require_positive("bearing_span", self.bearing_span, "m")
+        require_positive("diameter", self.diameter, "m")
+        require_between("offset", self.offset, 0.0, self.bearing_span, "m")
+        if self.arrangement not in SHAFT_FACTORS:
+            what, why = f'arrangement = "{self.arrangement}"', f"Known: {', '.join(SHAFT_FACTORS)}"
+            raise InputError(what, Argument("arrangement"), why, "Choose one of these")
+        if self.offset >= 0.3 * self.bearing_span:
+            raise InputError(
+                f"offset = {self.offset * 1e3:g} mm",
+                Argument("offset"),
+                "The formula of f_sh holds for s/l below 0.3, here below "
+                f"{300.0 * self.bearing_span:g} mm",
+                "Give shaft_deflection, or the factor K_Hbeta from a computed load distribution",
+            )
+
+
+#: K' by arrangement: with stiffening by the pinion (d_1/d_sh of 1.15 and more), without.
+SHAFT_FACTORS = {
+    "a": (0.48, 0.8), "b": (-0.48, -0.8), "c": (1.33, 1.33), "d": (-0.36, -0.6), "e": (-0.6, -1.0),
+}  # fmt: skip

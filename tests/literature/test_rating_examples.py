@@ -1,0 +1,81 @@
+"""Ratings by ISO 6336, factor by factor, against examples computed by hand."""
+
+from __future__ import annotations
+
+import math
+
+import pytest
+
+from known_ratings import MPA, UM, helical_example, rate_helical, rate_spur, spur_example
+
+#: Factor, value as printed, SI unit of the print; pairs belong to pinion and wheel.
+SPUR = {
+    "F_t": (5555.556, 1.0), "v": (5.654867, 1.0), "c_prime": (12.305339, 1e9),
+    "c_gamma_alpha": (16.574018, 1e9), "m_red": (0.012570082, 1e3), "N": (0.069214, 1.0),
+    "f_pb": (7.517541, UM), "y_alpha": (0.563816, UM), "y_f": (0.6, UM), "B_p": (0.172505, 1.0),
+    "B_f": (0.183576, 1.0), "B_k": (0.503849, 1.0), "K_v": (1.016162, 1.0),
+    "F_betax": (19.377922, UM), "y_beta": (2.906688, UM), "K_Hbeta": (1.230182, 1.0),
+    "K_Fbeta": (1.154214, 1.0), "K_Halpha": (1.0, 1.0), "Z_H": (2.341930, 1.0),
+    "Z_eps": (0.919687, 1.0), "Z_B": (1.070192, 1.0), "M_2": (0.979817, 1.0),
+    "sigma_H0": (1239.067, MPA), "Z_L": (0.965800, 1.0), "Z_v": (0.985087, 1.0),
+    "Z_R": (0.958576, 1.0),
+}  # fmt: skip
+SPUR_GEARS = {
+    "sigma_H": (1657.590, 1548.872, MPA), "Z_NT": (0.978963, 0.991215, 1.0),
+    "S_H": (0.807921, 0.875451, 1.0), "s_Fn": (8.906461, 9.397826, 1e-3),
+    "h_Fe": (5.057838, 5.276146, 1e-3), "rho_F": (2.320571, 2.264832, 1e-3),
+    "alpha_Fen": (22.819930, 22.746734, math.pi / 180.0), "Y_F": (1.688634, 1.582982, 1.0),
+    "Y_S": (1.851458, 1.916585, 1.0), "sigma_F0": (275.700, 267.541, MPA),
+    "sigma_F": (404.199, 392.239, MPA), "Y_drelT": (0.994224, 0.995835, 1.0),
+    "Y_RrelT": (1.001651, 1.001651, 1.0), "Y_NT": (0.932157, 0.939760, 1.0),
+    "S_F": (2.117508, 2.203440, 1.0),
+}  # fmt: skip
+HELICAL = {
+    "eps_alphan": (1.702711, 1.0), "c_prime": (12.333513, 1e9), "c_gamma_alpha": (17.206770, 1e9),
+    "m_red": (0.0067459424, 1e3), "N": (0.155511, 1.0), "K_v": (1.032590, 1.0),
+    "f_ma": (10.259142, UM), "K_Hbeta": (1.432473, 1.0), "K_Fbeta": (1.346439, 1.0),
+    "K_Halpha": (1.070131, 1.0), "Z_H": (2.371324, 1.0), "Z_eps": (0.809291, 1.0),
+    "Z_beta": (1.031590, 1.0), "sigma_H0": (967.0345, MPA), "Z_L": (1.047386, 1.0),
+    "Z_v": (0.995073, 1.0), "Z_R": (0.932896, 1.0), "Y_beta": (1.004295, 1.0),
+}  # fmt: skip
+HELICAL_GEARS = {
+    "sigma_H": (1216.655, 1216.655, MPA), "Z_NT": (0.915158, 0.928447, 1.0),
+    "S_H": (1.097020, 1.112950, 1.0), "s_Fn": (4.110366, 4.361251, 1e-3),
+    "h_Fe": (2.135506, 2.222432, 1e-3), "rho_F": (0.991400, 0.902416, 1e-3),
+    "f_eps": (0.766354, 0.766354, 1.0), "Y_F": (1.173070, 1.078430, 1.0),
+    "Y_S": (1.963722, 2.107437, 1.0), "sigma_F": (373.2075, 368.2078, MPA),
+    "S_F": (2.132451, 2.189281, 1.0),
+}  # fmt: skip
+#: Digits of the print: six decimals, or seven significant ones.
+PRINTED = {"rel": 2e-6, "abs": 5.1e-7}
+
+
+@pytest.mark.parametrize(
+    ("rate", "mesh", "gears"),
+    [(rate_spur, SPUR, SPUR_GEARS), (rate_helical, HELICAL, HELICAL_GEARS)],
+    ids=["spur", "helical"],
+)
+def test_every_factor_of_an_example(rate, mesh, gears):
+    rating = rate()
+    values = {name: rating.factors[name] / unit for name, (_, unit) in mesh.items()}
+    assert values == pytest.approx({name: value for name, (value, _) in mesh.items()}, **PRINTED)
+    for index, gear in enumerate((rating.pinion, rating.wheel)):
+        values = {name: gear.factors[name] / figures[2] for name, figures in gears.items()}
+        expected = {name: figures[index] for name, figures in gears.items()}
+        assert values == pytest.approx(expected, **PRINTED)
+        assert gear.pitting_safety == gear.factors["S_H"]
+        assert gear.bending_safety == gear.factors["S_F"]
+
+
+def test_contact_ratios_of_the_examples():
+    assert spur_example().transverse_contact_ratio == pytest.approx(1.462529, abs=5e-7)
+    assert helical_example().transverse_contact_ratio == pytest.approx(1.526831, abs=5e-7)
+    assert helical_example().overlap_ratio == pytest.approx(1.415289, abs=5e-7)
+
+
+def test_form_factor_of_the_2006_edition():
+    rating = rate_helical(edition=2006)
+    assert rating.pinion.factors["Y_F"] == pytest.approx(1.530716, **PRINTED)
+    assert rating.wheel.factors["Y_F"] == pytest.approx(1.407222, **PRINTED)
+    beta = math.radians(20.0)
+    assert rating.factors["Y_beta"] == pytest.approx(1.004295 * math.cos(beta) ** 3, **PRINTED)
