@@ -14,7 +14,7 @@ from collections.abc import Callable, Mapping
 from importlib import import_module
 from typing import Any, TypeVar, cast
 
-__all__ = ["RENAMED", "Alias", "old_module", "with_old_names"]
+__all__ = ["RENAMED", "Alias", "old_module", "warn_of_old_name", "with_old_names"]
 
 _Named = TypeVar("_Named", bound=Callable[..., Any])
 #: Modules between the use of an old name and its alias.
@@ -64,7 +64,7 @@ class Alias:
 
     def __get__(self, instance: object, owner: type) -> Any:
         """Warn, and return the value of the new name."""
-        _warn(f"{owner.__name__}.{self.old}", f"{owner.__name__}.{self.new}")
+        warn_of_old_name(f"{owner.__name__}.{self.old}", f"{owner.__name__}.{self.new}")
         return getattr(owner if instance is None else instance, self.new)
 
 
@@ -90,7 +90,7 @@ def _accepting(function: Callable[..., Any], name: str) -> Callable[..., Any]:
     def accepting_old_names(*args: Any, **named: Any) -> Any:
         for old in new_names.keys() & named.keys():
             if (new := new_names[old]) not in named:
-                _warn(f"{name}({old}=...)", f"{name}({new}=...)")
+                warn_of_old_name(f"{name}({old}=...)", f"{name}({new}=...)")
                 named[new] = named.pop(old)
         return function(*args, **named)
 
@@ -106,13 +106,13 @@ def old_module(name: str) -> Callable[[str], Any]:
         if attribute.startswith("__") or (home, new) == (name, attribute):
             raise AttributeError(f"module {name!r} has no attribute {attribute!r}")
         value = getattr(import_module(home), new)
-        _warn(f"{name}.{attribute}", f"{home}.{new}")
+        warn_of_old_name(f"{name}.{attribute}", f"{home}.{new}")
         return value
 
     return find
 
 
-def _warn(old: str, new: str) -> None:
+def warn_of_old_name(old: str, new: str) -> None:
     """Warn of an old name at the line outside the package that uses it."""
     frame = sys._getframe(1)
     while frame.f_back is not None and frame.f_globals["__name__"].startswith(_INNER):

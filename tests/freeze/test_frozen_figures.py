@@ -15,6 +15,7 @@ def current() -> dict[str, dict[str, Any]]:
 
 
 @pytest.mark.processor
+@pytest.mark.filterwarnings("ignore:tribodyn. summary.* is deprecated:DeprecationWarning")
 @pytest.mark.parametrize("case", list(read("figures")))
 def test_figures_of_built_in_cases(case: str, current: dict[str, dict[str, Any]]) -> None:
     frozen = read("figures")[case]

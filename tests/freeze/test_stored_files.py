@@ -22,6 +22,8 @@ from tribodyn.mesh import MeshTable
 pytestmark = pytest.mark.filterwarnings("ignore::tribodyn.errors.ModelWarning")
 
 _ARCHIVE = Path(__file__).parent / "stored.zip"
+#: A pair with coupled load and film and a machine, in the layout before that of all results.
+_LAST = _ARCHIVE.with_name("stored-results.zip")
 _RESULTS = sorted(COMMANDS)
 with zipfile.ZipFile(_ARCHIVE) as _archive:
     #: Built-in cases of that state; later ones are not in it.
@@ -140,6 +142,22 @@ def _in_si(text: Any) -> tuple[float, str]:
     """Number and dimensions of a quantity, to the digits that a file holds."""
     quantity = pint.UnitRegistry()(str(text)).to_base_units()
     return float(f"{quantity.magnitude:.14g}"), str(quantity.units)
+
+
+@pytest.mark.parametrize("kind", ["pair", "machine"])
+def test_results_of_the_last_layout_are_read_and_written(kind: str, tmp_path: Path) -> None:
+    with zipfile.ZipFile(_LAST) as archive:
+        archive.extractall(tmp_path)
+    result = td.load_result(tmp_path / kind)
+    assert result.summary() == json.loads((tmp_path / kind / "summary.json").read_text())
+    again = td.load_result(result.save(tmp_path / "again"))
+    assert again.to_xarray().identical(result.to_xarray())
+    assert dict(again.tables) == dict(result.tables)
+    assert again.summary() == result.summary()
+    assert again.case == result.case
+    if kind == "pair":
+        assert again.coupling == result.coupling
+        assert result.coupling.loading.size == result.mesh.phase.size
 
 
 @pytest.mark.parametrize("name", [*MESHES, "result"])

@@ -16,6 +16,7 @@ from tribodyn.errors import InputError, OutputExistsError
 from tribodyn.files import atomic_write
 from tribodyn.record import Record
 from tribodyn.study import ResultOfCase
+from tribodyn.study.pipeline.store import table_stem
 from tribodyn.study.pipeline.summary_figures import figure_of
 from tribodyn.validated_files import csv_text
 
@@ -94,10 +95,9 @@ def _of_loads(result: ResultOfCase) -> Iterator[tuple[str, Table]]:
     """Mesh tables and signals of all loads; those of load cases by their number."""
     for number, load in enumerate(result.loads.values()):
         prefix = f"load_{number}_" if number else ""
-        for place, (name, table) in enumerate(load.tables.items(), 1):
-            plain = name if name.replace("_", "").replace("-", "").isalnum() else str(place)
-            kind = "mesh" if name == result._MESH else f"mesh_{plain}"
-            yield from _of_data(f"{prefix}{kind}", table.to_xarray())
+        for place, (name, table) in enumerate(load.tables.items()):
+            stem = table_stem(number, place, name, result._MESH, "_")
+            yield from _of_data(stem, table.to_xarray())
         yield from _of_data(f"{prefix}motion", load.signals)
 
 

@@ -27,15 +27,15 @@ from tribodyn.report.study_report_data import (
     modes_report_data,
 )
 from tribodyn.study.case.values import FaultError, read_value
+from tribodyn.study.machine.housing_files import HOUSING
 from tribodyn.study.machine.modes import (
     MODES_HEAD,
     axial_notes,
     campbell_of,
     mode_rows,
     modes_facts,
-    structure_at_rest,
 )
-from tribodyn.study.machine.stored import HOUSING
+from tribodyn.study.machine.run import structure_at_rest
 from tribodyn.study.machine.tables import OperationTable
 from tribodyn.study.pipeline.save import write_file
 from tribodyn.study.pipeline.summary_figures import by_topic

@@ -71,7 +71,7 @@ def _of_stage(stage: CaseStage) -> list[tuple[str, str]]:
 
 def provenance(result: Any) -> list[tuple[str, str]]:
     """Software versions and date of a report as (name, value) pairs."""
-    from tribodyn.study.pipeline.response_series import describe_stored_cycles
+    from tribodyn.study.pipeline.stored_motion import describe_stored_cycles
 
     packages = ", ".join(f"{name} {installed(name)}" for name in _PACKAGES)
     return [

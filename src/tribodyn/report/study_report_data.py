@@ -15,7 +15,6 @@ from tribodyn.errors import InputError
 from tribodyn.model import Option, number
 from tribodyn.progress import SILENT, Progress
 from tribodyn.report.study import write_bifurcation_report, write_study_report
-from tribodyn.study.machine.summary import ALTERNATING
 from tribodyn.study.pipeline.save import new_directory
 from tribodyn.study.studies.needs import mesh_pair
 from tribodyn.units import convert
@@ -33,7 +32,8 @@ if TYPE_CHECKING:
 _ROWS = 40
 _ALONE = "Tooth losses only; add [losses] to the case for bearings, seals and oil."
 
-
+#: Root mean square of the force without its mean: the name, and its deprecated name.
+_ALTERNATING = ("alternating_rms_mesh_force", "rms_mesh_force")
 #: Heading, figure and caption.
 Picture = tuple[str, Any, str]
 
@@ -213,7 +213,7 @@ def run_up_report_data(
     rpm = convert(1.0, "rad/s", "rpm") * level.speed
     rows = [[f"{rpm[k]:.5g}", f"{level.rms[k]:.4g}"] for k in picked]
     figures = [figure_with_caption(plot.run_up, run), figure_with_caption(plot.run_up_map, run)]
-    facts = {"speed": level.speed.tolist()} | dict.fromkeys(ALTERNATING, level.rms.tolist())
+    facts = {"speed": level.speed.tolist()} | dict.fromkeys(_ALTERNATING, level.rms.tolist())
     head = ["Speed [rpm]", "Mesh force, rms [N]"]
     return StudyReportData(run, figures, [f"{_title(figures[0])}."], head, rows, facts)
 
@@ -241,7 +241,7 @@ def _levels_report_data(run: MachineLevels) -> StudyReportData:
     forces = dict(zip(run.mesh, run.mesh_force.T.tolist(), strict=True))
     facts = {
         "speed": run.speed.tolist(),
-        **dict.fromkeys(ALTERNATING, forces),
+        **dict.fromkeys(_ALTERNATING, forces),
         "rms_radial_force": dict(zip(run.bearing, run.bearing_force.T.tolist(), strict=True)),
         "rms_acceleration": dict(zip(run.node, run.acceleration.T.tolist(), strict=True)),
         "resonances": [each._asdict() for each in run.resonances],

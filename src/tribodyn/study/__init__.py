@@ -19,8 +19,8 @@ if TYPE_CHECKING:
     from tribodyn.study.machine.motion import MachineMotion
     from tribodyn.study.machine.result import LoadResult, MachineResult
     from tribodyn.study.machine.user_tables import PartsCase
-    from tribodyn.study.pipeline.parts_result import ResultOfCase
     from tribodyn.study.pipeline.result import Result
+    from tribodyn.study.pipeline.result_of_case import ResultOfCase
     from tribodyn.study.pipeline.run import run
     from tribodyn.study.pipeline.summary import SUMMARY, summary_figure
     from tribodyn.study.pipeline.tooth_contact import loaded_contact
@@ -131,7 +131,7 @@ _NAMES = {
     "machine.user_tables": "PartsCase",
     "uncertain.machine_ensemble": "MachineEnsemble",
     "studies.levels": "MachineLevels",
-    "pipeline.parts_result": "ResultOfCase",
+    "pipeline.result_of_case": "ResultOfCase",
     "pipeline.result": "Result",
     "pipeline.run": "run",
     "pipeline.summary": "SUMMARY summary_figure",

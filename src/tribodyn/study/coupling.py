@@ -17,9 +17,9 @@ from tribodyn.errors import ComputationError, Problem, collected, warn
 from tribodyn.mesh.gears import column_of
 from tribodyn.nomenclature import GEARS
 from tribodyn.progress import Progress
+from tribodyn.record import Record, fact, quantity, record
 from tribodyn.study.mesh_inputs import MeshInputs, mesh_inputs
 from tribodyn.study.pipeline.assembly import geometry, whole_system
-from tribodyn.study.pipeline.computed import Coupling
 from tribodyn.study.pipeline.motion import motion_of
 from tribodyn.study.pipeline.response_series import mesh_force, one_sided_phase
 from tribodyn.study.pipeline.tooth_contact import hypoid_friction_of, mesh_of
@@ -43,6 +43,46 @@ _PHASE_TOLERANCE = 1e-9
 _CHANGES = tuple(
     f"{name}_change" for name in ("load", "share", "film", "friction", "stiffness", "oil")
 )
+
+
+@record
+class Coupling(Record):
+    """Convergence of load, film, friction and stiffness of a case.
+
+    Parameters
+    ----------
+    iteration : array (passes,)
+        Number of each pass.
+    load_change, share_change, film_change, friction_change, stiffness_change, oil_change
+        Greatest change in each pass, over the nominal force, the whole load, the film itself, the
+        greatest coefficient, the mean stiffness and the viscosity (passes,).
+    phase : array (n,)
+        Mesh phase.
+    loading : array (n,)
+        Force of all tooth pairs at that phase, over that of the torque alone.
+    kind : str
+        ``"static"`` or ``"dynamic"``.
+    tolerance : float
+        Change below which all of them agree.
+    """
+
+    iteration: Array = quantity("iteration", unit="1", axis=True)
+    load_change: Array = quantity("iteration", unit="1")
+    share_change: Array = quantity("iteration", unit="1")
+    film_change: Array = quantity("iteration", unit="1")
+    friction_change: Array = quantity("iteration", unit="1")
+    stiffness_change: Array = quantity("iteration", unit="1")
+    oil_change: Array = quantity("iteration", unit="1")
+    phase: Array = quantity("knot", unit="1", axis=True)
+    loading: Array = quantity("knot", unit="1")
+    kind: str = fact()
+    tolerance: float = fact()
+
+    @property
+    def contraction(self) -> float:
+        """Part of the change of the load that the next pass leaves; of the last two passes."""
+        last = self.load_change[-2:]
+        return float(last[-1] / last[0]) if last.size > 1 and last[0] > 0.0 else 0.0
 
 
 def coupled(

@@ -12,8 +12,8 @@ from tribodyn.drawing import draw
 from tribodyn.errors import Argument, InputError, shortened
 from tribodyn.record import Parts, Record, html_table, record
 from tribodyn.study.machine.result import MachineResult
-from tribodyn.study.pipeline.parts_result import ResultOfCase
 from tribodyn.study.pipeline.result import Result
+from tribodyn.study.pipeline.result_of_case import ResultOfCase
 from tribodyn.study.pipeline.summary_figures import by_topic, figure_of
 
 AnyResult = Result | MachineResult

@@ -239,7 +239,7 @@ def test_equal_loads_are_computed_once(monkeypatch) -> None:
     assert loads == ["operation", "light"]
     figures = result.summary()
     assert [load.load.name for load in result.load_cases] == ["same", "light"]
-    key = "meshes.first.rms_mesh_force"
+    key = "meshes.first.alternating_rms_mesh_force"
     assert figures[f"load_cases.same.{key}"] == figures[key]
     assert figures[f"load_cases.light.{key}"] != figures[key]
 

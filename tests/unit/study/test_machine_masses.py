@@ -28,7 +28,7 @@ def on_shafts(data: dict[str, Any]) -> dict[str, Any]:
 
 def alternating_force(figures: dict[str, float]) -> dict[str, float]:
     """Alternating forces of the meshes of a stage, by kind of mesh."""
-    suffix = ".rms_mesh_force"
+    suffix = ".alternating_rms_mesh_force"
     forces = {k.split(".")[1]: v for k, v in figures.items() if k.endswith(suffix)}
     return {name: forces.get(name, forces.get(f"low_{name}1", 0.0)) for name in ("sun", "ring")}
 

@@ -6,6 +6,7 @@ import re
 import numpy as np
 import pytest
 from tests.unit.study.test_machine_run import GEARED
+from tests.unit.study.test_summary_names import QUICK
 
 import tribodyn as td
 from tribodyn.errors import ModelWarning
@@ -66,6 +67,14 @@ def test_computed_teeth_and_a_housing_read_back_to_the_last_bit(tmp_path):
     case = td.load_case("two-stage-spur")
     result = td.run(case.replace({"load_cases": None, "stiffness.model": "analytic"}))
     assert same(result, td.load_result(result.save(tmp_path / "out")))
+
+
+@pytest.mark.slow
+def test_a_stage_reads_back_to_the_last_bit(tmp_path):
+    result = td.run(td.load_case("planetary-stage").replace(QUICK, by="test"))
+    stored = td.load_result(result.save(tmp_path / "out"))
+    assert same(result, stored)
+    assert stored.operation.stage().motion == result.operation.stage().motion
 
 
 @pytest.mark.parametrize("name", ["case.toml", "summary.json", "motion.nc", "load-1-motion.nc"])

@@ -172,7 +172,7 @@ def test_the_command_for_ensembles_takes_machines(tmp_path, monkeypatch, capsys)
     (tmp_path / "two.toml").write_text(TWO_MESHES, encoding="utf-8")
     setting = "meshes.second.stiffness=5e8 N/m +- 5 %"
     assert command("ensemble", "two.toml", "--size", "3", "--set", setting, "--json") == 0
-    assert "meshes.second.rms_mesh_force" in json.loads(capsys.readouterr().out)
+    assert "meshes.second.alternating_rms_mesh_force" in json.loads(capsys.readouterr().out)
     assert "Spread of the levels" in (tmp_path / "two-ensemble" / "report.html").read_text("utf-8")
 
 

@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 from tests.unit.study.test_machine_run import command
 from tests.unit.study.test_planetary_case import QUICK
+from tests.unit.study.test_summary_names import RMS
 
 import tribodyn as td
 from tribodyn.errors import InputError
@@ -59,7 +60,7 @@ def test_levels_and_sweeps_have_the_figures_of_single_runs(case, result):
     levels = td.speed_sweep(case, ("1500 rpm", "1600 rpm"), 2)
     figures = result.summary()
     assert levels.mesh == ("sun", "ring")
-    forces = [figures[f"meshes.{mesh}.rms_mesh_force"] for mesh in levels.mesh]
+    forces = [figures[f"meshes.low_{mesh}1.{RMS}"] for mesh in levels.mesh]
     np.testing.assert_allclose(levels.mesh_force[0], forces, rtol=1e-6)
     stage = result.operation.stage().motion
     pins = np.hypot(*stage.rms(stage.pin_force).T).max()
@@ -67,6 +68,10 @@ def test_levels_and_sweeps_have_the_figures_of_single_runs(case, result):
     sweep = td.sweep(case, ERRORS[1], ("0 um", "40 um"), 2)
     for name, value in figures.items():
         assert sweep[name][0] == pytest.approx(value, rel=1e-6, abs=1e-9), name
+    with pytest.warns(DeprecationWarning, match="meshes.low_sun2.peak_mesh_force"):
+        greatest = sweep["meshes.sun.peak_mesh_force"]
+    peaks = [sweep[f"meshes.low_sun{i}.peak_mesh_force"] for i in (1, 2, 3)]
+    np.testing.assert_array_equal(greatest, np.max(peaks, axis=0))
     assert sweep.axes[0].name == "pin_errors_2"
     assert "Load factor" in sweep.plot().to_json()
 
@@ -88,7 +93,7 @@ def test_a_slow_run_up_has_the_levels_of_steady_motions(case, result):
     rpm = np.pi / 30
     run = td.run_up(case, (1499 * rpm, 1501 * rpm), 0.02)
     middle = run.mesh_force[np.argmin(np.abs(run.speed - 1500 * rpm))]
-    steady = [result.summary()[f"meshes.{mesh}.rms_mesh_force"] for mesh in run.mesh]
+    steady = [result.summary()[f"meshes.low_{mesh}1.{RMS}"] for mesh in run.mesh]
     np.testing.assert_allclose(middle, steady, rtol=0.01)
 
 

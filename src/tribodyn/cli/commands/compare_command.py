@@ -110,7 +110,7 @@ def compare(
         _with_recording(first, second, _pairs(channel), options, (out, force, json))
         return
     from tribodyn.cases.load import load_case
-    from tribodyn.cases.stored_result import read_summary
+    from tribodyn.study.pipeline.store import read_summary
     from tribodyn.study.result_comparison import difference_rows, differing, figures_differ
 
     summaries = [read_summary(place) for place in (first, second)]

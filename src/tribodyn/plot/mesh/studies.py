@@ -28,7 +28,7 @@ from tribodyn.types import Array, Mask
 if TYPE_CHECKING:
     from tribodyn.mesh import ComprehensiveStiffness
     from tribodyn.stiffness import HarrisMap, TipReliefOptimum
-    from tribodyn.study.pipeline.computed import Coupling
+    from tribodyn.study.coupling import Coupling
 
 
 _QUANTITY = "static_transmission_error"

@@ -230,7 +230,7 @@ def _error_caption(contact: Any) -> str:
     "static_transmission_error",
     heading="Static transmission error",
     caption=_error_caption,
-    of=("MeshTable", "Computed"),
+    of=("MeshTable", "Result"),
 )
 def static_transmission_error(contact: Any) -> Any:
     """Draw the static transmission error over two mesh cycles, and its mesh harmonics."""

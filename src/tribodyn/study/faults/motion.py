@@ -21,7 +21,6 @@ from tribodyn.study.faults.turning import (
     even_samples,
     steady_over_turns,
 )
-from tribodyn.study.pipeline.computed import Computed
 from tribodyn.types import Array
 
 if TYPE_CHECKING:
@@ -170,7 +169,7 @@ def turning_motion(result: Result | PreparedRun, progress: Progress = SILENT) ->
         progress.start(f"Teeth over whole turns: {clock}")
         mesh = turning_mesh_of(case, result.mesh)
         if not _varies(case):
-            sound = result if isinstance(result, Computed) else result.result(progress)
+            sound = result if isinstance(result, Record) else result.result(progress)
             if is_steady(sound.response):
                 return _motion(case, mesh, sound.response, _of_run(sound), result.mesh)
         driven = driven_system(case, result.mesh, result.damping, mesh)
@@ -201,7 +200,7 @@ class _Period(NamedTuple):
     driven: DrivenSystem | None = None
 
 
-def _of_run(sound: Computed) -> _Period:
+def _of_run(sound: Result) -> _Period:
     from tribodyn.study.pipeline.response_series import transmission_error
 
     phase, cycles = sound.response.fine.phase, sound.response.periods

@@ -22,6 +22,8 @@ if TYPE_CHECKING:
     from tribodyn.study.machine.case import MachineCase
 
 _MATRICES = {"stiffness": "K", "mass": "M", "damping": "C"}
+#: Before the names of the files of the housing in the folder of a result.
+HOUSING = "housing-"
 #: Rows of a matrix in a file, at most.
 _MOST = 10_000
 _NODES = "Write [housing.nodes] with six coordinate numbers a node, counted from 0, -1 at rest"

@@ -8,7 +8,6 @@ import numpy as np
 
 from tribodyn.machine import MachineModes, MachineStructure, machine_modes
 from tribodyn.machine.modes import machine_frequencies
-from tribodyn.progress import SILENT, Progress
 from tribodyn.record import Record, fact, quantity, record
 from tribodyn.types import Array
 
@@ -16,7 +15,6 @@ if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
 
     from tribodyn.machine import Machine
-    from tribodyn.study.machine.case import MachineCase
 
 _Row = TypeVar("_Row")
 
@@ -355,15 +353,6 @@ def _strained(modes: MachineModes, group: list[tuple[str, ...]], harmonic: int) 
     together = np.zeros(frequency.size)
     together[first] = np.add.reduceat(share, first)
     return together
-
-
-def structure_at_rest(case: MachineCase, progress: Progress = SILENT) -> MachineStructure:
-    """Structure of a machine about its static balance, with the mean stiffness of its meshes."""
-    from tribodyn.study.machine.run import balanced_machine, structure_of, warn_of_meshes
-
-    balanced = balanced_machine(case, case.operating_point, progress)
-    warn_of_meshes(balanced.warnings)
-    return structure_of(case, balanced.static.linearized())
 
 
 def modes_facts(modes: MachineModes, campbell: MachineCampbell) -> dict[str, Any]:

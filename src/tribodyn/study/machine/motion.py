@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from tribodyn.errors import Argument, InputError
-from tribodyn.record import Record, fact, quantity, record
+from tribodyn.record import Record, fact, labels_of, quantity, record
 from tribodyn.types import Array, ComplexArray
 
 if TYPE_CHECKING:
@@ -233,6 +233,19 @@ def machine_motion(structure: MachineStructure, response: Response) -> MachineMo
         cycles=np.array([machine.clock.cycles[name] for name in force]),
         frequency=machine.clock.frequency,
     )
+
+
+def motion_from(data: Any) -> MachineMotion:
+    """Motion from its data set in a file."""
+    values: dict[str, Any] = {}
+    for name, labels in labels_of(MachineMotion).items():
+        if not labels.dims:
+            values[name] = float(data.attrs[name])
+        elif name in ("mesh", "bearing", "node"):
+            values[name] = tuple(map(str, data[name].values)) if name in data else ()
+        else:
+            values[name] = np.asarray(data[name].values)
+    return MachineMotion(**values)
 
 
 def mesh_rotation(structure: MachineStructure, mesh: str) -> Array:

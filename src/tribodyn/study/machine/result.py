@@ -2,28 +2,28 @@
 
 from __future__ import annotations
 
-import os
+import json
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from tribodyn.drawing import draw, write_report_of
+from tribodyn.drawing import draw
 from tribodyn.errors import Argument, InputError
-from tribodyn.interrupt import single_blas_thread
+from tribodyn.gear import Misalignment, MisalignmentStudy, misalignment_study
 from tribodyn.machine.static.clearance import clearance_supports, without_clearance_supports
+from tribodyn.record import Parts
+from tribodyn.study.machine.housing_files import HOUSING, copy_housing
 from tribodyn.study.machine.modes import MeshOrder, mesh_orders
 from tribodyn.study.machine.motion import MachineMotion, machine_motion
 from tribodyn.study.machine.summary import summary_of
-from tribodyn.study.pipeline.parts_result import PartsResult
-from tribodyn.study.pipeline.save import new_directory
+from tribodyn.study.pipeline.result_of_case import ResultOfCase
 from tribodyn.study.planetary.stage_result import StageResult
 
 if TYPE_CHECKING:
     from tribodyn.dynamics import Response, System
     from tribodyn.errors import ModelWarning
-    from tribodyn.gear import Misalignment, MisalignmentStudy
     from tribodyn.machine import (
         Machine,
         MachineModes,
@@ -33,7 +33,9 @@ if TYPE_CHECKING:
     )
     from tribodyn.machine.structure import MachineStructure
     from tribodyn.mesh import MeshTable
+    from tribodyn.study.case.provenance import Assumption
     from tribodyn.study.faults.machine_motion import MachineTurningMotion
+    from tribodyn.study.faults.sensors import Sensors
     from tribodyn.study.machine.case import MachineCase
     from tribodyn.study.machine.load_cases import LoadCase
     from tribodyn.study.machine.modes import MachineCampbell
@@ -208,6 +210,15 @@ class LoadResult:
         """Mesh harmonics with the shares of the meshes in the modes."""
         return mesh_orders(self.modes)
 
+    def _stored(self) -> Parts:
+        """What a file holds: the motion, and the misalignments of the computed teeth."""
+        values = {
+            name: asdict(value) if isinstance(value, Misalignment) else value
+            for name, value in self.misalignment.items()
+        }
+        parts = self.motion._parts()
+        return parts._replace(attributes={**parts.attributes, "misalignment": json.dumps(values)})
+
     def signals_along(self, response: Response) -> MachineMotion:
         """Forces, errors and accelerations of the parts along another motion.
 
@@ -233,8 +244,8 @@ class LoadResult:
         return f"LoadResult({self.load.name}: meshes {meshes} at {self.motion.frequency:.6g} Hz)"
 
 
-@dataclass(frozen=True, eq=False)
-class MachineResult(PartsResult):
+@dataclass(frozen=True, eq=False, repr=False)
+class MachineResult(ResultOfCase):
     """What :func:`tribodyn.run` returns for a machine.
 
     Parameters
@@ -253,6 +264,43 @@ class MachineResult(PartsResult):
     operation: LoadResult
     load_cases: tuple[LoadResult, ...]
     warnings: tuple[ModelWarning, ...]
+
+    @property
+    def _sensors(self) -> Sensors:
+        return self.case._sensors
+
+    @property
+    def loads(self) -> Mapping[str, LoadResult]:
+        """Results by load: ``"operation"``, and each load case by its name."""
+        named = {each.load.name: each for each in self.load_cases}
+        if (same := named.pop("operation", None)) is not None:
+            named["load_cases.operation"] = same
+        return {"operation": self.operation, **named}
+
+    @property
+    def tables(self) -> Mapping[str, MeshTable]:
+        """Tooth contact by the name of the mesh at the operating point."""
+        return self.operation.tables
+
+    @property
+    def mesh(self) -> MeshTable | None:
+        """Tooth contact of the first mesh whose teeth are computed; None if there is none."""
+        return next(iter(self.tables.values()), None)
+
+    @property
+    def system(self) -> System:
+        """Equations of motion at the operating point."""
+        return self.operation.system
+
+    @property
+    def response(self) -> Response:
+        """Motion of all coordinates at the operating point."""
+        return self.operation.response
+
+    @property
+    def assumptions(self) -> tuple[Assumption, ...]:
+        """What was assumed because the case does not give it."""
+        return self.case.assumptions
 
     @property
     def machine(self) -> Machine:
@@ -306,7 +354,6 @@ class MachineResult(PartsResult):
         InputError
             If there is no such mesh, or its tooth contact is not that of hypoid gears.
         """
-        from tribodyn.gear import Misalignment, misalignment_study
         from tribodyn.study.machine.pair_cases import inputs_under
         from tribodyn.study.mesh_inputs import HypoidTeeth
 
@@ -371,46 +418,29 @@ class MachineResult(PartsResult):
         """
         return draw(self, figure)
 
-    def save(
-        self, directory: str | os.PathLike[str], *, force: bool = False, csv: bool = False
-    ) -> Path:
-        """Write case, summary, motions, mesh tables and report into a new directory.
+    def to_csv(self) -> str:
+        """Write the mesh forces over the clock as comma-separated values in SI.
 
-        :func:`tribodyn.load_result` reads it.
-
-        Parameters
-        ----------
-        directory : str or path
-            Directory to make; it appears complete or not at all.
-        force : bool
-            Replace an earlier result there.
-        csv : bool
-            Write the motion as ``response.csv`` as well.
-
-        Raises
-        ------
-        OutputExistsError
-            If it exists and is not to be replaced, or is no result.
-        InputError
-            If the place cannot be written to.
+        Returns
+        -------
+        str
+            A column for each mesh [N].
         """
-        from tribodyn.study.machine.stored import write_machine
+        return str(self.to_xarray().mesh_force.to_pandas().to_csv())
 
-        target = Path(directory)
-        with single_blas_thread(), new_directory(target, force=force) as place:
-            write_machine(self, place)
-            if csv:
-                frame = self.to_xarray().mesh_force.to_pandas()
-                (place / "response.csv").write_text(frame.to_csv(), encoding="utf-8")
-            write_report_of(self, place / "report.html")
-        return target
+    def _parts(self) -> Parts:
+        return self.motion._parts()
 
-    def __repr__(self) -> str:
-        """One line."""
+    def _case_in(self, place: Path) -> MachineCase:
+        return copy_housing(self.case, place, HOUSING)
+
+    @property
+    def _headline(self) -> str:
+        """Chief figures in one line."""
         figures = self.operation.figures
         peaks = ", ".join(
             f"{name} {figures[f'meshes.{name}.peak_mesh_force']:.5g} N" for name in self.motion.mesh
         )
         count = len(self.load_cases)
         loads = f", {count} load case{'s' * (count != 1)}" if count else ""
-        return f'MachineResult("{self.case.title}": peak mesh forces {peaks}{loads})'
+        return f"peak mesh forces {peaks}{loads}"

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import re
 import sys
 import warnings
@@ -33,11 +34,12 @@ from tribodyn.progress import SILENT, Progress
 from tribodyn.study.machine.case import MachineCase
 from tribodyn.study.machine.first_look import warn_of_period
 from tribodyn.study.machine.load_cases import LoadCase
-from tribodyn.study.machine.motion import machine_motion
+from tribodyn.study.machine.motion import machine_motion, motion_from
 from tribodyn.study.machine.pair_cases import inputs_under
 from tribodyn.study.machine.result import LoadResult, MachineResult, steady_motion
 from tribodyn.study.mesh_inputs import MeshInputs
 from tribodyn.study.pipeline.assembly import mesh_contacts, mesh_damping
+from tribodyn.study.pipeline.store import Stored, StoredLoad, figures_of_load
 from tribodyn.study.pipeline.tooth_contact import load_friction_of, mesh_table
 
 if TYPE_CHECKING:
@@ -194,6 +196,13 @@ def _change(before: float | Misalignment, after: float | Misalignment) -> float:
     return abs(after - before)
 
 
+def structure_at_rest(case: MachineCase, progress: Progress = SILENT) -> MachineStructure:
+    """Structure of a machine about its static balance, with the mean stiffness of its meshes."""
+    balanced = balanced_machine(case, case.operating_point, progress)
+    warn_of_meshes(balanced.warnings)
+    return structure_of(case, balanced.static.linearized())
+
+
 def teeth_of(
     inputs: MeshInputs, *, rehearsal: bool = False
 ) -> tuple[MeshTable, dict[str, Any], list[ModelWarning]]:
@@ -203,16 +212,28 @@ def teeth_of(
         return table, _law(inputs, table, rehearsal=rehearsal), caught
 
 
-def static_with_teeth(
-    case: MachineCase,
-    load: LoadCase,
-    tables: Mapping[str, MeshTable],
-    misalignment: Mapping[str, float | Misalignment],
-) -> StaticBalance:
-    """Static balance of a machine with the force laws of its mesh tables."""
+def restored(case: MachineCase, stored: Stored) -> MachineResult:
+    """Result from its folder; its matrices are assembled again, its motions are stored."""
+    cases = (case.operating_point, *case.load_cases)
+    loads = [_restored_load(case, *each) for each in zip(cases, stored.loads, strict=True)]
+    for number, load in enumerate(loads):
+        name = load.load.name if number else ""
+        vars(load)["figures"] = figures_of_load(stored.summary, name)
+    return MachineResult(case, loads[0], tuple(loads[1:]), stored.warnings)
+
+
+def _restored_load(case: MachineCase, load: LoadCase, stored: StoredLoad) -> LoadResult:
+    data, tables = stored.data, stored.tables
+    misalignment = {
+        name: Misalignment(**value) if isinstance(value, dict) else value
+        for name, value in json.loads(data.attrs["misalignment"]).items()
+    }
     inputs = {name: inputs_under(case, name, load, misalignment[name]) for name in tables}
     laws = {name: _law(inputs[name], table) for name, table in tables.items()}
-    return _static(case, load, laws, misalignment)
+    static = _static(case, load, laws, misalignment)
+    structure = structure_of(case, static.linearized())
+    system, motion = system_of(structure), motion_from(data)
+    return LoadResult(load, structure, static, tables, misalignment, system, motion)
 
 
 def warn_of_meshes(mesh_warnings: Iterable[MeshWarning]) -> None:

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from tribodyn.machine.plane_law import mean_in_space
-from tribodyn.study.planetary.common import common_figures
+from tribodyn.study.pipeline.summary_figures import Figures
 from tribodyn.study.planetary.machine_stages import stage_figures
 
 if TYPE_CHECKING:
@@ -18,11 +18,8 @@ if TYPE_CHECKING:
     from tribodyn.mesh import MeshTable
     from tribodyn.study.machine.result import LoadResult
 
-#: Root mean square of the force without its mean: the name, and its deprecated name.
-ALTERNATING = ("alternating_rms_mesh_force", "rms_mesh_force")
 
-
-def summary_of(result: LoadResult) -> dict[str, float]:
+def summary_of(result: LoadResult) -> Figures:
     """All figures of a machine under one load, in SI, by dotted key."""
     values: dict[str, float | None] = {}
     for group, parts in (
@@ -36,8 +33,7 @@ def summary_of(result: LoadResult) -> dict[str, float]:
         for name, figures in parts.items():
             prefix = f"{group}.{name}" if name else group
             values |= {f"{prefix}.{key}": value for key, value in figures.items()}
-    known = {key: float(v) for key, v in values.items() if v is not None and np.isfinite(v)}
-    return known | common_figures(result.machine, known)
+    return Figures({key: float(v) for key, v in values.items() if v is not None and np.isfinite(v)})
 
 
 def _of_machine(result: LoadResult) -> Mapping[str, float | None]:
@@ -66,7 +62,7 @@ def _of_mesh(result: LoadResult, name: str) -> Mapping[str, float | None]:
         "mesh_frequency": load.mesh_frequency,
         "static_mesh_force": balance.force,
         "mean_mesh_force": mean,
-        **dict.fromkeys(ALTERNATING, float(motion.rms(force))),
+        "alternating_rms_mesh_force": float(motion.rms(force)),
         "peak_mesh_force": float(force.max()),
         "minimum_mesh_force": float(force.min()),
         "dynamic_factor_peak": peak_over_mean(force, mean),

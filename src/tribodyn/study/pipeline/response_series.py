@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import hashlib
-import json
 from collections.abc import Sequence
 from dataclasses import fields, replace
 from typing import TYPE_CHECKING, Any
@@ -13,13 +11,12 @@ import numpy as np
 from tribodyn.mesh.functions import WRENCH
 from tribodyn.mesh.gears import SPATIAL_COORDINATES
 from tribodyn.nomenclature import GEARS
-from tribodyn.record import Parts, labels_of
 from tribodyn.study.case.to_models import mesh_law_of
 from tribodyn.types import Array
 
 if TYPE_CHECKING:
     from tribodyn.dynamics import FineSamples, Response, System
-    from tribodyn.study.pipeline.computed import Computed
+    from tribodyn.study.pipeline.result import Result
 
 
 #: Distance from an event that separates its two sides [mesh cycles].
@@ -74,13 +71,13 @@ def first_touch(system: System, samples: FineSamples) -> Array:
     return np.broadcast_to(np.asarray(values, dtype=float), samples.phase.shape)
 
 
-def transmission_error(result: Computed, samples: FineSamples) -> Array:
+def transmission_error(result: Result, samples: FineSamples) -> Array:
     """Dynamic transmission error, counted from where perfect rigid driving flanks touch."""
     error = compression(samples) + result.static_error(samples.phase)
     return np.asarray(error - result.half_backlash - film_offset(result))
 
 
-def film_offset(result: Computed) -> float:
+def film_offset(result: Result) -> float:
     """Distance before the flanks touch from which the compression of the mesh is counted.
 
     A force law and its tangent count from where the first oil film in series carries; a plain
@@ -93,7 +90,7 @@ def film_offset(result: Computed) -> float:
     return float(mesh.grid.mean(deflection - mesh.transmission_error_at_rest))
 
 
-def tooth_force(result: Computed, phase: Array, force: Array) -> Array | None:
+def tooth_force(result: Result, phase: Array, force: Array) -> Array | None:
     """Force of the teeth with friction in the axes of the first gear; None in a plane."""
     functions = result.mesh.functions()
     if functions.direction is None or result.mesh.direction.shape[-1] != len(SPATIAL_COORDINATES):
@@ -121,10 +118,6 @@ def support_forces(system: System, samples: FineSamples, numbers: Sequence[int])
     return np.asarray(springs @ samples.position.T + dampers @ samples.velocity.T)
 
 
-#: Largest size of the series of a motion in a file [bytes].
-LARGEST = 64_000_000
-#: Highest mesh harmonic that is stored.
-_HIGHEST = 80
 _IN_PLANE = {"loa": ("y", "along the line of action"), "oloa": ("x", "across it")}
 _ALONG_AXES = {**_IN_PLANE, "axial": ("z", "along the axes")}
 _IN_SPACE = {
@@ -141,24 +134,13 @@ def directions_of(names: Sequence[str]) -> dict[str, tuple[str, str]]:
     return _ALONG_AXES if f"{GEARS[0]}_theta_y" in names else _IN_SPACE
 
 
-_STATES = {
-    "position": ("m", "rad", "displacement"),
-    "velocity": ("m/s", "rad/s", "velocity"),
-    "acceleration": ("m/s^2", "rad/s^2", "acceleration"),
-}
-
-
-def _attributes_of(unit: str, meaning: str) -> dict[str, str]:
-    return {"units": unit, "long_name": meaning}
-
-
 def _sided(samples: Any) -> Array:
     """Phase of samples; fine samples are on their side of an event."""
     fine = hasattr(samples, "weight")
     return one_sided_phase(samples) if fine else np.asarray(samples.phase)
 
 
-def friction_forces(result: Computed, samples: Any) -> dict[str, tuple[Array, str, str]]:
+def friction_forces(result: Result, samples: Any) -> dict[str, tuple[Array, str, str]]:
     """Friction force of all pairs, and its parts from films and asperities if split."""
     from tribodyn.mesh.functions import ASPERITIES
 
@@ -182,7 +164,7 @@ def friction_forces(result: Computed, samples: Any) -> dict[str, tuple[Array, st
     return forces
 
 
-def signals(result: Computed, samples: Any) -> dict[str, tuple[Array, str, str]]:
+def signals(result: Result, samples: Any) -> dict[str, tuple[Array, str, str]]:
     """Signals of figures on the samples: values, unit and meaning by name."""
     force, phase = mesh_force(samples), _sided(samples)
     static = result.transmission_error_at_rest(phase)
@@ -212,230 +194,3 @@ def signals(result: Computed, samples: Any) -> dict[str, tuple[Array, str, str]]
                 signal = samples.acceleration[:, column]
                 series[f"acceleration_{direction}_{gear}"] = (signal, "m/s^2", meaning)
     return series
-
-
-def parts_of(result: Computed, summary: dict[str, float]) -> Parts:
-    """Variables, coordinates and attributes of the data set of a result."""
-    response = result.response
-    turns = np.array(["theta" in name for name in response.names])
-    variables: dict[str, Any] = {}
-    coordinates: dict[str, Any] = {
-        "time": ("time", response.time, _attributes_of("s", "time")),
-        "phase": ("time", response.phase, _attributes_of("1", "mesh phase")),
-        "coordinate": ("coordinate", list(response.names)),
-    }
-    for name, (straight, turning, meaning) in _STATES.items():
-        attributes = {
-            "long_name": f"{meaning} of every coordinate, in the unit named by {name}_unit"
-        }
-        variables[name] = (("time", "coordinate"), getattr(response, name), attributes)
-        coordinates[f"{name}_unit"] = ("coordinate", np.where(turns, turning, straight))
-    pressed, force = _contacts(response)
-    variables["deflection"] = (
-        ("time", "contact"),
-        pressed,
-        _attributes_of(
-            "m",
-            "compression of every contact, counted from the middle of the play: its flanks touch "
-            "at the attribute half_backlash",
-        ),
-    )
-    variables["contact_force"] = (
-        ("time", "contact"),
-        force,
-        _attributes_of("N", "force of every contact"),
-    )
-    for name, (values, unit, meaning) in signals(result, response).items():
-        if not name.startswith("acceleration_"):  # the variable acceleration holds them
-            variables[name] = ("time", values, _attributes_of(unit, meaning))
-    if is_steady(response):
-        variables |= _spectra(result)
-        coordinates["order"] = (
-            "order",
-            variables.pop("order"),
-            _attributes_of("1", "mesh harmonic"),
-        )
-    variables |= _ends(result)
-    return Parts(variables, coordinates, _facts(result, summary))
-
-
-def _contacts(response: Response) -> tuple[Array, Array]:
-    """Compression and force of the contacts; ramps of one force law are one contact."""
-    pressed, force = response.deflection, response.contact_force
-    if np.ptp(pressed, axis=1).max(initial=0.0) > 0.0:
-        return pressed, force
-    return pressed[:, :1], force.sum(axis=1, keepdims=True)
-
-
-def _spectra(result: Computed) -> dict[str, Any]:
-    """Amplitudes of the mesh harmonics of every signal."""
-    from tribodyn.analysis import amplitude_spectrum
-
-    response = result.response
-    highest = min(_HIGHEST, response.time.size // response.periods // 8)
-    spectra: dict[str, Any] = {}
-    for name, (values, unit, meaning) in signals(result, response.fine).items():
-        if name == "static_transmission_error":
-            continue
-        spectrum = amplitude_spectrum(response, values, highest=highest)
-        attributes = _attributes_of(unit, f"peak amplitude of the harmonics: {meaning}")
-        spectra[f"{name}_spectrum"] = ("order", spectrum.amplitude, attributes)
-        spectra["order"] = spectrum.order
-        spectra["frequency"] = (
-            "order",
-            spectrum.frequency,
-            _attributes_of("Hz", "frequency of a harmonic"),
-        )
-    return spectra
-
-
-def _ends(result: Computed) -> dict[str, Any]:
-    """Values from which a motion is rebuilt, in addition to its states at the steps."""
-    response, friction = result.response, result.friction
-    variables: dict[str, Any] = {
-        f"end_{name}": (
-            "coordinate",
-            getattr(response.fine, name)[-1],
-            {"long_name": f"{name} at the end of the record"},
-        )
-        for name in ("position", "velocity")
-    }
-    multipliers = response.floquet_multipliers
-    if response.extra_force.size:
-        attributes = {"long_name": "force or torque that balances the friction [N or N*m]"}
-        variables["extra_force"] = ("coordinate", response.extra_force, attributes)
-    if multipliers.size:
-        components = np.stack((multipliers.real, multipliers.imag))
-        attributes = _attributes_of("1", "Floquet multipliers: real and imaginary part")
-        variables["floquet_multipliers"] = (("part", "multiplier"), components, attributes)
-    if friction is not None:
-        attributes = {"long_name": "friction over powers of the load: force [1], moments [m]"}
-        dims = ("knot", "power", "channel")
-        variables["friction_coefficients"] = (dims, friction.coefficients, attributes)
-        if friction.wrench is not None:
-            attributes = {"long_name": "friction over coordinates, over powers of the load [1, m]"}
-            dims = ("knot", "power", "coordinate_of_gears")
-            variables["friction_wrench_coefficients"] = (dims, friction.wrench, attributes)
-        if friction.couple is not None:
-            attributes = {"long_name": "tilting moment of friction over powers of the load [m]"}
-            variables["friction_couple_coefficients"] = (dims[:2], friction.couple, attributes)
-    if (coupling := result.coupling) is not None:
-        attributes = _attributes_of(
-            "1", "change of each quantity from one pass of the coupling to the next"
-        )
-        variables |= {
-            f"coupling_{field.name}": ("pass", getattr(coupling, field.name), attributes)
-            for field in fields(coupling)
-            if field.name.endswith("_change")
-        }
-        attributes = _attributes_of(
-            "1", "force of all pairs over that of the torque alone, by phase of the mesh"
-        )
-        variables["coupling_loading"] = ("knot", coupling.loading, attributes)
-    if (heat := result.heat) is not None:
-        labels = labels_of(type(heat))
-        variables |= {
-            f"heat_{name}": (
-                "heat_pass",
-                getattr(heat, name),
-                _attributes_of(label.unit or "", "heat balance, pass by pass"),
-            )
-            for name, label in labels.items()
-            if label.dims and getattr(heat, name) is not None
-        }
-    return variables
-
-
-def _facts(result: Computed, summary: dict[str, float]) -> dict[str, Any]:
-    response = result.response
-    facts: dict[str, Any] = {
-        "mesh_frequency": response.mesh_frequency,
-        "periods": response.periods,
-        "steady_state_error": response.error,
-        "omega_max_dt": response.step_number,
-        "title": result.case.title,
-        "half_backlash": result.half_backlash,
-        "warnings": json.dumps([[warning.code, warning.message] for warning in result.warnings]),
-        **{
-            name: int(getattr(response, name))
-            for name in ("converged", "cycles_used", "search_cycles", "period")
-        },
-    }
-    if result.friction is not None:
-        names = ("load", "limit", "fit_error")
-        facts |= {f"friction_{name}": getattr(result.friction, name) for name in names}
-    if result.coupling is not None:
-        facts |= {
-            f"coupling_{name}": getattr(result.coupling, name) for name in ("kind", "tolerance")
-        }
-    if result.heat is not None:
-        values = {
-            name: getattr(result.heat, name)
-            for name, label in labels_of(type(result.heat)).items()
-            if not label.dims
-        }
-        facts |= {f"heat_{name}": value for name, value in values.items() if value is not None}
-    facts["case"] = hashlib.sha256(result.case.to_toml().encode()).hexdigest()
-    facts["figures"] = len(summary)
-    return {**facts, **summary}
-
-
-def _stored_cycles(response: Response) -> int:
-    """Number of last mesh cycles whose series stay below ``LARGEST``, at least one."""
-    columns = 3 * len(response.names) + 2 * _contacts(response)[0].shape[1] + 10
-    cycle = 8 * columns * response.time.size // response.periods
-    return int(min(response.periods, max(1, LARGEST // cycle)))
-
-
-def stored(parts: Parts, response: Response) -> Parts:
-    """Return the parts of a result that are saved: of a long run, the last mesh cycles."""
-    periods, cycles = int(response.periods), _stored_cycles(response)
-    first = response.time.size // periods * (periods - cycles)
-
-    def last(named: dict[str, Any]) -> dict[str, Any]:
-        return {
-            name: (
-                dims,
-                values[first:] if np.atleast_1d(dims)[0] == "time" else values,
-                *attributes,
-            )
-            for name, (dims, values, *attributes) in named.items()
-        }
-
-    facts = {**parts.attributes, "periods": cycles, "computed_mesh_cycles": periods}
-    return Parts(last(parts.variables), last(parts.coordinates), facts)
-
-
-def describe_stored_cycles(response: Response) -> str:
-    """Describe which mesh cycles of the motion the file contains."""
-    computed, stored_count = int(response.periods), _stored_cycles(response)
-    if stored_count == computed:
-        return f"all {computed} mesh cycles" if computed > 1 else "the complete mesh cycle"
-    return (
-        f"the last {stored_count} of {computed} mesh cycles, which are {LARGEST / 1e6:g} MB; the "
-        "figures of the summary are those of the complete run"
-    )
-
-
-def to_csv(parts: Parts) -> str:
-    """Write the time series as comma-separated values in SI, units in the first line."""
-    import io
-
-    heads, columns = [], []
-    axes = parts.coordinates
-    for name, (dims, values, attributes) in {"time": axes["time"], **parts.variables}.items():
-        if np.atleast_1d(dims)[0] != "time":
-            continue
-        rows = values.reshape(len(values), -1)
-        for number, column in enumerate(rows.T):
-            unit, label = attributes.get("units", ""), name
-            if "coordinate" in dims:
-                label = f"{name}_{axes['coordinate'][1][number]}"
-                unit = str(axes[f"{name}_unit"][1][number])
-            elif rows.shape[1] > 1:
-                label = f"{name}_{number}"
-            heads.append(f"{label} [{unit}]")
-            columns.append(column)
-    text = io.StringIO()
-    np.savetxt(text, np.column_stack(columns), "%.9g", ",", header=",".join(heads), comments="")
-    return text.getvalue()

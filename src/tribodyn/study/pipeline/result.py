@@ -2,36 +2,39 @@
 
 from __future__ import annotations
 
-import json
-import os
 from collections.abc import Mapping
 from functools import cached_property
-from pathlib import Path
-from typing import TYPE_CHECKING, Any, NoReturn
+from typing import TYPE_CHECKING, NoReturn
 
-from tribodyn.drawing import write_report_of
+import numpy as np
+
 from tribodyn.errors import collected
-from tribodyn.record import Parts, html_table, record
+from tribodyn.record import Parts, Record, record
 from tribodyn.study.case.hypoid import mounting
 from tribodyn.study.case.provenance import Assumption, assumptions
+from tribodyn.study.coupling import Coupling
 from tribodyn.study.faults.sensors import PairSensors
-from tribodyn.study.pipeline.computed import Computed
-from tribodyn.study.pipeline.parts_result import ResultOfCase
-from tribodyn.study.pipeline.response_series import parts_of, stored, to_csv
-from tribodyn.study.pipeline.save import new_directory
+from tribodyn.study.pipeline.assembly import static_error
+from tribodyn.study.pipeline.result_of_case import ResultOfCase
+from tribodyn.study.pipeline.store import MOTIONS
+from tribodyn.study.pipeline.stored_motion import parts_of, stored, to_csv
 from tribodyn.study.pipeline.summary import summarize
-from tribodyn.study.pipeline.summary_labels import in_words
-from tribodyn.validated_files import write_dataset
+from tribodyn.types import Array
 
 if TYPE_CHECKING:
-    from tribodyn.dynamics import Campbell, NaturalModes
+    from tribodyn.dynamics import Campbell, NaturalModes, Response, System
+    from tribodyn.errors import ModelWarning
     from tribodyn.gear import ToothContact
-    from tribodyn.mesh import HypoidFriction, MeshTable
+    from tribodyn.mesh import HypoidFriction, MeshFriction, MeshTable
+    from tribodyn.stiffness import LoadedContact
+    from tribodyn.study.case.case import Case
     from tribodyn.study.faults.motion import TurningMotion
+    from tribodyn.study.heat_balance import HeatBalance
+    from tribodyn.study.pipeline.assembly import Damping
 
 
 @record
-class Result(ResultOfCase, Computed):
+class Result(ResultOfCase, Record):
     """What :func:`tribodyn.run` returns.
 
     Every figure that draws a run is a method: ``result.plot_mesh_force()``.
@@ -61,7 +64,70 @@ class Result(ResultOfCase, Computed):
     """
 
     _MESH = "mesh"
+    _MOTION = MOTIONS[1]
     _COMPARISON = "result_comparison"
+
+    case: Case
+    mesh: MeshTable
+    system: System
+    response: Response
+    damping: Damping
+    warnings: tuple[ModelWarning, ...]
+    friction: MeshFriction | None = None
+    nominal_friction_response: Response | None = None
+    coupling: Coupling | None = None
+    heat: HeatBalance | None = None
+
+    @property
+    def half_backlash(self) -> float:
+        """Half of the play on the line of action [m]; zero is a linear mesh."""
+        return 0.5 * self.case.backlash
+
+    def static_error(self, phase: Array | float) -> Array:
+        """Transmission error without load: prescribed, or a column of the mesh table.
+
+        Parameters
+        ----------
+        phase : float or array
+            Mesh phase.
+
+        Returns
+        -------
+        array [m]
+        """
+        mesh_error, phase = self.mesh.functions().error, np.asarray(phase, dtype=float)
+        return static_error(self.case.dynamics, phase) + (
+            0.0 if mesh_error is None else mesh_error(phase)
+        )
+
+    def transmission_error_at_rest(self, phase: Array | float | None = None) -> Array:
+        """Lag of the driven gear under load at rest, with the prescribed error of the case.
+
+        Parameters
+        ----------
+        phase : float or array, optional
+            Mesh phase; the knots of the mesh table by default.
+
+        Returns
+        -------
+        array [m]
+        """
+        if phase is None:
+            error = static_error(self.case.dynamics, self.mesh.phase)
+            return np.asarray(self.mesh.transmission_error_at_rest + error)
+        loaded = self.mesh.at("transmission_error_at_rest", phase)
+        return np.asarray(loaded + static_error(self.case.dynamics, phase))
+
+    def loaded_contact(self) -> LoadedContact:
+        """Loaded contact at rest, without oil film: a turn of each gear whose teeth differ.
+
+        Returns
+        -------
+        LoadedContact
+        """
+        from tribodyn.study.pipeline.tooth_contact import loaded_contact, phases_of_turns
+
+        return loaded_contact(self.case, phases=phases_of_turns(self.case))
 
     @cached_property
     def figures(self) -> dict[str, float]:
@@ -77,11 +143,6 @@ class Result(ResultOfCase, Computed):
     def tables(self) -> Mapping[str, MeshTable]:
         """Tooth contact by the name of the mesh; a pair has the mesh ``"mesh"``."""
         return {self._MESH: self.mesh}
-
-    @property
-    def signals(self) -> Any:
-        """Series of the motion with units, as :meth:`to_xarray`."""
-        return self.to_xarray()
 
     @property
     def assumptions(self) -> tuple[Assumption, ...]:
@@ -141,7 +202,11 @@ class Result(ResultOfCase, Computed):
 
     def _parts(self) -> Parts:
         """Parts of the motion, ramps of a force law as one contact, and the summary."""
-        return parts_of(self, self._summary)
+        return parts_of(self)
+
+    def _stored(self) -> Parts:
+        """What a file holds of the motion: of a long run the last mesh cycles."""
+        return stored(self)
 
     def to_csv(self) -> str:
         """Write the series of the motion as comma-separated values in SI.
@@ -151,61 +216,18 @@ class Result(ResultOfCase, Computed):
         str
             One line for each step; units are in brackets in the first line.
         """
-        return to_csv(stored(self._parts(), self.response))
-
-    def save(
-        self, directory: str | os.PathLike[str], *, force: bool = False, csv: bool = False
-    ) -> Path:
-        """Write case, summary, mesh table, motion and report into a new directory.
-
-        The directory appears complete or not at all; :func:`tribodyn.load_result` reads it. Of a
-        long transient the last mesh cycles are stored, as many as 64 MB hold.
-
-        Parameters
-        ----------
-        directory : str or path
-            Directory to make.
-        force : bool
-            Replace an earlier result there.
-        csv : bool
-            Write the motion as ``response.csv`` as well.
-
-        Raises
-        ------
-        OutputExistsError
-            If it exists and is not to be replaced, or is no result.
-        InputError
-            If the place cannot be written to.
-        """
-        target = Path(directory)
-        with new_directory(target, force=force) as place:
-            (place / "case.toml").write_text(self.case.to_toml(), encoding="utf-8")
-            (place / "summary.json").write_text(_json(self._summary), encoding="utf-8")
-            self.mesh.save(place / "mesh.nc")
-            write_dataset(stored(self._parts(), self.response), place / "response.nc")
-            if csv:
-                (place / "response.csv").write_text(self.to_csv(), encoding="utf-8")
-            write_report_of(self, place / "report.html")
-        return target
-
-    def _repr_html_(self) -> str:
-        """Table of the summary by topic for notebooks."""
-        rows = [(topic, in_words(name), *rest) for topic, name, *rest in self.rows()]
-        return html_table(repr(self), ("topic", "figure", "value", "meaning"), rows)
+        return to_csv(stored(self))
 
     def __reduce__(self) -> NoReturn:
         """Refuse to be pickled: a result holds functions of the models."""
         raise TypeError("a Result cannot be pickled; keep it with save(), or pass its case")
 
-    def __repr__(self) -> str:
-        """One line."""
+    @property
+    def _headline(self) -> str:
+        """Chief figures in one line."""
         figures = self._summary
         swing = figures["peak_to_peak_dynamic_transmission_error"] * 1e6
         return (
-            f'Result("{self.case.title}": peak mesh force {figures["peak_mesh_force"]:.5g} N, '
-            f"transmission error {swing:.4g} um peak to peak, {len(self.warnings)} warnings)"
+            f"peak mesh force {figures['peak_mesh_force']:.5g} N, "
+            f"transmission error {swing:.4g} um peak to peak, {len(self.warnings)} warnings"
         )
-
-
-def _json(values: dict[str, float]) -> str:
-    return json.dumps(values, indent=2, allow_nan=False) + "\n"

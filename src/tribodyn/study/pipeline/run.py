@@ -13,7 +13,7 @@ from tribodyn.errors import ModelWarning, collected, frames
 from tribodyn.progress import SILENT, Progress
 from tribodyn.study.case.read import unchanged_files
 from tribodyn.study.case.to_models import locate_errors
-from tribodyn.study.coupling import Follow, coupled
+from tribodyn.study.coupling import Coupling, Follow, coupled
 from tribodyn.study.first_use import compile_in_parallel
 from tribodyn.study.heat_balance import balanced
 from tribodyn.study.mesh_inputs import mesh_inputs
@@ -27,9 +27,10 @@ from tribodyn.study.pipeline.cautions import (
     motion_cautions,
     teeth_cautions,
 )
-from tribodyn.study.pipeline.computed import Coupling
 from tribodyn.study.pipeline.motion import motion_of, motions_of, steps_of
 from tribodyn.study.pipeline.result import Result
+from tribodyn.study.pipeline.store import Stored
+from tribodyn.study.pipeline.stored_motion import NOMINAL, read_friction, read_passes, read_response
 from tribodyn.study.pipeline.tooth_contact import (
     film_group,
     load_friction_of,
@@ -194,6 +195,25 @@ def prepare_run(
         system = system_of(case, mesh, damping, friction)
         progress.finish()
     return PreparedRun(case, mesh, coupling, heat, friction, damping, system, model_warnings)
+
+
+def restored(case: Case, stored: Stored) -> Result:
+    """Result from its folder; the forces along its motion are computed again."""
+    (load,) = stored.loads
+    data, (mesh,) = load.data, load.tables.values()
+    with locate_errors(case):
+        friction = read_friction(mesh, data)
+        damping = damping_of(case, mesh)
+        system = system_of(case, mesh, damping, friction)
+        response = read_response(system, data)
+        compared = None  # nor has a folder of the last version it
+        if f"{NOMINAL}time" in data:
+            compared = read_response(system_of(case, mesh, damping), data, NOMINAL)
+    passes = [read_passes(name, mesh, data) for name in ("coupling", "heat")]
+    parts = case, mesh, system, response, damping, stored.warnings
+    result = Result(*parts, friction, compared, *passes)
+    vars(result)["figures"] = stored.summary
+    return result
 
 
 class PendingRun(NamedTuple):

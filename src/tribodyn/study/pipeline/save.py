@@ -13,19 +13,15 @@ from tribodyn.files import absolute_target, atomic_write, cannot_write, clear_le
 
 #: What a result directory holds; only such a directory may be replaced.
 RESULT_FILES = ("case.toml", "summary.json", "mesh.nc", "response.nc", "report.html")
-#: What it may hold besides.
-_ON_REQUEST = ("response.csv",)
 #: The same of studies.
 SWEEP_FILES = ("case.toml", "sweep.csv", "sweep.nc", "report.html")
 STUDY_FILES = ("case.toml", "best.toml", "study.nc", "friction.csv", "report.html")
 BIFURCATION_FILES = ("case.toml", "bifurcation.nc", "bifurcation.html")
-#: What the directory of a machine holds, besides the mesh tables of its meshes.
-MACHINE_FILES = ("case.toml", "summary.json", "motion.nc", "report.html")
-_OF_PARTS = ("mesh-*.nc", "load-*.nc", "housing-*")
+#: What the result of a machine holds besides, and what was written on request.
+_OF_PARTS = ("motion.nc", "mesh-*.nc", "load-*.nc", "housing-*", "response.csv")
 #: File by which a directory is known -> all that it may hold.
 _KINDS = {
-    "motion.nc": (*MACHINE_FILES, *_ON_REQUEST),
-    "summary.json": (*RESULT_FILES, *_ON_REQUEST),
+    "summary.json": RESULT_FILES,
     "sweep.nc": SWEEP_FILES,
     "bifurcation.nc": BIFURCATION_FILES,
     "study.nc": STUDY_FILES,

@@ -35,7 +35,7 @@ from tribodyn.units import format_quantity
 if TYPE_CHECKING:
     from tribodyn.dynamics import FineSamples
     from tribodyn.mesh import MeshTable
-    from tribodyn.study.pipeline.computed import Computed
+    from tribodyn.study.pipeline.result import Result
 
 
 #: Computes a figure of a result in SI; None leaves it out.
@@ -67,17 +67,18 @@ def summary_entry(name: str, quantity: str, *meaning_topic: str) -> SummaryFigur
     return SummaryFigure(name, unit, display_unit, *meaning_topic)
 
 
-def _read() -> dict[str, SummaryFigure]:
-    text = files("tribodyn.study.pipeline").joinpath("summary.toml").read_text(encoding="utf-8")
-    return {
-        name: summary_entry(name, quantity, meaning, topic)
-        for topic, rows in tomllib.loads(text).items()
-        for name, (quantity, meaning) in rows.items()
-    }
-
-
+_TABLE = tomllib.loads(
+    files("tribodyn.study.pipeline").joinpath("summary.toml").read_text(encoding="utf-8")
+)
+#: Figures of each kind of part of a machine, and those of a pair that fit on a screen.
+PARTS: dict[str, dict[str, Any]] = _TABLE.pop("parts")
+CHIEF: list[str] = _TABLE.pop("chief")
 #: All figures of :meth:`tribodyn.Result.summary` and ``tribodyn check`` by name.
-SUMMARY: dict[str, SummaryFigure] = _read()
+SUMMARY: dict[str, SummaryFigure] = {
+    name: summary_entry(name, quantity, meaning, topic)
+    for topic, rows in _TABLE.items()
+    for name, (quantity, meaning) in rows.items()
+}
 #: Figures of third parties: functions of a result, open through the entry points of this group.
 MEASURES: Registry[Measure] = Registry("summary figure", "tribodyn.summary")
 
@@ -118,7 +119,7 @@ def summary_figure(name: str, *, meaning: str, of: str = "") -> Callable[[Measur
 _HARMONICS = 5
 
 
-def summarize(result: Computed) -> dict[str, float]:
+def summarize(result: Result) -> dict[str, float]:
     """Compute all figures of a result."""
     moving = _motion_figures(result, measured(result.response))
     values: dict[str, Any] = {
@@ -207,7 +208,7 @@ def _pressure(mesh: MeshTable) -> dict[str, Any]:
     return {"maximum_hertz_pressure": greatest} if np.isfinite(greatest) else {}
 
 
-def _static_error_figures(result: Computed) -> dict[str, Any]:
+def _static_error_figures(result: Result) -> dict[str, Any]:
     """Transmission error at rest: of the mesh cycle, or of all teeth where they differ."""
     name = "static_transmission_error"
     figures: tuple[Any, Any, Any]
@@ -260,7 +261,7 @@ def _film_figures(mesh: MeshTable) -> dict[str, Any]:
     return figures | {name: value for name, value in at_pitch_point.items() if value is not None}
 
 
-def _motion_figures(result: Computed, samples: FineSamples) -> dict[str, Any]:
+def _motion_figures(result: Result, samples: FineSamples) -> dict[str, Any]:
     """Figures of all signals of a motion, averaged in one pass."""
     from tribodyn.signals.indicators import extremes, mesh_harmonics, moments
 
@@ -294,7 +295,7 @@ def _motion_figures(result: Computed, samples: FineSamples) -> dict[str, Any]:
 _OF_CENTRES = ("bearing_force_", "acceleration_", "torque_shaft")
 
 
-def _signals(result: Computed, samples: FineSamples) -> Iterator[tuple[str, Array]]:
+def _signals(result: Result, samples: FineSamples) -> Iterator[tuple[str, Array]]:
     force, touch = mesh_force(samples), first_touch(result.system, samples)
     yield "mesh_force", force
     separated = (compression(samples) <= touch) & (touch > 0.0)
@@ -311,7 +312,7 @@ def _signals(result: Computed, samples: FineSamples) -> Iterator[tuple[str, Arra
     yield from _support_signals(result, samples)
 
 
-def _friction_power(result: Computed, phase: Array, force: Array) -> Array:
+def _friction_power(result: Result, phase: Array, force: Array) -> Array:
     from tribodyn.mesh.grid import PhaseFunction
 
     mesh = result.mesh
@@ -331,7 +332,7 @@ def _less(speeds: tuple[float, float], moments: Iterable[Array]) -> Array:
     return pinion - wheel
 
 
-def _support_signals(result: Computed, samples: FineSamples) -> Iterator[tuple[str, Array]]:
+def _support_signals(result: Result, samples: FineSamples) -> Iterator[tuple[str, Array]]:
     """Forces on the supports, accelerations of the gear centres and torque in both shafts."""
     names = result.response.names
     supports: dict[str, int] = {}
@@ -347,7 +348,7 @@ def _support_signals(result: Computed, samples: FineSamples) -> Iterator[tuple[s
     yield from zip(supports, forces, strict=True)
 
 
-def _hypoid_figures(result: Computed, in_space: bool) -> dict[str, Any]:
+def _hypoid_figures(result: Result, in_space: bool) -> dict[str, Any]:
     """Unloaded and loaded transmission error of gears in space, on the line of action."""
     error = result.mesh.unloaded_transmission_error
     if not in_space or error is None:
@@ -358,7 +359,7 @@ def _hypoid_figures(result: Computed, in_space: bool) -> dict[str, Any]:
     }
 
 
-def _comparison(result: Computed) -> dict[str, Any]:
+def _comparison(result: Result) -> dict[str, Any]:
     """Figures of the same motion with the friction of the nominal load."""
     if result.friction is None or result.nominal_friction_response is None:
         return {}

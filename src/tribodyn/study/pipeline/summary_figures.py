@@ -4,150 +4,70 @@ from __future__ import annotations
 
 from collections.abc import Collection, Iterable, Mapping
 from dataclasses import replace
+from typing import Any
 
-from tribodyn.study.pipeline.summary import MEASURES, SUMMARY, SummaryFigure, summary_entry
+from tribodyn.aliases import warn_of_old_name
+from tribodyn.machine.planetary.stage_parts import mesh_kinds
+from tribodyn.study.pipeline.summary import (
+    CHIEF,
+    MEASURES,
+    PARTS,
+    SUMMARY,
+    SummaryFigure,
+    summary_entry,
+)
 from tribodyn.study.pipeline.summary_labels import split_key
 
-#: Figures of each kind of part: key, quantity that gives the unit (empty: a pure number), meaning.
-#: Others have the definition of a pair.
-_KINDS: dict[str, dict[str, tuple[str, str]]] = {
-    "machine": {
-        "clock_frequency": ("frequency", "periods of the whole motion per second"),
-        "friction_power": (
-            "power",
-            "power that the friction of all computed teeth at rest takes from the input power",
-        ),
-        "output_torque": (
-            "torque",
-            "torque of the output shaft, less the friction of computed teeth; without friction "
-            "before teeth are computed",
-        ),
-    },
-    "meshes": {
-        "alternating_rms_mesh_force": (
-            "mesh_force",
-            "root mean square of the dynamic force, its mean left out; of a stage that of the "
-            "planet with the greatest",
-        ),
-        "rms_mesh_force": (
-            "mesh_force",
-            "deprecated name of alternating_rms_mesh_force; unlike the rms_mesh_force of a pair "
-            "it leaves the mean out",
-        ),
-        "transmission_error_peak_to_peak": (
-            "dynamic_transmission_error",
-            "rotation of one gear against the other on the line of action, greatest less least",
-        ),
-        "static_transmission_error_peak_to_peak": (
-            "static_transmission_error",
-            "of the computed teeth at rest under the load",
-        ),
-        "offset_error": ("deflection", "V: growth of the offset, by deflected shafts"),
-        "pinion_axial_error": ("deflection", "H: pinion away from its mounting distance, likewise"),
-        "wheel_axial_error": ("deflection", "J: wheel away from its mounting distance, likewise"),
-        "shaft_angle_error": ("angle", "alpha: growth of the shaft angle, likewise"),
-        "axial_force": ("mesh_force", "mean force along x on the first gear, against the second"),
-        "contact_ratio": ("", "mean number of tooth pairs that carry load at rest"),
-        "friction_power": (
-            "power",
-            "power that the friction of the teeth at rest takes from what reaches the mesh",
-        ),
-        "minimum_film_thickness": (
-            "film_thickness",
-            "least film of the computed teeth, central where the model has no minimum film",
-        ),
-    },
-    "planets": {
-        "ratio": ("", "speed of the input over that of the output"),
-        "rolling_power": ("power", "power that the meshes transmit relative to the carrier"),
-        "planet_speed": ("speed", "speed of a planet about its pin"),
-        "load_factor": ("", "K_gamma at rest: greatest load of a planet over the mean"),
-        "dynamic_load_factor": ("", "K_gamma in motion: of the mean loads over a mesh cycle"),
-        "planets_unloaded": ("", "number of planets without load at rest"),
-        "mean_pin_force": ("bearing_force", "greatest mean force of a planet on its pin"),
-        "peak_pin_force": ("bearing_force", "greatest force of a planet on its pin"),
-        "centrifugal_force": ("bearing_force", "part of the pin force by the turning carrier"),
-        "sun_orbit": ("deflection", "root mean square of the radial motion of the sun"),
-    },
-    "shafts": {
-        "speed": ("speed", "speed of the shaft, negative where it turns against x"),
-        "torque": ("torque", "torque that it transmits, less the friction of teeth before it"),
-        "power": ("power", "power that it transmits, less the friction of teeth before it"),
-        "largest_deflection": ("deflection", "greatest radial displacement at rest"),
-    },
-    "bearings": {
-        "mean_radial_force": ("bearing_force", "size of the mean radial force"),
-        "mean_axial_force": ("bearing_force", "mean force along the shaft"),
-        "rms_radial_force": ("bearing_force", "root mean square of the alternating radial force"),
-        "peak_radial_force": ("bearing_force", "greatest radial force"),
-        "radial_stiffness": ("bearing_stiffness", "mean of y and z at the working load"),
-        "maximum_pressure": ("hertz_pressure", "greatest pressure on a raceway"),
-    },
-    "housing": {
-        "rms_acceleration": (
-            "acceleration",
-            "root mean square of the acceleration, all directions",
-        ),
-        "peak_acceleration": ("acceleration", "greatest acceleration"),
-    },
-}
-#: Figures of parts that are those of a pair.
-_OF_PAIRS = {
-    "machine": ("input_power", "efficiency"),
-    "meshes": (
-        *("mesh_frequency", "static_mesh_force", "mean_mesh_force", "peak_mesh_force"),
-        *("minimum_mesh_force", "dynamic_factor_peak", "contact_loss_share", "face_load_factor"),
-        *("mean_mesh_stiffness", "misalignment", "overlap_ratio", "mean_friction_coefficient"),
-        "maximum_hertz_pressure",
-    ),
-}
-_TOPICS = {
-    "machine": "Machine",
-    "meshes": "Mesh {0}",
-    "planets": "Planetary stage {0}",
-    "shafts": "Shaft {0}",
-    "bearings": "Bearing {0}",
-    "housing": "Housing at {0}",
-}
-#: Figures that fit on a screen, by kind of part; those of third parties are always among them.
-_CHIEF = {
-    "": (
-        *("static_mesh_force", "line_load", "input_power", "mesh_frequency", "oil_temperature"),
-        *("mean_mesh_force", "rms_mesh_force", "peak_mesh_force", "dynamic_factor_peak"),
-        *("contact_loss_share", "rms_dynamic_transmission_error", "mean_friction_coefficient"),
-        *("peak_to_peak_dynamic_transmission_error", "mean_friction_power", "efficiency"),
-        *("total_power_loss", "total_efficiency", "mesh_natural_frequency", "resonance_speed"),
-        *("contact_ratio_under_load", "face_load_factor", "mean_mesh_stiffness"),
-        *("peak_to_peak_static_transmission_error", "maximum_hertz_pressure", "central_film"),
-        *("minimum_film_over_path", "minimum_film_ratio", "rms_bearing_force_loa_pinion"),
-        *("rms_bearing_force_oloa_pinion", "steady_state_error", "transverse_contact_ratio"),
-        *("overlap_ratio", "backlash"),
-    ),
-    "machine": ("input_power", "friction_power", "efficiency", "output_torque"),
-    "meshes": (
-        *("mesh_frequency", "mean_mesh_force", "alternating_rms_mesh_force", "peak_mesh_force"),
-        *("dynamic_factor_peak", "contact_loss_share", "transmission_error_peak_to_peak"),
-        *("face_load_factor", "maximum_hertz_pressure", "minimum_film_thickness"),
-        "friction_power",
-    ),
-    "planets": (
-        *("ratio", "planet_speed", "load_factor", "dynamic_load_factor", "planets_unloaded"),
-        *("mean_pin_force", "peak_pin_force"),
-    ),
-    "shafts": ("speed", "torque", "power", "largest_deflection"),
-    "bearings": (
-        *("mean_radial_force", "mean_axial_force", "rms_radial_force", "maximum_pressure"),
-    ),
-    "housing": tuple(_KINDS["housing"]),
-}
 #: Those by which load cases are compared.
 _OF_LOADS = ("output_torque", "efficiency", "peak_mesh_force")
+
+
+#: Figures of which the mean of all planets counts in the deprecated key of their kind of mesh.
+_MEAN = ("static_mesh_force", "mean_mesh_force", "friction_power", "mesh_frequency")
+
+
+class Figures(dict[str, float]):
+    """Figures of a summary by key; deprecated keys are read, but are in no list or sum of all."""
+
+    def __missing__(self, key: str) -> float:
+        """Value of a deprecated key."""
+        if not (keys := self._in_place_of(key)):
+            raise KeyError(key)
+        warn_of_old_name(f'summary()["{key}"]', " or ".join(f'summary()["{k}"]' for k in keys))
+        values, name = [self[each] for each in keys], split_key(keys[0])[3]
+        if name in _MEAN:
+            return sum(values) / len(values)
+        return min(values) if name.startswith("minimum") else max(values)
+
+    def _in_place_of(self, key: object) -> list[str]:
+        """Keys that replace a deprecated one; of a stage by itself those of all its planets."""
+        load, kind, part, name = split_key(str(key))
+        name = PARTS[kind].get("deprecated", {}).get(name, name) if kind else name
+        start = f"load_cases.{load}." if load else ""
+        names, word = [part], mesh_kinds("meshed").get(part)
+        meshes = {split_key(each)[2]: None for each in self if each.startswith(f"{start}meshes.")}
+        if kind == "meshes" and word and len({each.rpartition("_")[0] for each in meshes}) == 1:
+            names = [each for each in meshes if each.rstrip("0123456789").endswith(f"_{word}")]
+        keys = [f"{start}{kind}.{each}.{name}" for each in names]
+        return [each for each in keys if dict.__contains__(self, each) and each != key]
+
+    def __contains__(self, key: object) -> bool:
+        """Whether a key, also a deprecated one, has a value."""
+        return super().__contains__(key) or bool(self._in_place_of(key))
+
+    def get(self, key: str, default: Any = None) -> Any:
+        """Value of a key, also of a deprecated one."""
+        try:
+            return self[key]
+        except KeyError:
+            return default
 
 
 def is_chief(key: str) -> bool:
     """Whether a figure belongs to the summary that fits on a screen."""
     load, kind, _, name = split_key(key)
-    return name in (_OF_LOADS if load else _CHIEF[kind]) or name in MEASURES.names()
+    chief = PARTS[kind]["chief"] if kind else CHIEF
+    return name in (_OF_LOADS if load else chief) or name in MEASURES.names()
 
 
 def figure_of(key: str) -> SummaryFigure:
@@ -155,15 +75,17 @@ def figure_of(key: str) -> SummaryFigure:
     if key in SUMMARY:
         return SUMMARY[key]
     load, kind, part, name = split_key(key)
-    topic = (f"{load}: " if load else "") + _TOPICS[kind].format(part)
-    if name in _OF_PAIRS.get(kind, ()):
+    table = PARTS[kind]
+    name = table.get("deprecated", {}).get(name, name)
+    topic = (f"{load}: " if load else "") + table["topic"].format(part)
+    if name in table.get("of_pairs", ()):
         return replace(SUMMARY[name], name=key, topic=topic)
-    return summary_entry(key, *_KINDS[kind][name], topic)
+    return summary_entry(key, *table["figures"][name], topic)
 
 
 def part_figures() -> dict[str, list[str]]:
     """Names of the figures of each kind of part."""
-    return {kind: [*figures, *_OF_PAIRS.get(kind, ())] for kind, figures in _KINDS.items()}
+    return {kind: [*table["figures"], *table.get("of_pairs", ())] for kind, table in PARTS.items()}
 
 
 def is_figure(key: str) -> bool:

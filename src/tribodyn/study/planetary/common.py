@@ -12,9 +12,6 @@ from tribodyn.types import Array
 if TYPE_CHECKING:
     from tribodyn.machine import Machine
 
-#: Figures of which the mean of all planets counts; of others the greatest, or the least by name.
-_MEAN = ("static_mesh_force", "mean_mesh_force", "friction_power", "mesh_frequency")
-
 
 def only_stage(machine: Machine) -> str | None:
     """Name of the stage to which all meshes of a machine belong; None of other machines."""
@@ -23,27 +20,6 @@ def only_stage(machine: Machine) -> str | None:
         if set(meshes) == {*machine.meshes}:
             return name
     return None
-
-
-def common_figures(machine: Machine, figures: Mapping[str, float]) -> dict[str, float]:
-    """Figures of the meshes of all planets by kind: ``meshes.sun.peak_mesh_force``, ..."""
-    stage, common = only_stage(machine), {}
-    if stage is None:
-        return {}
-    for kind, meshes in machine.planets[stage].mesh_names(stage).items():
-        of_meshes = [
-            {
-                k.removeprefix(f"meshes.{m}."): v
-                for k, v in figures.items()
-                if k.startswith(f"meshes.{m}.")
-            }
-            for m in meshes
-        ]
-        for key in dict.fromkeys(key for each in of_meshes for key in each):
-            values = [each[key] for each in of_meshes if key in each]
-            pick: Any = np.mean if key in _MEAN else min if key.startswith("minimum") else max
-            common[f"meshes.{kind}.{key}"] = float(pick(values))
-    return common
 
 
 def common_lines(levels: Any, machine: Machine) -> dict[str, Array | tuple[str, ...]]:

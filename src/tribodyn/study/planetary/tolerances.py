@@ -10,7 +10,7 @@ from tribodyn.errors import Argument, InputError
 from tribodyn.machine import load_shares
 from tribodyn.machine.planetary.load_sharing import sampled_shares
 from tribodyn.record import Record, quantity, record
-from tribodyn.study.machine.modes import structure_at_rest
+from tribodyn.study.machine.run import structure_at_rest
 from tribodyn.study.planetary.stage_result import plane_data
 from tribodyn.study.uncertain.lanes import draw
 from tribodyn.types import Array

@@ -15,8 +15,8 @@ from tribodyn.study.machine.modes import (
     MeshOrder,
     campbell_of,
     mesh_orders,
-    structure_at_rest,
 )
+from tribodyn.study.machine.run import structure_at_rest
 from tribodyn.study.studies.case_grid import build_system
 from tribodyn.study.studies.study_axes import ends_of, operation_values
 

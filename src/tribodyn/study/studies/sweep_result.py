@@ -124,7 +124,7 @@ class Sweep(Record):
 
     def __getitem__(self, name: str) -> Array:
         """Return one figure of the summary over the grid, in SI; NaN where ``failed`` says why."""
-        if name not in self.figures:
+        if not any(name in point.figures for point in self.points):
             remedy = did_you_mean(name, self.figures, f"It has: {', '.join(self.figures)}")
             why = "A sweep shows the figures that its points have"
             raise InputError(f'there is no figure "{name}" in this sweep', why=why, remedy=remedy)

@@ -2,20 +2,22 @@
 
 from __future__ import annotations
 
+import os
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Mapping, Sequence
 from functools import cached_property, partial
+from pathlib import Path
 from typing import TYPE_CHECKING, Any, ClassVar
 
 from tribodyn.drawing import FIGURES, draw, figures_of
-from tribodyn.record import html_table
-from tribodyn.study.pipeline.summary_figures import summary_rows
+from tribodyn.record import Parts, html_table
+from tribodyn.study.pipeline.store import MOTIONS, write_result
+from tribodyn.study.pipeline.summary_figures import Figures, summary_rows
+from tribodyn.study.pipeline.summary_labels import in_words
 
 if TYPE_CHECKING:
-    from tribodyn.dynamics import Response, System
+    from tribodyn.errors import ModelWarning
     from tribodyn.measurement import Recording
-    from tribodyn.mesh import MeshTable
-    from tribodyn.study.case.provenance import Assumption
     from tribodyn.study.faults.sensors import Sensors
     from tribodyn.types import Array
 
@@ -27,11 +29,27 @@ class ResultOfCase(ABC):
 
     #: Name of the only mesh, of a pair.
     _MESH: ClassVar[str] = ""
+    #: Name of the files of motions in a stored result.
+    _MOTION: ClassVar[str] = MOTIONS[0]
     #: Figure that compares results of the kind.
     _COMPARISON: ClassVar[str] = "machine_comparison"
 
     case: Any
+    warnings: tuple[ModelWarning, ...]
     turning_motion: Any
+
+    @abstractmethod
+    def _parts(self) -> Parts:
+        """Variables, coordinates and attributes of the motion at the operating point."""
+
+    @property
+    @abstractmethod
+    def _headline(self) -> str:
+        """Chief figures in one line."""
+
+    @abstractmethod
+    def to_csv(self) -> str:
+        """Write series of the motion as comma-separated values in SI."""
 
     @property
     @abstractmethod
@@ -44,11 +62,11 @@ class ResultOfCase(ABC):
         """What there is to sense."""
 
     @cached_property
-    def _summary(self) -> dict[str, float]:
-        figures: dict[str, float] = {}
+    def _summary(self) -> Figures:
+        figures = Figures()
         for number, (name, load) in enumerate(self.loads.items()):
             prefix = f"load_cases.{name.removeprefix('load_cases.')}." if number else ""
-            figures |= {f"{prefix}{key}": value for key, value in load.figures.items()}
+            figures.update({f"{prefix}{key}": value for key, value in load.figures.items()})
         return figures
 
     def summary(self) -> dict[str, float]:
@@ -58,9 +76,66 @@ class ResultOfCase(ABC):
         -------
         dict of str to float
             In SI; :data:`tribodyn.study.SUMMARY` has unit and meaning of those of a pair. Of parts
-            the keys are dotted; those of load cases begin with ``load_cases.NAME.``.
+            the keys are dotted; those of load cases begin with ``load_cases.NAME.``. Deprecated
+            keys are read with a warning, but are not listed.
         """
-        return dict(self._summary)
+        return Figures(self._summary)
+
+    def to_xarray(self) -> Any:
+        """Return the motion at the operating point as labelled arrays with units.
+
+        Returns
+        -------
+        xarray.Dataset
+            Series, and facts as attributes.
+        """
+        import xarray
+
+        return xarray.Dataset(*self._parts())
+
+    @property
+    def signals(self) -> Any:
+        """Signals at the operating point with units, as :meth:`to_xarray`."""
+        return self.to_xarray()
+
+    def _case_in(self, place: Path) -> Any:
+        """Case whose files lie in a folder, copied there."""
+        return self.case
+
+    def save(
+        self, directory: str | os.PathLike[str], *, force: bool = False, csv: bool = False
+    ) -> Path:
+        """Write case, summary, mesh tables, motions and report into a new directory.
+
+        The directory appears complete or not at all; :func:`tribodyn.load_result` reads it. Of a
+        long transient the last mesh cycles are stored, as many as 64 MB hold.
+
+        Parameters
+        ----------
+        directory : str or path
+            Directory to make.
+        force : bool
+            Replace an earlier result there.
+        csv : bool
+            Write :meth:`to_csv` as ``response.csv`` as well.
+
+        Raises
+        ------
+        OutputExistsError
+            If it exists and is not to be replaced, or is no result.
+        InputError
+            If the place cannot be written to.
+        """
+        return write_result(self, directory, force=force, csv=csv)
+
+    def _repr_html_(self) -> str:
+        """Table of the summary by topic for notebooks."""
+        rows = [(topic, in_words(name), *rest) for topic, name, *rest in self.rows()]
+        return html_table(repr(self), ("topic", "figure", "value", "meaning"), rows)
+
+    def __repr__(self) -> str:
+        """One line."""
+        return f'{type(self).__name__}("{self.case.title}": {self._headline})'
 
     def cite(self, style: str = "text") -> str:
         """Name the papers behind this result.
@@ -179,71 +254,3 @@ class ResultOfCase(ABC):
     def __dir__(self) -> list[str]:
         """Attributes and figures."""
         return sorted({*super().__dir__(), *(f"{_PLOT}{name}" for name in figures_of(self))})
-
-
-class PartsResult(ResultOfCase):
-    """Result of a case of parts at its operating point and under its load cases."""
-
-    case: Any
-    operation: Any
-    load_cases: tuple[Any, ...]
-
-    @property
-    def _sensors(self) -> Sensors:
-        sensors: Sensors = self.case._sensors
-        return sensors
-
-    @property
-    def loads(self) -> Mapping[str, Any]:
-        """Results by load: ``"operation"``, and each load case by its name."""
-        named = {each.load.name: each for each in self.load_cases}
-        if (same := named.pop("operation", None)) is not None:
-            named["load_cases.operation"] = same
-        return {"operation": self.operation, **named}
-
-    @property
-    def tables(self) -> Mapping[str, MeshTable]:
-        """Tooth contact by the name of the mesh at the operating point."""
-        tables: Mapping[str, MeshTable] = self.operation.tables
-        return tables
-
-    @property
-    def mesh(self) -> MeshTable | None:
-        """Tooth contact of the first mesh whose teeth are computed; None if there is none."""
-        return next(iter(self.tables.values()), None)
-
-    @property
-    def system(self) -> System:
-        """Equations of motion at the operating point."""
-        system: System = self.operation.system
-        return system
-
-    @property
-    def response(self) -> Response:
-        """Motion of all coordinates at the operating point."""
-        response: Response = self.operation.response
-        return response
-
-    @property
-    def signals(self) -> Any:
-        """Signals by part at the operating point with units, as :meth:`to_xarray`."""
-        return self.to_xarray()
-
-    @property
-    def motion(self) -> Any:
-        """Motion at the operating point."""
-        return self.operation.motion
-
-    @property
-    def assumptions(self) -> tuple[Assumption, ...]:
-        """What was assumed because the case does not give it."""
-        assumptions: tuple[Assumption, ...] = self.case.assumptions
-        return assumptions
-
-    def to_xarray(self) -> Any:
-        """Motion at the operating point with units."""
-        return self.motion.to_xarray()
-
-    def _repr_html_(self) -> str:
-        """Table of the summary by part for notebooks."""
-        return html_table(repr(self), ("part", "figure", "value", "meaning"), self.rows())
