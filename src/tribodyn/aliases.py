@@ -27,6 +27,7 @@ RENAMED: Mapping[str, str] = {
     "DataSet.where(kept)": "mask",
     "FrictionLaw.told": "evaluate",
     "GearInfluence.between(seen_radius)": "displaced_radius",
+    "MachineCase.central": "get",
     "PaperComparison(asked)": "computation_count",
     "PaperComparison.asked": "computation_count",
     "Section.known": "section_keys",

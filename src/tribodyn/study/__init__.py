@@ -18,13 +18,13 @@ if TYPE_CHECKING:
     from tribodyn.study.machine.modes import MachineCampbell
     from tribodyn.study.machine.motion import MachineMotion
     from tribodyn.study.machine.result import LoadResult, MachineResult
-    from tribodyn.study.machine.user_tables import PartsCase
     from tribodyn.study.pipeline.result import Result
     from tribodyn.study.pipeline.result_of_case import ResultOfCase
     from tribodyn.study.pipeline.run import run
     from tribodyn.study.pipeline.summary import SUMMARY, summary_figure
     from tribodyn.study.pipeline.tooth_contact import loaded_contact
     from tribodyn.study.planetary.names import (
+        PartsCase,
         PlanetaryCase,
         PlanetaryLoadResult,
         PlanetaryResult,
@@ -128,7 +128,6 @@ _NAMES = {
     "machine.modes": "MachineCampbell",
     "machine.motion": "MachineMotion",
     "machine.result": "LoadResult MachineResult",
-    "machine.user_tables": "PartsCase",
     "uncertain.machine_ensemble": "MachineEnsemble",
     "studies.levels": "MachineLevels",
     "pipeline.result_of_case": "ResultOfCase",
@@ -136,7 +135,7 @@ _NAMES = {
     "pipeline.run": "run",
     "pipeline.summary": "SUMMARY summary_figure",
     "pipeline.tooth_contact": "loaded_contact",
-    "planetary.names": "PlanetaryCase PlanetaryLoadResult PlanetaryResult",
+    "planetary.names": "PartsCase PlanetaryCase PlanetaryLoadResult PlanetaryResult",
     "planetary.stage_result": "PlanetaryMotion StageResult",
     "planetary.tolerances": "LoadShareStatistics load_share_statistics",
     "result_comparison": "ResultComparison compare_results",

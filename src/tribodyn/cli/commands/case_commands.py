@@ -154,10 +154,8 @@ def new(
 def _new_text(source: Case | MachineCase | None, kind: str = "") -> str:
     """Text of a case file with all values of a case, or to be filled in."""
     from tribodyn.study.case.reference import start_toml
-    from tribodyn.study.machine.case import MachineCase
-    from tribodyn.study.machine.user_tables import commented_toml
     from tribodyn.study.parts_reference import start_of
 
     if source is None:
         return start_of(kind) if kind else start_toml()
-    return commented_toml(source) if isinstance(source, MachineCase) else source.to_toml()
+    return source._text(comments=True)

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from copy import copy
-from functools import cached_property
+from dataclasses import replace
+from functools import cached_property, partial
 from inspect import Signature
 from typing import TYPE_CHECKING, Any, ClassVar
 
@@ -18,15 +19,15 @@ from tribodyn.study.case.hypoid import torque_problem
 from tribodyn.study.case.provenance import (
     changed_after,
     effective_values,
-    provenance,
     read_stated,
     reason_faults,
     settled,
+    spec_at,
     spec_of,
     tables,
     without_records,
 )
-from tribodyn.study.case.section import Table, choices, signature_of
+from tribodyn.study.case.section import Table, choices, section_at, signature_of
 from tribodyn.study.case.user_input import (
     Source,
     UserInput,
@@ -41,9 +42,10 @@ from tribodyn.study.case.values import (
     correct_keys,
     read_fields,
     read_value,
+    unknown_key,
     with_typed_keys,
 )
-from tribodyn.study.case.write import case_rows, case_table, case_toml
+from tribodyn.study.case.write import case_toml
 
 if TYPE_CHECKING:
     from tribodyn.model import Option
@@ -95,7 +97,7 @@ class Case(CaseData, case=True):
         central_values, self._spread, spread_faults = without_spread(data)
         inputs = UserInput(central_values if source is not None else plain(central_values))
         source = source or Source()
-        stated, problems = read_stated(inputs)
+        stated, problems = read_stated(inputs.data, partial(spec_at, inputs))
         complete = with_gear_defaults(inputs)
         body = without_records(complete.data)
         marks = body.pop("assumed", {})
@@ -123,7 +125,7 @@ class Case(CaseData, case=True):
             raise InputError(source.place(with_typed_keys(problems, typed_keys)))
         self._source, self._assumed = source, dict(marks)
         self._effective = effective_values(self)
-        self._stated, stale = settled(self, self._effective, inputs, stated)
+        self._stated, stale = settled(self, marks, inputs, stated)
         for key in stale:
             del self._assumed[key]
         self._user_input = UserInput({**inputs.data, **tables(self._stated, self._assumed)})
@@ -225,44 +227,21 @@ class Case(CaseData, case=True):
         """
         return spec_of(self, key)
 
+    def _unknown_key(self, key: str) -> Problem:
+        path = tuple(key.split("."))
+        if (section := section_at(path)) is not None:
+            remedy = f"Name one of its keys, such as {key}.{next(iter(section.fields))}"
+            return Problem(f"{key} is a table", "", "", remedy)
+        return replace(unknown_key(path, None), what=f'there is no key "{key}"')
+
     @property
     def _sensors(self) -> PairSensors:
         from tribodyn.study.faults.sensors import pair_sensors
 
         return pair_sensors(self)
 
-    def to_toml(self) -> str:
-        """Write the complete commented case file; it reads back to an equal case.
-
-        Returns
-        -------
-        str
-            TOML text with value, unit, symbol, meaning and range of every key.
-        """
+    def _text(self, *, comments: bool) -> str:
         return case_toml(self)
-
-    def __eq__(self, other: object) -> bool:
-        """Cases are equal when all values and their provenance are."""
-        if not isinstance(other, Case):
-            return NotImplemented
-        same = self._effective == other._effective and self._spread == other._spread
-        return same and provenance(self) == provenance(other)
-
-    def __hash__(self) -> int:
-        """Hash all effective values."""
-        return hash(tuple(self._effective.items()))
-
-    def __repr__(self) -> str:
-        """Format all values with units as a table."""
-        return case_table(self)
-
-    __str__ = __repr__
-
-    def _repr_html_(self) -> str:
-        """Table of all values for notebooks."""
-        from tribodyn.record import html_table
-
-        return html_table(f"Case: {self.title}", ("key", "value", "origin"), case_rows(self))
 
 
 Case.__signature__ = signature_of(Case)

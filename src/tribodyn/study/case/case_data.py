@@ -10,8 +10,15 @@ from typing import TYPE_CHECKING, Any
 from tribodyn.errors import InputError
 from tribodyn.model import text
 from tribodyn.study.case import to_models
+from tribodyn.study.case.base import BaseCase
 from tribodyn.study.case.gears import Gears
 from tribodyn.study.case.hypoid import hypoid_flanks
+from tribodyn.study.case.provenance import (
+    Assumption,
+    assumptions,
+    default_of,
+    derived_values,
+)
 from tribodyn.study.case.section import CaseTables, flat, table
 from tribodyn.study.case.sections import (
     Dynamics,
@@ -24,7 +31,6 @@ from tribodyn.study.case.sections import (
     Solver,
     Stiffness,
 )
-from tribodyn.study.case.user_input import Source, Stated, UserInput
 from tribodyn.study.faults.section import Faults
 
 if TYPE_CHECKING:
@@ -34,7 +40,7 @@ if TYPE_CHECKING:
     from tribodyn.mesh.table_file import TableFile
 
 
-class CaseData(CaseTables):
+class CaseData(BaseCase, CaseTables):
     """All tables of a case, the physics objects built from them, and their provenance."""
 
     title: str = text("Gear pair", meaning="one line that names this case", example='"My gear"')
@@ -53,23 +59,12 @@ class CaseData(CaseTables):
     solver: Solver = table(Solver, "how the motion is computed", "empty")
     faults: Faults | None = table(Faults, "faults that repeat with a shaft, by name", "none")
 
-    _assumed: dict[str, str]
-    _spread: dict[str, str]
-    _user_input: UserInput
-    _source: Source
-    _stated: Stated
-    _effective: dict[str, Any]
-    _changed: tuple[str, ...] | None = None
+    _default_of, _derived_values = default_of, derived_values
 
     @property
-    def uncertain(self) -> dict[str, str]:
-        """Values with a spread as typed, by dotted key."""
-        return dict(self._spread)
-
-    @property
-    def assumed(self) -> dict[str, str]:
-        """Reasons of values that the source of the case does not print, by dotted key."""
-        return self._assumed
+    def assumptions(self) -> tuple[Assumption, ...]:
+        """What is assumed: reasons in ``[assumed]``, and what the case does not give."""
+        return assumptions(self)
 
     @cached_property
     def mesh_table(self) -> TableFile | None:
@@ -194,21 +189,6 @@ class CaseData(CaseTables):
     def operating_point(self) -> tuple[float, float]:
         """Speed [rad/s] and nominal torque [N*m] of the pinion."""
         return self.pinion_speed, self.pinion_torque
-
-    @property
-    def user_input(self) -> UserInput:
-        """User input, before defaults."""
-        return self._user_input
-
-    @property
-    def source(self) -> Source:
-        """Source of the values."""
-        return self._source
-
-    @property
-    def stated(self) -> Stated:
-        """Values that the reasons and the origin of the case refer to."""
-        return self._stated
 
     def values(self) -> Iterator[tuple[str, Any]]:
         """Iterate over all values of the case.

@@ -7,7 +7,7 @@ Both are stored with the values they refer to, so that a changed value loses its
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Iterator, Mapping, Set
+from collections.abc import Callable, Container, Iterable, Iterator, Mapping, Set
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
@@ -20,9 +20,10 @@ from tribodyn.study.case.section import Section, in_force, section_at
 from tribodyn.study.case.sections import PROPERTIES, SHEET
 from tribodyn.study.case.to_models import USUAL_GEARS, has_usual_backlash, mesh_law_of
 from tribodyn.study.case.user_input import Stated, UserInput
-from tribodyn.study.case.values import FaultError, Plain, read_value, written
+from tribodyn.study.case.values import FaultError, Plain, read_value, unmarked, written
 
 if TYPE_CHECKING:
+    from tribodyn.study.case.base import BaseCase
     from tribodyn.study.case.case_data import CaseData
 
 
@@ -33,6 +34,7 @@ _RECORD_KEYS = {"value", "reason"}
 _MAX_PROBLEMS = 50
 
 KeyedProblems = list[tuple[str, Problem]]
+OptionOf = Callable[[str], Option | None]
 
 
 def differing(before: Mapping[str, Any], now: Mapping[str, Any]) -> set[str]:
@@ -64,19 +66,9 @@ def reason_faults(marks: Any) -> KeyedProblems:
     if not isinstance(marks, Mapping):
         what = f"assumed = {written(marks)}"
         return [("assumed", Problem(what, "", "assumed is a table", "Write [assumed]"))]
-    return [
-        (
-            f"assumed.{key}",
-            Problem(
-                f"{key} = {written(reason)}",
-                "",
-                "A reason must be text",
-                "Write it in quotes",
-            ),
-        )
-        for key, reason in marks.items()
-        if not isinstance(reason, str)
-    ]
+    wrong = {k: f"{k} = {written(why)}" for k, why in marks.items() if not isinstance(why, str)}
+    rule = "A reason must be text", "Write it in quotes"
+    return [(f"assumed.{key}", Problem(what, "", *rule)) for key, what in wrong.items()]
 
 
 def without_records(data: Mapping[str, Any]) -> dict[str, Any]:
@@ -89,7 +81,7 @@ def _is_record(mark: Any) -> bool:
     return isinstance(mark, Mapping) and set(mark) <= _RECORD_KEYS
 
 
-def _spec_at(key: str, inputs: UserInput) -> Option | None:
+def spec_at(inputs: UserInput, key: str) -> Option | None:
     """Return the Option of a key; an option of the chosen model takes precedence."""
     *path, name = key.split(".")
     section = section_at(tuple(path))
@@ -100,14 +92,17 @@ def _spec_at(key: str, inputs: UserInput) -> Option | None:
 
 
 def _read(
-    inputs: UserInput, table: str, typed: Mapping[str, Any]
+    option_of: OptionOf, table: str, typed: Mapping[str, Any], free: Container[str]
 ) -> tuple[dict[str, Any], KeyedProblems]:
     values: dict[str, Any] = {}
     problems: KeyedProblems = []
     for key, value in typed.items():
         if len(problems) > _MAX_PROBLEMS:
             break
-        spec, location = _spec_at(key, inputs), f"{table}.{key}"
+        spec, location = option_of(key), f"{table}.{key}"
+        if spec is None and key.partition(".")[0] in free:
+            values[key] = unmarked(value)
+            continue
         if spec is None:
             why, remedy = f"[{table}] may contain only keys of a case", "Remove the line"
             problems.append((location, Problem(f'there is no key "{key}"', "", why, remedy)))
@@ -119,16 +114,18 @@ def _read(
     return values, problems
 
 
-def read_stated(inputs: UserInput) -> tuple[Stated, KeyedProblems]:
-    """Read the values recorded in ``[assumed]`` and ``[based_on]``, and their problems."""
-    table, base = inputs.data.get("assumed", {}), inputs.data.get("based_on", {})
+def read_stated(
+    data: Mapping[str, Any], option_of: OptionOf, free: Container[str] = ()
+) -> tuple[Stated, KeyedProblems]:
+    """Read recorded values and their problems; in ``free`` tables those without option as typed."""
+    table, base = data.get("assumed", {}), data.get("based_on", {})
     if not isinstance(base, Mapping):
         problem = Problem(f"based_on = {written(base)}", "", "It is a table", "Write [based_on]")
         return Stated({}, {}), [("based_on", problem)]
     records = table.items() if isinstance(table, Mapping) else ()
     typed = {k: m["value"] for k, m in records if _is_record(m) and "value" in m}
-    marks, problems = _read(inputs, "assumed", typed)
-    initial, base_problems = _read(inputs, "based_on", _flat(base))
+    marks, problems = _read(option_of, "assumed", typed, free)
+    initial, base_problems = _read(option_of, "based_on", _flat(base), free)
     return Stated(marks, initial), [*problems, *base_problems]
 
 
@@ -142,11 +139,11 @@ def _flat(table: Mapping[str, Any], prefix: str = "") -> dict[str, Any]:
 
 
 def settled(
-    case: CaseData, values: Mapping[str, Any], inputs: UserInput, stated: Stated
+    case: BaseCase, reasons: Mapping[str, str], inputs: UserInput, stated: Stated
 ) -> tuple[Stated, set[str]]:
     """Return records valid for the effective values, and keys whose reason is outdated."""
     # A reason without a recorded value refers to the value given with it.
-    reasons = case.assumed
+    values = case._effective
     marks = {key: stated.marks.get(key, values.get(key)) for key in reasons}
     stale = differing(marks, values)
     author_marks = {key: value for key, value in marks.items() if reasons[key] != DEFAULT_MARK}
@@ -318,7 +315,7 @@ def effective_values(case: CaseData) -> dict[str, Any]:
     return values
 
 
-def effective(case: CaseData) -> dict[str, Any]:
+def effective(case: BaseCase) -> dict[str, Any]:
     """Return all effective values by dotted key."""
     return dict(case._effective)
 
@@ -341,42 +338,38 @@ def default_of(case: CaseData, key: str) -> Any:
     return _bored(case, standard) if key == "stiffness.reference" else standard
 
 
-def changed_keys(case: CaseData) -> tuple[str, ...]:
+def changed_keys(case: BaseCase) -> tuple[str, ...]:
     """Return the keys whose values differ from the initial values of the case."""
     if case._changed is None:
         case._changed = _keys_that_changed(case)
     return case._changed
 
 
-def _keys_that_changed(case: CaseData) -> tuple[str, ...]:
+def _keys_that_changed(case: BaseCase) -> tuple[str, ...]:
     values, base = effective(case), case.stated.base
     if any(values.get(key) is None for key in base):
-        derived = derived_values(case)
+        derived = case._derived_values()
         values = {k: derived.get(k) if v is None else v for k, v in values.items()}
     before = {**_defaults_before(case, values), **base}
     return _in_order(case, differing(before, values) - set(_TEXT_KEYS))
 
 
-def _defaults_before(case: CaseData, keys: Iterable[str]) -> dict[str, Any]:
+def _defaults_before(case: BaseCase, keys: Iterable[str]) -> dict[str, Any]:
     """Return the initial defaults of keys that were given later."""
     inputs, base = case.user_input, case.stated.base
     return {
-        key: default_of(case, key)
+        key: case._default_of(key)
         for key in keys
         if key in inputs and key not in base and case.assumed.get(key) != DEFAULT_MARK
     }
 
 
-def _in_order(case: CaseData, changed: Set[str]) -> tuple[str, ...]:
-    def places() -> dict[str, int]:
-        keys = dict.fromkeys((*case._effective, *case.stated.base))
-        return {key: place for place, key in enumerate(keys)}
-
-    place = case._once("places", (), places)
-    return tuple(sorted(changed & place.keys(), key=place.__getitem__))
+def _in_order(case: BaseCase, changed: Set[str]) -> tuple[str, ...]:
+    keys = dict.fromkeys((*case._effective, *case.stated.base))
+    return tuple(key for key in keys if key in changed)
 
 
-def changed_after(before: CaseData, case: CaseData, numbers: Mapping[str, Any]) -> None:
+def changed_after(before: BaseCase, case: BaseCase, numbers: Mapping[str, Any]) -> None:
     """Set the changed keys of a case that differs from another only in some numbers."""
     base = case.stated.base
     if any(case._effective.get(key) is None for key in base):
@@ -386,17 +379,17 @@ def changed_after(before: CaseData, case: CaseData, numbers: Mapping[str, Any]) 
     case._changed = _in_order(case, changed)
 
 
-def _marked(case: CaseData, key: str, value: Any, changed: tuple[str, ...]) -> str:
+def _marked(case: BaseCase, key: str, value: Any, changed: tuple[str, ...]) -> str:
     """Return the provenance of a value marked in ``[assumed]``."""
     reason = case.assumed[key]
     if reason != DEFAULT_MARK:
         changed_bases = [other for other in changed if other in foundations(key)]
         note = f"; stated before {', '.join(changed_bases)} changed" if changed_bases else ""
         return f"assumed: {reason}{note}"
-    standard = default_of(case, key)
+    standard = case._default_of(key)
     if same(standard, value):
         return DEFAULT_MARK
-    spec = spec_of(case, key)
+    spec = case.option_of(key)
     current = spec.show(standard) if spec and standard is not None else "derived"
     return f"assumed: marked as default in the file, while this version has {current} for this case"
 
@@ -407,15 +400,15 @@ def _derived_from(case: CaseData, key: str) -> str:
     return USUAL_GEARS if is_usual else spec.basis if spec else ""
 
 
-def _unused(case: CaseData, key: str) -> bool:
-    """Return whether a key has no effect: it belongs to other gears or another model."""
+def _follows(case: Any, key: str) -> bool:
+    """Whether a value that is not given follows from others; not that of another model."""
     *path, name = key.split(".")
     model, section = _model_of(case, path), section_at(tuple(path))
     chosen = model is None or section is None or name in {*section.fields, *model.options}
-    return is_idle(key, case.gears.kind) or not chosen
+    return bool(_derived_from(case, key)) and chosen and not is_idle(key, case.gears.kind)
 
 
-def provenance(case: CaseData) -> dict[str, str]:
+def provenance(case: BaseCase) -> dict[str, str]:
     """Return the provenance of every effective value."""
     origins, changed, inputs = {}, changed_keys(case), case.user_input
     for key, value in effective(case).items():
@@ -423,7 +416,7 @@ def provenance(case: CaseData) -> dict[str, str]:
             origins[key] = _marked(case, key, value, changed)
         elif key in inputs:
             origins[key] = "given"
-        elif value is not None or (_derived_from(case, key) and not _unused(case, key)):
+        elif value is not None or _follows(case, key):
             origins[key] = DEFAULT_MARK
     return origins
 

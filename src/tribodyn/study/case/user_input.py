@@ -90,6 +90,13 @@ def _marks(table: Any) -> Any:
     }
 
 
+def named_rows(value: Any) -> list[tuple[str, Mapping[str, Any]]]:
+    """Tables of a list of tables, such as ``[[load_cases]]``, with their names or numbers."""
+    if not isinstance(value, list | tuple) or not all(isinstance(row, Mapping) for row in value):
+        return []
+    return [(str(row.get("name", number)), row) for number, row in enumerate(value, 1)]
+
+
 class UserInput(dict[str, Any]):
     """User input by dotted keys: values as typed, and tables; ``data`` is the nested form."""
 
@@ -103,6 +110,10 @@ class UserInput(dict[str, Any]):
                 key = f"{prefix}{name}"
                 if isinstance(value, Mapping):
                     pending.append((f"{key}.", value))
+                elif rows := named_rows(value):
+                    self[key] = value
+                    pending += [(f"{key}.{row}.", body) for row, body in rows]
+                    continue
                 else:
                     self.typed += (key,)
                     value = value.value if isinstance(value, Plain) else value

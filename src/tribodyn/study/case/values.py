@@ -75,6 +75,12 @@ class Plain:
     value: Any
 
 
+def unmarked(value: Any) -> Any:
+    """A value as text or number, lists as tuples."""
+    value = value.value if isinstance(value, Plain) else value
+    return tuple(map(unmarked, value)) if isinstance(value, list | tuple) else value
+
+
 class FaultError(Exception):
     """Error in one value, before its location in the file is added."""
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import math
+from collections.abc import Iterator, Mapping
 from typing import TYPE_CHECKING, Any
 
 from tribodyn import units
@@ -18,8 +19,10 @@ from tribodyn.study.case.provenance import (
     spec_of,
 )
 from tribodyn.study.case.section import Section, Table, section_at
+from tribodyn.study.case.values import written
 
 if TYPE_CHECKING:
+    from tribodyn.study.case.base import BaseCase
     from tribodyn.study.case.case_data import CaseData
 
 
@@ -117,28 +120,34 @@ def case_toml(case: CaseData) -> str:
         for key, origin in origins.items()
         if origin != "given" and values[key] is not None
     }
-    return "\n".join([*lines, *_assumed_lines(case, marks), *_base_lines(case)]) + "\n"
+    return "\n".join([*lines, *_assumed_lines(case, marks), *base_lines(case)]) + "\n"
 
 
 def _assumed_lines(case: CaseData, marks: dict[str, str]) -> list[str]:
     """Format the reasons in ``[assumed]``, each with the value that it refers to."""
     if not marks:
         return []
-    values, lines = effective(case), []
-    for key, reason in marks.items():
-        value = _recorded(case, key, values[key])
-        why = json.dumps(reason, ensure_ascii=False)
-        lines.append(f'"{key}" = {{ value = {value}, reason = {why} }}')
     return [
         "",
         "# Values above that the source of this case does not print, and defaults. A reason is",
         "# valid for the value recorded with it, and is dropped once the value above changes.",
         "[assumed]",
-        *lines,
+        *reason_lines(case, marks),
     ]
 
 
-def _base_lines(case: CaseData) -> list[str]:
+def reason_lines(
+    case: BaseCase, marks: Mapping[str, str], *, records: bool = True
+) -> Iterator[str]:
+    """Format reasons, with records each with the value that it refers to."""
+    for key, reason in marks.items():
+        why, value = json.dumps(reason, ensure_ascii=False), case._effective.get(key)
+        if records and value is not None:
+            why = f"{{ value = {_recorded(case, key, value)}, reason = {why} }}"
+        yield f'"{key}" = {why}'
+
+
+def base_lines(case: BaseCase) -> list[str]:
     """Format the initial values in ``[based_on]``; empty without an origin and changes."""
     base = case.stated.base
     if base.get("origin") is None and not changed_keys(case):
@@ -160,9 +169,9 @@ def _quoted(key: str) -> str:
     return f'"{key}"' if "." in key else key
 
 
-def _recorded(case: CaseData, key: str, value: Any) -> str:
-    spec = spec_of(case, key)
-    return json.dumps(value) if spec is None else _toml_value(spec, value)
+def _recorded(case: BaseCase, key: str, value: Any) -> str:
+    spec = case.option_of(key)
+    return json.dumps(value, ensure_ascii=False) if spec is None else _toml_value(spec, value)
 
 
 def _table_meaning(case: CaseData, place: str) -> str:
@@ -172,18 +181,23 @@ def _table_meaning(case: CaseData, place: str) -> str:
     return table.meaning if isinstance(table, Table) else ""
 
 
-def case_rows(case: CaseData) -> list[tuple[str, str, str]]:
+def case_rows(case: BaseCase) -> list[tuple[str, str, str]]:
     """Return key, value with unit, and provenance of every effective value."""
-    origins, derived = provenance(case), derived_values(case)
+    origins, derived = provenance(case), case._derived_values()
     values = {key: derived.get(key, value) for key, value in effective(case).items()}
+    specs = {key: case.option_of(key) for key in values}
     return [
-        (key, spec.show(value), origins.get(key, "").partition(":")[0])
+        (key, _shown(specs[key], value), origins.get(key, "").partition(":")[0])
         for key, value in values.items()
-        if value is not None and (spec := spec_of(case, key)) is not None and key != "title"
+        if value is not None and key != "title"
     ]
 
 
-def case_table(case: CaseData) -> str:
+def _shown(spec: Option | None, value: Any) -> str:
+    return written(value).strip('"') if spec is None else spec.show(value)
+
+
+def case_table(case: BaseCase) -> str:
     """Format the case as a table with units, one row for each effective value."""
     rows = case_rows(case)
     widths = [max(len(row[column]) for row in rows) for column in range(2)]

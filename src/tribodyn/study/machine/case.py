@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from copy import copy, deepcopy
+from copy import copy
 from dataclasses import replace
 from functools import cached_property
 from pathlib import Path
 from typing import Any
 
+from tribodyn.aliases import with_old_names
 from tribodyn.errors import InputError, Problem, TribodynError
 from tribodyn.gear import Misalignment
 from tribodyn.machine import (
@@ -24,7 +25,7 @@ from tribodyn.machine import (
 from tribodyn.machine.plane_law import with_exchanged_gears
 from tribodyn.study.case.case import Case
 from tribodyn.study.case.provenance import Assumption, reason_faults
-from tribodyn.study.case.user_input import Source, unsound, without_spread
+from tribodyn.study.case.user_input import Source, unsound
 from tribodyn.study.case.values import KeyedProblems
 from tribodyn.study.faults.machine_section import impossible_faults, machine_fault_problems
 from tribodyn.study.faults.sensors import MachineSensors, seat_accelerance
@@ -49,7 +50,6 @@ from tribodyn.study.machine.read_parts import (
     add_material,
     add_shafts,
     check_tables,
-    in_si,
     read_bearing,
     read_coupling,
     read_each,
@@ -66,13 +66,12 @@ from tribodyn.study.machine.tables import (
     mesh_table_kind,
 )
 from tribodyn.study.machine.unused_keys import unused_keys
-from tribodyn.study.machine.user_tables import PartsCase, default_assumptions, stated_assumptions
+from tribodyn.study.machine.user_tables import PartsBase, default_assumptions, stated_assumptions
 from tribodyn.study.mesh_inputs import MeshInputs
 from tribodyn.study.planetary.machine_stages import (
     MEMBERS,
     CaseStage,
     floating_members,
-    for_each_planet,
     read_stages,
     stage_by_itself,
     stage_mesh,
@@ -88,7 +87,8 @@ _OF_MESH = (
 )
 
 
-class MachineCase(PartsCase):
+@with_old_names
+class MachineCase(PartsBase):
     """A machine under its load cases: frozen, checked, in SI.
 
     Created by :func:`tribodyn.load_case` from a file with ``[meshes.NAME]`` and ``[gears.NAME]``,
@@ -114,17 +114,18 @@ class MachineCase(PartsCase):
     ...     meshes={"first": {"gears": ["z1", "z2"], "normal_module": "4.5 mm",
     ...                       "stiffness": "5e8 N/m"}},
     ...     operation={"input": "in", "output": "out", "speed": "1200 rpm", "torque": "400 N*m"})
-    >>> case
-    MachineCase("Machine": 2 shafts, 2 gears, 1 mesh, 0 bearings)
+    >>> case.machine()
+    Machine(2 shafts, 2 gears, 1 mesh, 0 bearings)
     """
+
+    gears: dict[str, Gear]
+    operating_point: LoadCase
 
     def __init__(self, source: Source | None = None, /, **data: Any) -> None:
         origin = source or Source()
         if unreadable := list(unsound(data)):
             raise InputError(origin.place(unreadable))
-        self.source = source
-        tables = deepcopy(data) if source is not None else in_si(data)
-        self.data, self.uncertain, problems = without_spread(for_each_planet(tables), lists=True)
+        problems = self._take(source, data)
         check_tables(self.data, _TOP, problems)
         problems += unused_keys(self.data)
         self.title: str = self.data.get("title", self.kind)
@@ -133,11 +134,11 @@ class MachineCase(PartsCase):
         groups = {group: tables_of(self.data, group, problems) for group in GROUPS}
         self._blanks = read_blanks(groups, problems)
         material = add_material(self.data, groups)
-        stages = read_stages(self.data, groups["gears"], problems, source)
+        stages = read_stages(self.data, groups["gears"], problems, origin)
         if self.lone_stage in stages:
             problems += floating_members(f"planets.{self.lone_stage}", stages[self.lone_stage][0])
         tables = [table for table, *_ in stages.values()]
-        self.gears: dict[str, Gear] = read_each(groups, "gears", read_gear, problems)
+        self.gears = read_each(groups, "gears", read_gear, problems)
         self.implied_shafts = add_shafts(groups["shafts"], self.gears, tables, material)
         self.shafts: dict[str, Shaft] = read_each(groups, "shafts", read_shaft, problems)
         self.bearings: dict[str, Bearing] = read_each(groups, "bearings", read_bearing, problems)
@@ -178,6 +179,8 @@ class MachineCase(PartsCase):
         if problems := impossible_faults(self):
             raise InputError(origin.place(problems))
         self._check_spreads(origin)
+        if "assumed" in data or "based_on" in data:
+            self._read_records(data)
 
     def __getstate__(self) -> dict[str, Any]:
         """Return the state without what is kept for further loads."""
@@ -244,11 +247,11 @@ class MachineCase(PartsCase):
                 problem = Problem(f'there is no gear "{gear}"', "", why, remedy)
                 problems.append((f"meshes.{name}.gears", problem))
         if problems:
-            raise InputError((self.source or Source()).place(problems))
+            raise InputError(self.source.place(problems))
 
     def _placed(self, error: TribodynError) -> list[Problem]:
         """Problems of a machine with the lines of its parts."""
-        source = self.source or Source()
+        source = self.source
         return [
             source.place([(str(problem.where), problem)])[0]
             if str(problem.where).partition(".")[0] in (*GROUPS, "planets", "operation", "housing")
@@ -478,10 +481,5 @@ class MachineCase(PartsCase):
         }
         housing = {**self.data["housing"], **names} if names else None
         other.data = {**self.data, "housing": housing} if housing else self.data
+        vars(other).pop("_typed", None)
         return other
-
-    def __repr__(self) -> str:
-        """One line."""
-        parts, count = repr(self.machine())[8:-1], len(self.load_cases)
-        loads = f", {count} load case{'s' * (count != 1)}" if count else ""
-        return f'MachineCase("{self.title}": {parts}{loads})'

@@ -26,6 +26,7 @@ from tribodyn.study.case.values import (
     Plain,
     read_table,
     read_value,
+    unmarked,
 )
 from tribodyn.study.machine.read_parts import rolling_options
 from tribodyn.study.machine.tables import TABLES, HypoidMeshTable, MeshDynamics, mesh_table_kind
@@ -37,7 +38,7 @@ if TYPE_CHECKING:
     from tribodyn.model import Option
     from tribodyn.study.machine.case import MachineCase
     from tribodyn.study.machine.load_cases import LoadCase
-    from tribodyn.study.machine.user_tables import PartsCase
+    from tribodyn.study.machine.user_tables import PartsBase
 
 #: Tables of models that hold for all meshes, and that a mesh may have for itself.
 SHARED = ("material", "lubricant", "film", "stiffness", "friction")
@@ -294,7 +295,7 @@ def read_blanks(
         if mesh_table_kind(body) is not HypoidMeshTable or not isinstance(names, list | tuple):
             continue
         pair = [bodies.get(gear, {}) for gear in names if isinstance(gear, str)]
-        teeth = [count for each in pair if type(count := _plain(each.get("teeth"))) is int]
+        teeth = [count for each in pair if type(count := unmarked(each.get("teeth"))) is int]
         inner = mesh_tables(body)
         values = {k: v for k, v in body.items() if k in HypoidMeshTable.fields and k not in inner}
         faults: KeyedProblems = []
@@ -312,10 +313,6 @@ def read_blanks(
         for each, width in zip(pair, widths, strict=True):
             each.setdefault("face_width", width)
     return blanks
-
-
-def _plain(value: Any) -> Any:
-    return value.value if isinstance(value, Plain) else value
 
 
 def _mounting(body: Mapping[str, Any], misalignment: float | Misalignment) -> dict[str, Any]:
@@ -342,7 +339,7 @@ def constant_law(law: Any) -> dict[str, Any]:
     }
 
 
-def option_at(case: PartsCase, path: tuple[str, ...]) -> Option | None:
+def option_at(case: PartsBase, path: tuple[str, ...]) -> Option | None:
     """Option of the key at a path: of a part, of a value in a list, or of a model."""
     if len(path) < 2:
         return None
@@ -358,7 +355,7 @@ def option_at(case: PartsCase, path: tuple[str, ...]) -> Option | None:
     part, of_parts = TABLES.get(group), group in (*GROUPS, "planets")
     if of_parts and table is None:
         return None
-    if part is not None and len(names) == of_parts:
+    if part is not None and (len(names) == of_parts or group == "load_cases"):
         part = mesh_table_kind(table or {}) if group == "meshes" else part
         option = part.spec(name) or (MeshDynamics.spec(name) if group == "meshes" else None)
         if option is not None:
@@ -369,7 +366,7 @@ def option_at(case: PartsCase, path: tuple[str, ...]) -> Option | None:
     return shared.kind.spec(name) if isinstance(shared, Table) else None
 
 
-def unknown_key(case: PartsCase, key: str) -> Problem:
+def unknown_key(case: PartsBase, key: str) -> Problem:
     """Problem of a key that a case of parts does not have, with the nearest one that it has."""
     keys = [
         f"{group}.{part}.{name}"
@@ -394,7 +391,7 @@ def _table(data: Mapping[str, Any], path: list[str]) -> Mapping[str, Any] | None
     return value if isinstance(value, Mapping) else None
 
 
-def _pair_key(case: PartsCase, group: str, names: list[str], name: str) -> tuple[Case, str] | None:
+def _pair_key(case: PartsBase, group: str, names: list[str], name: str) -> tuple[Case, str] | None:
     """Pair of gears that has a value of the case, and its key there."""
     for key, pair, names_of_gears in case.mesh_pairs():
         if group in (*SHARED, "dynamics"):

@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import json
-from abc import ABC, abstractmethod
-from collections.abc import Iterable, Iterator, Mapping
+from abc import abstractmethod
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from contextlib import suppress
 from copy import deepcopy
+from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Self
 
@@ -14,52 +16,115 @@ import numpy as np
 from tribodyn.arguments.quantities import quantity_in, without_units
 from tribodyn.errors import InputError, Problem
 from tribodyn.machine.fields import display
-from tribodyn.study.case.provenance import Assumption
+from tribodyn.study.case.base import BaseCase
+from tribodyn.study.case.provenance import (
+    Assumption,
+    changed_keys,
+    read_stated,
+    settled,
+    without_records,
+)
 from tribodyn.study.case.reference import key_comment
 from tribodyn.study.case.to_models import USUAL_GEARS
-from tribodyn.study.case.user_input import Source, spread_problem
-from tribodyn.study.case.values import FaultError, KeyedProblems, Plain, in_unit, read_value
-from tribodyn.study.case.write import written_number
-from tribodyn.study.machine.pair_cases import option_at
+from tribodyn.study.case.user_input import (
+    Source,
+    Stated,
+    UserInput,
+    named_rows,
+    spread_problem,
+    without_spread,
+)
+from tribodyn.study.case.values import (
+    FaultError,
+    KeyedProblems,
+    Plain,
+    in_unit,
+    read_value,
+    unmarked,
+)
+from tribodyn.study.case.write import base_lines, reason_lines, written_number
+from tribodyn.study.machine.pair_cases import SHARED, option_at, unknown_key
 from tribodyn.study.machine.read_parts import LENGTH, in_si
-from tribodyn.study.machine.tables import APART, STIFF, LoadCaseTable
+from tribodyn.study.machine.tables import APART, STIFF, TABLES
 from tribodyn.study.machine.unused_keys import unused_keys
 
 if TYPE_CHECKING:
-    from tribodyn.machine import Gear
     from tribodyn.model import Option
     from tribodyn.study.case.case import Case
-    from tribodyn.study.faults.sensors import Sensors
     from tribodyn.study.machine.case import MachineCase
-    from tribodyn.study.machine.load_cases import LoadCase
 
 
-class PartsCase(ABC):
-    """Case of parts with names: a machine, or a planetary stage.
+#: Keys at the top of a file.
+_TEXTS = ("title", "origin")
 
-    Parameters
-    ----------
-    source : Source, optional
-        Where the values come from; then a bare number for a dimension is refused.
-    **data : object
-        The tables of the case file.
-    """
 
-    source: Source | None
+class PartsBase(BaseCase):
+    """Case of parts with names: its keys, their values, and the file."""
+
     data: dict[str, Any]  #: tables of the case file, without spreads
-    uncertain: dict[str, str]  #: spread of values by key, such as ``"4e8 N/m +- 10 %"``
-    title: str
-    origin: str | None
-    gears: dict[str, Gear]
-    operating_point: LoadCase
+    __init__: Callable[..., None]
+    _records = Stated({}, {})  #: values that reasons and origin were given for, before the case
 
-    @abstractmethod
-    def __init__(self, source: Source | None = None, /, **data: Any) -> None: ...
+    def _take(self, source: Source | None, typed: dict[str, Any]) -> KeyedProblems:
+        """Set the tables as the user typed them, in SI where they come from Python."""
+        self._source = source or Source()
+        typed = deepcopy(typed) if source is not None else in_si(typed)
+        ready = for_each_planet(without_records(typed))
+        self.data, self._spread, problems = without_spread(ready, lists=True)
+        return problems
+
+    def _read_records(self, typed: Mapping[str, Any]) -> None:
+        """Read the values that reasons and origin were given for; drop reasons of other values."""
+        self._records, faults = read_stated(typed, self.option_of, (*TABLES, *SHARED, *_TEXTS))
+        if faults:
+            raise InputError(self._source.place(faults))
+        for key in self._settled[1] if self._records.marks else ():
+            del self.data["assumed"][key]
+
+    @cached_property
+    def _options(self) -> dict[str, Option | None]:
+        """Option of each key that is given."""
+        tables = {k: v for k, v in self.data.items() if k != "assumed"}
+        return {key: self.option_of(key) for key, _ in flat_keys(tables)}
+
+    @cached_property
+    def _typed(self) -> dict[str, Any]:
+        """Values as typed, by dotted key."""
+        return {key: value for key, value in flat_keys(self.data) if key in self._options}
+
+    @cached_property
+    def _effective(self) -> dict[str, Any]:  # type: ignore[override]
+        files = self._named_files()
+        return {
+            key: _in_si(self._options[key], key, value)
+            for key, value in self._typed.items()
+            if key not in files
+        }
+
+    @cached_property
+    def _user_input(self) -> UserInput:  # type: ignore[override]
+        return UserInput(with_spreads(self.data, self._spread))
+
+    @cached_property
+    def _settled(self) -> tuple[Stated, set[str]]:
+        return settled(self, self._assumed, self._user_input, self._records)
 
     @property
-    @abstractmethod
-    def assumptions(self) -> tuple[Assumption, ...]:
-        """What is assumed: reasons in ``[assumed]``, and what the case does not give."""
+    def _stated(self) -> Stated:  # type: ignore[override]
+        return self._settled[0]
+
+    @property
+    def _assumed(self) -> dict[str, str]:  # type: ignore[override]
+        reasons: dict[str, str] = self.data.get("assumed", {})
+        return reasons
+
+    def _named_files(self) -> dict[str, Path]:
+        options = self._options
+        files = [key for key, option in options.items() if option and option.kind == "file"]
+        return {key: Path(str(unmarked(self._typed[key]))) for key in files}
+
+    def _unknown_key(self, key: str) -> Problem:
+        return unknown_key(self, key)
 
     @abstractmethod
     def mesh_pairs(self) -> Iterator[tuple[str, Case, tuple[str, str]]]:
@@ -71,11 +136,6 @@ class PartsCase(ABC):
             Key of the table of the mesh, its pair of gears as a case, and names of both gears.
         """
 
-    @property
-    @abstractmethod
-    def _sensors(self) -> Sensors:
-        """What there is to sense."""
-
     def values(self) -> Iterator[tuple[str, Any]]:
         """Iterate over the values of the case file.
 
@@ -84,31 +144,8 @@ class PartsCase(ABC):
         tuple of str and object
             Dotted key and value in SI; texts as they are, of files their names.
         """
-        for key, value in flat_keys(self.data):
-            option, name = self.option_of(key), key.rpartition(".")[2]
-            if option is not None and option.kind == "file":
-                yield key, Path(str(value)).name
-                continue
-            try:
-                yield key, read_value(option, name, value) if option is not None else _plain(value)
-            except FaultError:  # a list of values, or a text in place of a number
-                yield key, _plain(value)
-
-    def central(self, key: str) -> Any:
-        """Value of a key in SI; its central value where it has a spread.
-
-        Parameters
-        ----------
-        key : str
-            Dotted; of a value in a list it ends with its number.
-
-        Returns
-        -------
-        object
-        """
-        values = dict(self.values())
-        name, _, number = key.rpartition(".")
-        return values[key] if key in values else values[name][int(number) - 1]
+        files = {key: path.name for key, path in self._named_files().items()}
+        return ((key, files.get(key, self._effective.get(key))) for key in self._typed)
 
     def option_of(self, key: str) -> Option | None:
         """Unit and range of a key.
@@ -141,13 +178,18 @@ class PartsCase(ABC):
         InputError
             As for a case file.
         """
-        source = (self.source or Source()).with_replaced(changes, by or "replace:")
-        tables = with_spreads(self.data, self.uncertain)
-        return type(self)(source, **changed_tables(tables, changes, by=by))
+        source = self._source.with_replaced(changes, by or "replace:")
+        tables = with_spreads(self.data, self._spread)
+        changed: Self = type(self)(source, **changed_tables(tables, changes, by=by))
+        changed._records = self._stated
+        return changed
 
-    def to_toml(self) -> str:
-        """Write the case file; it reads back to an equal case."""
-        return "\n".join(_lines(self, with_spreads(self.data, self.uncertain), ())).strip() + "\n"
+    def _text(self, *, comments: bool) -> str:
+        written_tables, base = with_spreads(self.data, self._spread), []
+        if changed_keys(self):
+            base = base_lines(self)
+        lines = _lines(self, written_tables, (), comments=comments)
+        return "\n".join([*lines, *base]).strip() + "\n"
 
     def _check_spreads(self, origin: Source) -> None:
         """Refuse spreads beyond the range of their key, and of keys that have no number."""
@@ -164,6 +206,26 @@ class PartsCase(ABC):
             raise InputError(origin.place(problems))
 
 
+def _in_si(option: Option | None, key: str, value: Any) -> Any:
+    """Value of a key in SI; a list of values, or a text in place of a number, as it is."""
+    if option is not None:
+        with suppress(FaultError):
+            return read_value(option, key.rpartition(".")[2], value)
+    return unmarked(value)
+
+
+def for_each_planet(tables: dict[str, Any]) -> dict[str, Any]:
+    """Tables in which one text for the errors of all planets is a list with one for each."""
+    stages = tables.get("planets")
+    for body in stages.values() if isinstance(stages, dict) else ():
+        for name in ("pin_errors", "thickness_errors"):
+            count = body.get("count") if isinstance(body, dict) else None
+            count = count.value if isinstance(count, Plain) else count
+            if isinstance(count, int) and isinstance(body.get(name), str):
+                body[name] = [body[name]] * min(max(count, 1), 99)
+    return tables
+
+
 def changed_tables(
     tables: Mapping[str, Any], changes: Mapping[str, Any], *, by: str = ""
 ) -> dict[str, Any]:
@@ -176,8 +238,10 @@ def changed_tables(
             if name.isdigit() and depth == len(names) - 1:
                 _set_element(table, each, int(name), value if by else in_si(value), key)
                 break
-            table = table.setdefault(each, {})
-            if not isinstance(table, dict):
+            rows: dict[str, Any] = dict(named_rows(table))
+            table = rows.get(each, "") if rows else table.setdefault(each, {})
+            inner = depth < len(names) - 1 and named_rows(table)
+            if not isinstance(table, dict) and not inner:
                 why, remedy = f"{each} is not a table", "Correct the key"
                 raise InputError(f"{key} = {value!r}", key, why, remedy)
         else:
@@ -210,7 +274,7 @@ def _set_element(table: dict[str, Any], name: str, number: int, value: Any, key:
     """Change a value of a list; a list of the planets that is missing has zeros."""
     values = table.get(name)
     if values is None and "count" in table:
-        values = [Plain(0.0)] * int(_plain(table["count"]))
+        values = [Plain(0.0)] * int(unmarked(table["count"]))
     if isinstance(values, Plain):
         values = [Plain(item) for item in np.atleast_1d(values.value).tolist()]
     if not isinstance(values, list | tuple) or not 1 <= number <= len(values) or value is None:
@@ -220,7 +284,7 @@ def _set_element(table: dict[str, Any], name: str, number: int, value: Any, key:
     table[name] = [*values[: number - 1], value, *values[number:]]
 
 
-def stated_assumptions(case: PartsCase) -> Iterator[Assumption]:
+def stated_assumptions(case: PartsBase) -> Iterator[Assumption]:
     """Reasons in ``[assumed]`` with the values they refer to."""
     for key, why in case.data.get("assumed", {}).items():
         *names, name = key.split(".")
@@ -282,7 +346,7 @@ def _of_stage(case: MachineCase, key: str, body: Mapping[str, Any]) -> Iterator[
         yield Assumption(f"{key}: motion", "in the plane", "default", why)
 
 
-def backlash_assumptions(case: PartsCase) -> Iterator[Assumption]:
+def backlash_assumptions(case: PartsBase) -> Iterator[Assumption]:
     """Usual backlash of the meshes with computed teeth for which the case gives none."""
     usual = {}
     for key, pair, _ in case.mesh_pairs():
@@ -308,17 +372,11 @@ def flat_keys(table: Mapping[str, Any], prefix: str = "") -> Iterator[tuple[str,
     for name, value in table.items():
         if isinstance(value, Mapping):
             yield from flat_keys(value, f"{prefix}{name}.")
-        elif isinstance(value, list | tuple) and value and isinstance(value[0], Mapping):
-            for number, row in enumerate(value):
-                yield from flat_keys(row, f"{prefix}{name}.{row.get('name', number + 1)}.")
+        elif rows := named_rows(value):
+            for row, body in rows:
+                yield from flat_keys(body, f"{prefix}{name}.{row}.")
         else:
             yield f"{prefix}{name}", value
-
-
-def _plain(value: Any) -> Any:
-    """A value as text or number, lists as tuples."""
-    value = value.value if isinstance(value, Plain) else value
-    return tuple(map(_plain, value)) if isinstance(value, list | tuple) else value
 
 
 def with_spreads(tables: Mapping[str, Any], spreads: Mapping[str, str]) -> dict[str, Any]:
@@ -333,24 +391,20 @@ def with_spreads(tables: Mapping[str, Any], spreads: Mapping[str, str]) -> dict[
     return data
 
 
-def _option_at(case: PartsCase, path: tuple[str, ...]) -> Option | None:
+def _option_at(case: PartsBase, path: tuple[str, ...]) -> Option | None:
     """Option of the key at a path, of the rows of sections and of load cases too."""
     if path[-1] == "sections":
         return LENGTH  # type: ignore[no-any-return]
-    if path[0] == "load_cases":
-        return LoadCaseTable.spec(path[-1])
     return option_at(case, path)
 
 
-def commented_toml(case: PartsCase) -> str:
-    """Write the case file with the meaning and the range of each key."""
-    tables = with_spreads(case.data, case.uncertain)
-    return "\n".join(_lines(case, tables, (), comments=True)).strip() + "\n"
-
-
 def _lines(
-    case: PartsCase, table: Mapping[str, Any], path: tuple[str, ...], *, comments: bool = False
+    case: PartsBase, table: Mapping[str, Any], path: tuple[str, ...], *, comments: bool = False
 ) -> Iterator[str]:
+    if path == ("assumed",):
+        records = bool(changed_keys(case) or case._records.marks)
+        yield from reason_lines(case, table, records=records)
+        return
     values = {k: v.value if isinstance(v, Plain) else v for k, v in table.items()}
     inner = {k: v for k, v in values.items() if isinstance(v, Mapping)}
     rows = {k: v for k, v in values.items() if _is_rows(v)}
@@ -370,7 +424,7 @@ def _lines(
             yield from _lines(case, body, (*path, name), comments=comments)
 
 
-def _note(case: PartsCase, path: tuple[str, ...]) -> str:
+def _note(case: PartsBase, path: tuple[str, ...]) -> str:
     """Comment of a key of the file; empty where it is named by the user."""
     option = APART.get(path[0], {}).get(path[-1]) or _option_at(case, path)
     return f"  # {key_comment(option)}" if option is not None and option.meaning else ""

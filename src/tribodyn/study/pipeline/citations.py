@@ -125,7 +125,7 @@ def _values_source(case: Case | MachineCase) -> dict[str, dict[str, Any]]:
     """The document behind the values of a case, and the values that differ from its own."""
     if not case.origin:
         return {}
-    changed = () if isinstance(case, MachineCase) else changed_keys(case)
+    changed = changed_keys(case)
     if not changed:
         return {"case": {"type": "misc", "title": f"Values of the case: {case.origin}"}}
     named = ", ".join(changed[:_NAMED])

@@ -335,18 +335,6 @@ def floating_members(key: str, table: Any) -> KeyedProblems:
     return [(f"{key}.{floating[-1]}_support", Problem(what, "", why, remedy))]
 
 
-def for_each_planet(tables: dict[str, Any]) -> dict[str, Any]:
-    """Tables in which one text for the errors of all planets is a list with one for each."""
-    stages = tables.get("planets")
-    for body in stages.values() if isinstance(stages, dict) else ():
-        for name in ("pin_errors", "thickness_errors"):
-            count = body.get("count") if isinstance(body, dict) else None
-            count = count.value if isinstance(count, Plain) else count
-            if isinstance(count, int) and isinstance(body.get(name), str):
-                body[name] = [body[name]] * min(max(count, 1), 99)
-    return tables
-
-
 def _double_problems(key: str, table: Any) -> KeyedProblems:
     """Double planets without a second gear, and single ones that have it."""
     if (table.planet_type == "single") == (table.ring_planet is None):

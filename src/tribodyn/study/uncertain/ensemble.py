@@ -313,7 +313,7 @@ def _of_machine(
 ) -> MachineEnsemble:
     """Figures of a machine or a stage at the median of the values, and at each of them."""
     medians = {key: float(np.median(column)) for key, column in values.items()}
-    middle = {key: case.central(key) if key in case.uncertain else medians[key] for key in values}
+    middle = {key: case[key] if key in case.uncertain else medians[key] for key in values}
     drawn = {key: np.append(middle[key], column) for key, column in values.items()}
     progress.start("Variants", len(next(iter(drawn.values()))))
     points = points_of_values(case, drawn, progress)

@@ -1,0 +1,122 @@
+"""Cases of every kind have the same members: values by key, origins, equality, text."""
+
+from __future__ import annotations
+
+import pickle
+from typing import Any
+
+import pytest
+
+import tribodyn as td
+from tribodyn.errors import InputError
+from tribodyn.study.case.provenance import changed_keys, provenance
+from tribodyn.study.machine.read import read_any_case
+
+CASES = (
+    *("fzg-roughness", "fzg-12dof", "helical-pair", "hypoid-mixed-ehl"),
+    *("two-stage-spur", "hypoid-axle", "planetary-stage", "wind-turbine-gearbox"),
+)
+STAGE = td.load_case("planetary-stage").to_toml()
+
+
+@pytest.fixture(scope="module", params=CASES)
+def case(request: pytest.FixtureRequest) -> Any:
+    return td.load_case(request.param)
+
+
+def changed(case: Any) -> Any:
+    return case.replace({"operation.torque": 1.01 * case["operation.torque"]})
+
+
+def test_equal_files_give_equal_cases(case: Any) -> None:
+    other = pickle.loads(pickle.dumps(case))
+    assert other == case
+    assert hash(other) == hash(case)
+    assert changed(case) != case
+
+
+def test_a_value_is_reached_by_its_key(case: Any) -> None:
+    typed = {*case.user_input.typed}
+    values = {key: value for key, value in case.values() if key in typed}
+    assert len(values) > 20
+    assert all(case[k] == v or str(case[k]).endswith(str(v)) for k, v in values.items())
+    assert case.get("operation.torque") == case["operation.torque"] > 0.0
+    assert case.get("operation.torqe", 3.0) == 3.0
+    with pytest.raises(InputError, match=r'no key "operation\.torqe".*Did you mean.*torque"'):
+        case["operation.torqe"]
+
+
+def test_a_key_that_is_not_given_has_its_default(case: Any) -> None:
+    key = "solver.method" if hasattr(case, "solver") else "dynamics.modal_damping_ratio"
+    assert case[key] == case.option_of(key).default
+
+
+def test_a_changed_case_knows_the_values_that_it_began_with(case: Any) -> None:
+    other = changed(case)
+    assert changed_keys(case) == ()
+    assert changed_keys(other) == ("operation.torque",)
+    assert other.stated.base["operation.torque"] == case["operation.torque"]
+    text = other.to_toml()
+    again = read_any_case(text, "case.toml")
+    assert "[based_on]" in text
+    assert again == other
+    assert again.to_toml() == text
+    assert changed_keys(again) == ("operation.torque",)
+    back = again.replace({"operation.torque": case["operation.torque"]})
+    assert back == case
+    assert changed_keys(back) == ()
+
+
+def test_the_table_names_each_value_and_its_origin(case: Any) -> None:
+    assert f"Case: {case.title}" in repr(case)
+    (row,) = (line for line in str(case).splitlines() if line.startswith("  operation.torque "))
+    assert "N*m" in row
+    assert row.endswith("given")
+    assert "<td>operation.torque</td>" in case._repr_html_()
+
+
+@pytest.mark.parametrize(
+    ("name", "key"),
+    [("planetary-stage", "planets.low.pin_stiffness"), ("helical-pair", "operation.speed")],
+)
+def test_a_reason_is_dropped_once_its_value_changes(name: str, key: str) -> None:
+    case = td.load_case(name)
+    unit = case.option_of(key).unit
+    for recorded, stays in ((case[key], True), (1.1 * case[key], False), (None, True)):
+        record = f'{{ value = "{recorded!r} {unit}", reason = "a guess" }}'
+        reason = '"a guess"' if recorded is None else record
+        text = f'{case.to_toml().partition("[assumed]")[0]}\n[assumed]\n"{key}" = {reason}'
+        given = read_any_case(text, "x.toml")
+        assert given.assumed == ({key: "a guess"} if stays else {})
+        assert (provenance(given)[key] == "assumed: a guess") == stays
+        assert key not in given.replace({key: 1.2 * case[key]}).assumed
+        other = changed(given)
+        again = read_any_case(other.to_toml(), "x.toml")
+        assert again == other
+        assert again.assumed == given.assumed
+
+
+def test_records_of_values_are_checked() -> None:
+    wrong = f'{STAGE}\n[based_on]\n"planets.low.normal_module" = "2 kg"\n"planet.x" = 1\n'
+    with pytest.raises(InputError) as error:
+        read_any_case(wrong, "x.toml")
+    texts = [str(problem) for problem in error.value.problems]
+    assert any("x.toml" in text and "2 kg" in text for text in texts)
+    assert any('there is no key "planet.x"' in text for text in texts)
+
+
+def test_a_load_case_is_changed_by_its_name() -> None:
+    case = td.load_case("two-stage-spur")
+    key = f"load_cases.{case.load_cases[0].name}.speed"
+    other = case.replace({key: "1234 rpm"})
+    assert other[key] == other.load_cases[0].speed == pytest.approx(1234 * 3.141592653589793 / 30)
+    assert changed_keys(other) == (key,)
+    with pytest.raises(InputError, match="is not a table"):
+        case.replace({"load_cases.absent.speed": "1 rpm"})
+
+
+def test_the_former_name_of_a_central_value_stays() -> None:
+    case = read_any_case(STAGE.replace('"600 N*m"', '"600 N*m +- 5 %"'), "x.toml")
+    with pytest.warns(DeprecationWarning, match="get"):
+        assert case.central("operation.torque") == case["operation.torque"] == 600.0
+    assert case.uncertain == {"operation.torque": "600 N*m +- 5 %"}
