@@ -132,6 +132,7 @@ _ARGUMENTS: dict[str, Callable[[_Place, str], list[str]]] = {
         p.file(n), "--size", "2", *_spread(n), "--set", f"operation.speed={_speed(n)} rpm +- 1 %"
     ],
     "study": lambda p, n: [p.study(n)],
+    "frequencies": lambda p, n: [p.file(n)],
     "modes": lambda p, n: [p.file(n)],
     "run-up": lambda p, n: [p.file(n), _range(n), "--duration", "0.3"],
     "compare": lambda p, n: [p.result(n), p.result(n)],

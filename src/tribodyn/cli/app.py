@@ -84,6 +84,12 @@ COMMANDS = (
         "study.toml",
     ),
     Command(
+        "frequencies",
+        "frequencies_command:frequencies",
+        "List the frequencies of shafts, meshes, bearings and planets.",
+        "two-stage-spur",
+    ),
+    Command(
         "modes",
         "study_commands:modes",
         "Find natural frequencies and critical speeds of a case.",

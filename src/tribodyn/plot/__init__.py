@@ -27,6 +27,7 @@ from tribodyn.plot.gear.hypoid_motion import hypoid_kinematics
 from tribodyn.plot.gear.losses import friction_from_loss, losses, power_flow
 from tribodyn.plot.gear.mesh_deformation import mesh_deformation
 from tribodyn.plot.machine.forces import machine_forces
+from tribodyn.plot.machine.frequencies import kinematic_frequencies
 from tribodyn.plot.machine.front_view import planetary_modes
 from tribodyn.plot.machine.levels import (
     machine_comparison,
@@ -158,6 +159,7 @@ __all__ = [
     "hypoid_misalignment",
     "hypoid_pair",
     "hypoid_pressure",
+    "kinematic_frequencies",
     "kurtogram",
     "lead_optimum",
     "line_contact",

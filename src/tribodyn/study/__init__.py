@@ -13,6 +13,7 @@ if TYPE_CHECKING:
     from tribodyn.study.faults.clock import TurningClock, turning_clock
     from tribodyn.study.faults.recording_set import RecordingSet, record_set
     from tribodyn.study.faults.wear import Wear, wear
+    from tribodyn.study.frequencies import KinematicFrequencies, kinematic_frequencies
     from tribodyn.study.machine.case import MachineCase
     from tribodyn.study.machine.load_cases import LoadCase
     from tribodyn.study.machine.modes import MachineCampbell
@@ -61,6 +62,7 @@ __all__ = [
     "CaseEnsemble",
     "CaseSensitivity",
     "DataSet",
+    "KinematicFrequencies",
     "LoadCase",
     "LoadResult",
     "LoadShareStatistics",
@@ -94,6 +96,7 @@ __all__ = [
     "film_over_operation",
     "friction_experiment",
     "harris_map",
+    "kinematic_frequencies",
     "load_data",
     "load_share_statistics",
     "loaded_contact",
@@ -145,6 +148,7 @@ _NAMES = {
     "studies.modes": "campbell natural_modes",
     "studies.nonlinear": "basins continuation lyapunov_exponents",
     "studies.run_up": "run_up speed_sweep",
+    "frequencies": "KinematicFrequencies kinematic_frequencies",
     "studies.static": "comprehensive_stiffness film_over_operation harris_map optimize_tip_relief",
     "studies.case_grid": "build_system",
     "studies.sweep": "sweep",
