@@ -7,8 +7,8 @@ well, the surroundings.
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from typing import TYPE_CHECKING, Any, NamedTuple, TypeVar
+from collections.abc import Callable, Sequence
+from typing import TYPE_CHECKING, NamedTuple, TypeVar
 
 import numpy as np
 
@@ -16,20 +16,19 @@ from tribodyn.errors import ComputationError, collected
 from tribodyn.lubricant import temperature_range
 from tribodyn.lubricant.data_sheet import SHEET_RANGE
 from tribodyn.record import Record, fact, quantity, record
-from tribodyn.study.pipeline.preview import gearbox_losses_of
+from tribodyn.study.pipeline.tooth_contact import repeat
 from tribodyn.types import Array
 from tribodyn.units import ZERO_CELSIUS
 
 if TYPE_CHECKING:
-    from tribodyn.mesh import MeshTable
-    from tribodyn.study.case.case import Case
+    from tribodyn.study.case.sections import LubricantData
 
 #: Tolerance of the balance over the loss, and largest number of passes.
 _TOLERANCE, _MAX_PASSES = 5e-7, 40
 
 _DEFAULT_AMBIENT = 293.15  # default temperature of the surroundings [K]
 
-Extra = TypeVar("Extra")
+Solved = TypeVar("Solved")
 
 
 @record
@@ -69,6 +68,18 @@ class HeatBalance(Record):
     gear_heat_transfer: float | None = fact(default=None)
 
 
+class Temperatures(NamedTuple):
+    """Temperatures of a gearbox [K]."""
+
+    oil: float
+    gears: float | None = None  #: None where the gears have that of the oil
+
+    def changes(self) -> dict[str, float]:
+        """Values of the table ``[lubricant]``."""
+        known = {"temperature": self.oil, "gear_temperature": self.gears}
+        return {name: value for name, value in known.items() if value is not None}
+
+
 class _Pass(NamedTuple):
     """Temperatures above the surroundings and heat flows of one pass."""
 
@@ -85,35 +96,39 @@ class _Pass(NamedTuple):
 
 
 def balanced(
-    case: Case, mesh_at: Callable[[Case], tuple[Case, MeshTable, Extra]]
-) -> tuple[Case, MeshTable, Extra, HeatBalance]:
-    """Solve ``loss(T) = hA (T - T_amb)``; return the case, its mesh, extras and the iteration."""
+    heat: LubricantData,
+    oils: Sequence[LubricantData],
+    solve: Callable[[Temperatures], tuple[Solved, float]],
+    loss: Callable[[Solved, Temperatures], float] | None = None,
+) -> tuple[Solved, Temperatures, HeatBalance]:
+    """Solve ``loss(T) = hA (T - T_amb)``; return what is solved there, and the iteration."""
+    # solve: computes the teeth and the friction of all meshes [W]. loss: of the gearbox with these
+    # teeth [W], by default their friction. oils: those whose data have to reach the temperature.
     # Gears with a heat transfer of their own are warmer than the oil by the friction of their teeth
     # over it; the film has their temperature, bearings, seals and bath have that of the oil.
     # Secants within a bracket: the loss is positive at the temperature of the surroundings, and has
     # to be smaller than the dissipated heat at the highest temperature of the oil data.
-    oil = case.lubricant
-    assert oil is not None
-    assert oil.heat_transfer is not None
-    transfer, ambient = oil.heat_transfer, oil.ambient_temperature or _DEFAULT_AMBIENT
-    coldest, hottest = temperature_range(oil.name) if oil.name else SHEET_RANGE
-    name = oil.name or "the oil of the data sheet"
-    if ambient < coldest:
-        what = f"ambient_temperature = {ambient - ZERO_CELSIUS:.4g} degC"
-        why = f"The data of {name} start at {coldest - ZERO_CELSIUS:.4g} degC"
-        remedy = "Increase ambient_temperature, or choose another oil"
-        raise ComputationError(what, "lubricant.ambient_temperature", why, remedy)
+    assert heat.heat_transfer is not None
+    transfer, ambient = heat.heat_transfer, heat.ambient_temperature or _DEFAULT_AMBIENT
+    to_oil = heat.gear_heat_transfer
+    hottest, name = _range_of(oils, ambient)
     low, high = 0.0, hottest - ambient
-    start = oil.gear_temperature or oil.temperature or ambient
+    start = heat.gear_temperature or heat.temperature or ambient
     rise = float(np.clip(start - ambient, 0.0, high))
     rows: list[_Pass] = []
     while len(rows) < _MAX_PASSES:
-        with collected():
-            solved, mesh, extra = mesh_at(_at(case, ambient, rise, rise))
-        solved, last = _heat_flows(solved, mesh, ambient, rise)
+        gears = None if to_oil is None else ambient + rise
+        with collected() as of_models:
+            solved, friction = solve(Temperatures(ambient + rise, gears))
+        # At the balance no oil is colder than its surroundings: only its data end there.
+        oil_rise = rise if to_oil is None else max(rise - friction / to_oil, 0.0)
+        at = Temperatures(ambient + oil_rise, gears)
+        lost = friction if loss is None else loss(solved, at)
+        last = _Pass(rise, oil_rise, friction, lost, transfer * oil_rise)
         rows.append(last)
         if abs(last.excess) <= _TOLERANCE * last.loss:
-            return solved, mesh, extra, _record(rows, solved, ambient)
+            repeat(of_models)
+            return solved, at, _record(rows, heat, ambient)
         if last.excess > 0.0 and rise == hottest - ambient:
             raise ComputationError(
                 f"no temperature up to {hottest - ZERO_CELSIUS:.4g} degC balances the losses: "
@@ -135,25 +150,17 @@ def balanced(
     )
 
 
-def _at(case: Case, ambient: float, oil_rise: float, rise: float) -> Case:
-    """Return a case with oil and gears at temperatures above the surroundings."""
-    oil, changes = case.lubricant, {"lubricant.temperature": ambient + oil_rise}
-    if oil is not None and oil.gear_heat_transfer is not None:
-        changes["lubricant.gear_temperature"] = ambient + rise
-    return case.replace(changes)
-
-
-def _heat_flows(solved: Case, mesh: MeshTable, ambient: float, rise: float) -> tuple[Case, _Pass]:
-    """Find the oil temperature and the losses that belong to a temperature of the gears."""
-    oil, friction, oil_rise = solved.lubricant, mesh.mean_friction_power, rise
-    assert oil is not None
-    assert oil.heat_transfer is not None
-    if oil.gear_heat_transfer is not None:
-        # At the balance no oil is colder than its surroundings: only the data of the oil end there.
-        oil_rise = max(rise - friction / oil.gear_heat_transfer, 0.0)
-        solved = _at(solved, ambient, oil_rise, rise)
-    loss = float(gearbox_losses_of(solved, friction).total[0, 0])
-    return solved, _Pass(rise, oil_rise, friction, loss, oil.heat_transfer * oil_rise)
+def _range_of(oils: Sequence[LubricantData], ambient: float) -> tuple[float, str]:
+    """Highest temperature of the data of all oils [K], and the oil that has it."""
+    names = [oil.name or "the oil of the data sheet" for oil in oils]
+    ranges = [temperature_range(oil.name) if oil.name else SHEET_RANGE for oil in oils]
+    coldest, name = max((low, name) for (low, _), name in zip(ranges, names, strict=True))
+    if ambient < coldest:
+        what = f"ambient_temperature = {ambient - ZERO_CELSIUS:.4g} degC"
+        why = f"The data of {name} start at {coldest - ZERO_CELSIUS:.4g} degC"
+        remedy = "Increase ambient_temperature, or choose another oil"
+        raise ComputationError(what, "lubricant.ambient_temperature", why, remedy)
+    return min((high, name) for (_, high), name in zip(ranges, names, strict=True))
 
 
 def _enough(last: _Pass) -> str:
@@ -179,18 +186,10 @@ def _next(rows: list[_Pass], transfer: float, low: float, high: float, highest: 
     return 0.5 * (low + high)
 
 
-def _record(rows: list[_Pass], case: Case, ambient: float) -> HeatBalance:
+def _record(rows: list[_Pass], oil: LubricantData, ambient: float) -> HeatBalance:
     rises, oil_rises, friction, losses, dissipated = np.array(rows).T
-    oil = case.lubricant
-    assert oil is not None
     assert oil.heat_transfer is not None
-    gears: dict[str, Any] = {}
-    if oil.gear_heat_transfer is not None:
-        gears = {
-            "gear_temperature": ambient + rises,
-            "gear_power_loss": friction,
-            "gear_heat_transfer": oil.gear_heat_transfer,
-        }
+    two = oil.gear_heat_transfer is not None
     return HeatBalance(
         iteration=np.arange(1.0, len(rows) + 1.0),
         temperature=ambient + oil_rises,
@@ -198,5 +197,7 @@ def _record(rows: list[_Pass], case: Case, ambient: float) -> HeatBalance:
         dissipated=dissipated,
         heat_transfer=oil.heat_transfer,
         ambient_temperature=ambient,
-        **gears,
+        gear_temperature=ambient + rises if two else None,
+        gear_power_loss=friction if two else None,
+        gear_heat_transfer=oil.gear_heat_transfer,
     )

@@ -12,7 +12,7 @@ import tribodyn as td
 from tribodyn.errors import ComputationError, InputError
 from tribodyn.lubricant import library, temperature_range
 from tribodyn.mesh import MeshTable
-from tribodyn.study.heat_balance import balanced
+from tribodyn.study.pipeline.run import _at_balance as at_balance
 from tribodyn.study.pipeline.tooth_contact import mesh_of
 
 pytestmark = pytest.mark.filterwarnings("ignore::tribodyn.errors.ModelWarning")
@@ -35,7 +35,7 @@ def _balance(case: Any) -> Any:
         calls.append(point.lubricant.temperature)
         return point, mesh_of(point), None
 
-    summary, _, _, heat = balanced(case, mesh_at)
+    summary, _, _, heat = at_balance(case, mesh_at)
     gears = heat.temperature if heat.gear_temperature is None else heat.gear_temperature
     assert calls == gears.tolist()
     return summary, heat
@@ -101,7 +101,7 @@ def test_losses_that_jump_are_reported() -> None:
         return point, lossy if point.lubricant.temperature < 320.0 else smooth, None
 
     with pytest.raises(ComputationError, match="do not settle"):
-        balanced(case, mesh_at)
+        at_balance(case, mesh_at)
 
 
 def _scaled(mesh: MeshTable, factor: float) -> MeshTable:

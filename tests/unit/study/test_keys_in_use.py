@@ -181,10 +181,8 @@ def test_every_key_is_used_or_refused(
 @pytest.mark.parametrize(
     ("kind", "make", "key", "value"),
     [
-        (MachineCase, computed_teeth, "lubricant.heat_transfer", "15 W/K"),
         (MachineCase, computed_teeth, "meshes.first.lubricant.heat_transfer", "15 W/K"),
         (MachineCase, stage, "planets.low.lubricant.heat_transfer", "15 W/K"),
-        (MachineCase, stage, "lubricant.heat_transfer", "15 W/K"),
         (MachineCase, stage, "gears.planet.position", "9 mm"),
         (MachineCase, stage, "planets.low.pair_center_distance", "90 mm"),
         (MachineCase, stage, "planets.low.ring_normal_module", "3 mm"),
@@ -209,7 +207,6 @@ def test_keys_without_effect_are_refused_by_name(
 def test_a_hypoid_machine_refuses_keys_that_do_nothing() -> None:
     case = td.load_case("hypoid-axle")
     for key, value in (
-        ("lubricant.heat_transfer", "15 W/K"),
         ("meshes.axle.lubricant.heat_transfer", "15 W/K"),
         ("stiffness.model", "fe2d"),
     ):

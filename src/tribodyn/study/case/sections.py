@@ -426,7 +426,7 @@ class Losses(Section):
     wheel: ShaftData = table(ShaftData, "shaft of the wheel", "empty")
 
 
-def _heat_balance(inputs: UserInput) -> Iterator[tuple[str, Problem]]:
+def heat_problems(inputs: UserInput) -> Iterator[tuple[str, Problem]]:
     """Check that a heat balance has an oil with temperature dependence, and gears."""
     key, other = "lubricant.heat_transfer", "lubricant.ambient_temperature"
     gears = "lubricant.gear_temperature"
@@ -457,7 +457,7 @@ def lubricant_problems(inputs: UserInput) -> Iterator[tuple[str, Problem]]:
     """Check the oil: from the library, from a data sheet, or properties at one temperature."""
     if "lubricant" not in inputs:
         return
-    yield from _heat_balance(inputs)
+    yield from heat_problems(inputs)
     stated = [name for name in (*PROPERTIES, *THERMAL, *SHEET) if f"lubricant.{name}" in inputs]
     if "lubricant.name" in inputs:
         for name in stated:

@@ -25,6 +25,7 @@ from tribodyn.machine import (
 from tribodyn.machine.plane_law import with_exchanged_gears
 from tribodyn.study.case.case import Case
 from tribodyn.study.case.provenance import Assumption, reason_faults
+from tribodyn.study.case.sections import LubricantData
 from tribodyn.study.case.user_input import Source, unsound
 from tribodyn.study.case.values import KeyedProblems
 from tribodyn.study.faults.machine_section import impossible_faults, machine_fault_problems
@@ -55,6 +56,7 @@ from tribodyn.study.machine.read_parts import (
     read_each,
     read_fault_table,
     read_gear,
+    read_heat,
     read_shaft,
     table_of,
     tables_of,
@@ -81,6 +83,8 @@ _TOP = (
     *("title", "origin", *GROUPS, "planets", "housing", "operation", "load_cases", "dynamics"),
     *(*SHARED, "assumed"),
 )
+#: Tables in which problems of parts are placed.
+_PLACED = (*GROUPS, "planets", "operation", "housing", "lubricant")
 #: Keys of a mesh that its object takes as they are.
 _OF_MESH = (
     *("normal_module", "helix_angle", "hand", "angle", "center_distance", "stiffness", "offset"),
@@ -137,15 +141,14 @@ class MachineCase(PartsBase):
         stages = read_stages(self.data, groups["gears"], problems, origin)
         if self.lone_stage in stages:
             problems += floating_members(f"planets.{self.lone_stage}", stages[self.lone_stage][0])
-        tables = [table for table, *_ in stages.values()]
         self.gears = read_each(groups, "gears", read_gear, problems)
-        self.implied_shafts = add_shafts(groups["shafts"], self.gears, tables, material)
+        self.implied_shafts = add_shafts(groups["shafts"], self.gears, stages, material)
         self.shafts: dict[str, Shaft] = read_each(groups, "shafts", read_shaft, problems)
         self.bearings: dict[str, Bearing] = read_each(groups, "bearings", read_bearing, problems)
         self._mesh_dynamics: dict[str, Any] = {}
         self._stage_of: dict[str, tuple[CaseStage, str]] = {}
         self._pairs: dict[str, Case] = {}
-        self._teeth: dict[tuple[str, str, str], tuple[Case, MeshInputs]] = {}
+        self._teeth: dict[tuple[object, ...], tuple[Case, MeshInputs]] = {}
         self._machines: dict[tuple[float, float], Machine] = {}
         self._mesh_tables = {
             name: self._read_mesh(name, body, problems) for name, body in groups["meshes"].items()
@@ -157,6 +160,7 @@ class MachineCase(PartsBase):
             groups, "couplings", read_coupling, problems
         )
         self.housing: Housing | None = read_housing(self.data.get("housing"), problems)
+        self.heat: LubricantData | None = read_heat(self.data.get("lubricant", {}), problems)
         motion = {k: v for k, v in self.data.get("dynamics", {}).items() if k not in MESH_KEYS}
         self.motion = table_of(MotionTable, motion, "dynamics", problems)
         self.faults: dict[str, Any] = read_each(groups, "faults", read_fault_table, problems)
@@ -254,7 +258,7 @@ class MachineCase(PartsBase):
         source = self.source
         return [
             source.place([(str(problem.where), problem)])[0]
-            if str(problem.where).partition(".")[0] in (*GROUPS, "planets", "operation", "housing")
+            if str(problem.where).partition(".")[0] in _PLACED
             else problem
             for problem in error.problems
         ]

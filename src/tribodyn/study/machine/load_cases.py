@@ -26,12 +26,16 @@ class LoadCase:
         Torque on the input [N*m].
     share : float
         Share of the time [1].
+    temperature, gear_temperature : float, optional
+        Temperatures of oil and gears in place of those of ``[lubricant]`` [K].
     """
 
     name: str
     speed: float
     torque: float
     share: float
+    temperature: float | None = None
+    gear_temperature: float | None = None
 
 
 class Loads(NamedTuple):

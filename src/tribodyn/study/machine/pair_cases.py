@@ -42,6 +42,8 @@ if TYPE_CHECKING:
 
 #: Tables of models that hold for all meshes, and that a mesh may have for itself.
 SHARED = ("material", "lubricant", "film", "stiffness", "friction")
+#: Keys of ``[lubricant]`` of the heat balance, which is that of the whole machine.
+HEAT = ("heat_transfer", "gear_heat_transfer", "ambient_temperature")
 #: Keys of ``[dynamics]`` of a pair that belong to its mesh.
 MESH_KEYS = tuple(n for n in Dynamics.fields if n not in ("model", "bearing_damping_ratio"))
 #: Groups of parts, with a table for each part.
@@ -105,6 +107,7 @@ class TeethUnder:
     hand: str  #: of the pinion, of hypoid teeth the side; empty for straight teeth
     operation: tuple[float, float]  #: speed and torque of the pinion
     backwards: bool  #: whether the pinion turns about -x
+    temperatures: Mapping[str, float]  #: of oil and gears, in place of those of ``[lubricant]``
 
     def along_path(self, misalignment: float | Misalignment) -> float | Misalignment:
         """Misalignment of the pair from an increase of the compression along x."""
@@ -209,7 +212,14 @@ def teeth_under(case: MachineCase, mesh: str, load: LoadCase) -> TeethUnder:
         hand=side or (gear_hand(pinion, case.gears, part) if part.helix_angle else ""),
         operation=(abs(mesh_load.speeds[place]), abs(mesh_load.torque[place])),
         backwards=mesh_load.speeds[place] < 0.0,
+        temperatures=temperatures_of(load),
     )
+
+
+def temperatures_of(load: LoadCase) -> dict[str, float]:
+    """Temperatures of oil and gears that a load has for itself [K]."""
+    known = {name: getattr(load, name) for name in ("temperature", "gear_temperature")}
+    return {name: value for name, value in known.items() if value is not None}
 
 
 def read_pair(
@@ -220,6 +230,9 @@ def read_pair(
     data, key = case.data, f"meshes.{mesh}"
     if stage is not None:
         data, key = stage.pair_data(role), stage.key
+    if under.temperatures:
+        warm = {name: Plain(value) for name, value in under.temperatures.items()}
+        data = {**data, "lubricant": {**data["lubricant"], **warm}}
     return pair_case(
         *(data, key, under.names, case.source),
         driver=under.driver,
@@ -232,7 +245,7 @@ def read_pair(
 def read_teeth(case: MachineCase, mesh: str, under: TeethUnder) -> tuple[Case, MeshInputs]:
     """Pair of gears and inputs of a mesh, read once for each sense of its load."""
     refuse_idle(case.data, mesh, under.operation[1], case.source)
-    key = case.tooth_group(mesh), under.driver, under.hand
+    key = case.tooth_group(mesh), under.driver, under.hand, *under.temperatures.values()
     if key not in case._teeth:
         pair = read_pair(case, mesh, under)
         teeth = pair, mesh_inputs(pair)
@@ -282,7 +295,8 @@ def check_range(pair: Case, operation: tuple[float, float]) -> None:
 def _merged(name: str, shared: Mapping[str, Any], of_mesh: Mapping[str, Any]) -> dict[str, Any]:
     """Table of a mesh: a model of its own brings its options, other keys are added."""
     selector = Case.fields[name].kind.selector  # type: ignore[union-attr]
-    return {**({} if selector in of_mesh else shared), **of_mesh}
+    values = {**({} if selector in of_mesh else shared), **of_mesh}
+    return {key: value for key, value in values.items() if key not in HEAT}
 
 
 def read_blanks(

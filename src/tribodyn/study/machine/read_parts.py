@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Mapping
 from dataclasses import MISSING, fields
 from typing import Any
 
@@ -13,7 +13,8 @@ from tribodyn.gear import Material
 from tribodyn.machine import ROLLING_BEARINGS, Bearing, Coupling, Gear, Section, Shaft
 from tribodyn.model import REQUIRED, Option, flag, integer, number, text
 from tribodyn.study.case.section import Section as Table
-from tribodyn.study.case.sections import MaterialData
+from tribodyn.study.case.sections import LubricantData, MaterialData, heat_problems
+from tribodyn.study.case.user_input import UserInput
 from tribodyn.study.case.values import (
     FaultError,
     KeyedProblems,
@@ -260,6 +261,15 @@ def read_each(groups: Mapping[str, Any], group: str, read: Any, problems: KeyedP
     return {name: part for name, part in parts.items() if part is not None}
 
 
+def read_heat(oil: Mapping[str, object], problems: KeyedProblems) -> LubricantData | None:
+    """Table ``[lubricant]`` where it has a heat balance."""
+    problems += heat_problems(UserInput({"lubricant": oil}))
+    table: LubricantData | None = None
+    if "heat_transfer" in oil:
+        table = table_of(LubricantData, oil, "lubricant", problems)
+    return table
+
+
 def read_fault_table(name: str, body: dict[str, Any], problems: KeyedProblems) -> Any:
     """Table of a fault."""
     return table_of(PartFaultTable, body, f"faults.{name}", problems)
@@ -279,11 +289,12 @@ def add_material(data: Mapping[str, Any], groups: Mapping[str, Any]) -> dict[str
 
 
 def add_shafts(
-    shafts: dict[str, Any], gears: Mapping[str, Gear], stages: Sequence[Any], material: Any
+    shafts: dict[str, Any], gears: Mapping[str, Gear], stages: Mapping[str, Any], material: Any
 ) -> tuple[str, ...]:
     """Add rigid shafts that only gears name, or the members of stages; return their names."""
-    members = [gears[n].shaft for t in stages for n in (t.sun, t.ring) if n in gears]
-    members += [table.carrier for table in stages]
+    tables = [table for table, *_ in stages.values()]
+    members = [gears[n].shaft for t in tables for n in (t.sun, t.ring) if n in gears]
+    members += [table.carrier for table in tables]
     implied = members if shafts else [*(gear.shaft for gear in gears.values()), *members]
     added = tuple(dict.fromkeys(name for name in implied if name not in shafts))
     shafts.update(dict.fromkeys(added, material))

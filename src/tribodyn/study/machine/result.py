@@ -19,6 +19,7 @@ from tribodyn.study.machine.modes import MeshOrder, mesh_orders
 from tribodyn.study.machine.motion import MachineMotion, machine_motion
 from tribodyn.study.machine.summary import summary_of
 from tribodyn.study.pipeline.result_of_case import ResultOfCase
+from tribodyn.study.pipeline.stored_motion import of_passes
 from tribodyn.study.planetary.stage_result import StageResult
 
 if TYPE_CHECKING:
@@ -36,6 +37,7 @@ if TYPE_CHECKING:
     from tribodyn.study.case.provenance import Assumption
     from tribodyn.study.faults.machine_motion import MachineTurningMotion
     from tribodyn.study.faults.sensors import Sensors
+    from tribodyn.study.heat_balance import HeatBalance
     from tribodyn.study.machine.case import MachineCase
     from tribodyn.study.machine.load_cases import LoadCase
     from tribodyn.study.machine.modes import MachineCampbell
@@ -60,6 +62,19 @@ def steady_motion(
         system = without_clearance_supports(structure, system)
         return clearance_motion(system, [*supports.values()], frequency, steps=steps, start=start)
     return harmonic_balance(system, frequency, steps=steps, start=start)
+
+
+def power_with_friction(
+    machine: Machine, tables: Mapping[str, MeshTable]
+) -> tuple[PowerFlow, dict[str, float]]:
+    """Power flow less the friction of computed teeth, and what each mesh loses of it [W]."""
+    nominal = machine.kinematics.meshes
+    lost = {
+        name: table.mean_friction_power / nominal[name].power if nominal[name].power else 0.0
+        for name, table in tables.items()
+    }
+    flow = machine.power_flow({name: 1.0 - share for name, share in lost.items()})
+    return flow, {name: share * flow.meshes[name].power for name, share in lost.items()}
 
 
 def steps_of(structure: MachineStructure) -> int:
@@ -90,6 +105,8 @@ class LoadResult:
         Forces, errors and accelerations by the names of the parts.
     steady : Response, optional
         Motion of all coordinates over one period of the clock, where it is at hand.
+    heat : HeatBalance, optional
+        Heat balance of gears and oil, if ``lubricant.heat_transfer`` is given.
     """
 
     load: LoadCase
@@ -100,6 +117,7 @@ class LoadResult:
     system: System
     motion: MachineMotion
     steady: Response | None = None
+    heat: HeatBalance | None = None
 
     @cached_property
     def response(self) -> Response:
@@ -127,24 +145,14 @@ class LoadResult:
         return self.machine.clock.frequency
 
     @cached_property
-    def _mesh_losses(self) -> dict[str, float]:
-        """Power that the friction of computed teeth takes of the power that enters their mesh."""
-        flow = self.machine.kinematics.meshes
-        return {
-            name: table.mean_friction_power / flow[name].power if flow[name].power else 0.0
-            for name, table in self.tables.items()
-        }
-
-    @cached_property
     def power_flow(self) -> PowerFlow:
         """Speeds, torques and power of shafts and meshes, less the friction of computed teeth."""
-        return self.machine.power_flow({n: 1.0 - lost for n, lost in self._mesh_losses.items()})
+        return power_with_friction(self.machine, self.tables)[0]
 
     @cached_property
     def friction_power(self) -> dict[str, float]:
         """Power that the computed teeth of each mesh lose of what reaches it [W]."""
-        flow = self.power_flow.meshes
-        return {name: lost * flow[name].power for name, lost in self._mesh_losses.items()}
+        return power_with_friction(self.machine, self.tables)[1]
 
     @cached_property
     def modes(self) -> MachineModes:
@@ -216,8 +224,11 @@ class LoadResult:
             name: asdict(value) if isinstance(value, Misalignment) else value
             for name, value in self.misalignment.items()
         }
-        parts = self.motion._parts()
-        return parts._replace(attributes={**parts.attributes, "misalignment": json.dumps(values)})
+        variables, coordinates, facts = self.motion._parts()
+        if self.heat is not None:
+            its_variables, its_facts = of_passes("heat", self.heat)
+            variables, facts = {**variables, **its_variables}, {**facts, **its_facts}
+        return Parts(variables, coordinates, {**facts, "misalignment": json.dumps(values)})
 
     def signals_along(self, response: Response) -> MachineMotion:
         """Forces, errors and accelerations of the parts along another motion.
@@ -311,6 +322,11 @@ class MachineResult(ResultOfCase):
     def motion(self) -> MachineMotion:
         """Its motion at the operating point."""
         return self.operation.motion
+
+    @property
+    def heat(self) -> HeatBalance | None:
+        """Heat balance at the operating point, if ``lubricant.heat_transfer`` is given."""
+        return self.operation.heat
 
     @property
     def structure(self) -> MachineStructure:

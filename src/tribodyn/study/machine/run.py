@@ -31,15 +31,22 @@ from tribodyn.machine import (
 )
 from tribodyn.machine import system as system_of
 from tribodyn.progress import SILENT, Progress
+from tribodyn.study.heat_balance import HeatBalance, Temperatures, balanced
 from tribodyn.study.machine.case import MachineCase
 from tribodyn.study.machine.first_look import warn_of_period
 from tribodyn.study.machine.load_cases import LoadCase
 from tribodyn.study.machine.motion import machine_motion, motion_from
-from tribodyn.study.machine.pair_cases import inputs_under
-from tribodyn.study.machine.result import LoadResult, MachineResult, steady_motion
+from tribodyn.study.machine.pair_cases import inputs_under, read_teeth, teeth_under
+from tribodyn.study.machine.result import (
+    LoadResult,
+    MachineResult,
+    power_with_friction,
+    steady_motion,
+)
 from tribodyn.study.mesh_inputs import MeshInputs
 from tribodyn.study.pipeline.assembly import mesh_contacts, mesh_damping
 from tribodyn.study.pipeline.store import Stored, StoredLoad, figures_of_load
+from tribodyn.study.pipeline.stored_motion import read_passes
 from tribodyn.study.pipeline.tooth_contact import load_friction_of, mesh_table
 
 if TYPE_CHECKING:
@@ -50,6 +57,8 @@ if TYPE_CHECKING:
 #: Passes of teeth and balance at most, and change of the misalignment over the compression of the
 #: teeth that ends them.
 _PASSES, _SAME = 4, 0.1
+#: The same where a temperature follows from the teeth.
+_HEATED_PASSES, _SETTLED = 40, 1e-9
 #: Difference of misalignments of equal teeth that is rounding [m].
 _EQUAL = 1e-8
 
@@ -65,10 +74,12 @@ class MeshWarning(NamedTuple):
 class Balanced(NamedTuple):
     """A machine at rest under one load, with its computed teeth."""
 
+    load: LoadCase  #: with the temperatures of the heat balance
     static: StaticBalance
     tables: dict[str, MeshTable]
     misalignment: Mapping[str, float | Misalignment]  #: with which the teeth were computed [m]
     warnings: list[MeshWarning]
+    heat: HeatBalance | None = None
 
 
 def run_machine(
@@ -85,7 +96,8 @@ def run_machine(
                 r for r in results if (r.load.speed, r.load.torque) == (load.speed, load.torque)
             ]
             computed = equal[0] if equal else run_load(case, load, progress, of_meshes)
-            results.append(replace(computed, load=load))
+            same = replace(computed.load, name=load.name, share=load.share)
+            results.append(replace(computed, load=same))
         warn_of_meshes(of_meshes)
     unique = {str(warning): warning for warning in caught}
     for warning in unique.values():
@@ -101,15 +113,18 @@ def run_load(
     start: Response | None = None,
 ) -> LoadResult:
     """Compute a machine under one load; its motion is searched from that of a similar one."""
-    balanced = balanced_machine(case, load, progress)
-    of_meshes += balanced.warnings
+    rest = balanced_machine(case, load, progress)
+    of_meshes += rest.warnings
     progress.start(f"Motion: {load.name}")
-    structure = structure_of(case, balanced.static.linearized())
+    structure = structure_of(case, rest.static.linearized())
     system = system_of(structure)
     response = steady_motion(structure, system, start)
     progress.finish()
     motion = machine_motion(structure, response)
-    return LoadResult(load, structure, *balanced[:3], system, motion, response)
+    return LoadResult(
+        *(rest.load, structure, rest.static, rest.tables, rest.misalignment),
+        *(system, motion, response, rest.heat),
+    )
 
 
 def rehearse_machine(case: MachineCase) -> None:
@@ -122,11 +137,42 @@ def rehearse_machine(case: MachineCase) -> None:
 def balanced_machine(
     case: MachineCase, load: LoadCase, progress: Progress = SILENT, *, rehearsal: bool = False
 ) -> Balanced:
-    """Static balance of a machine with computed teeth, and their mesh tables."""
+    """Static balance of a machine with computed teeth, at the temperature of its heat balance."""
+    if case.heat is None or rehearsal:
+        return _settled(case, load, progress, rehearsal=rehearsal)
+    rest: Balanced | None = None
+
+    def solve(to: Temperatures) -> tuple[Balanced, float]:
+        nonlocal rest
+        warm = replace(load, temperature=to.oil, gear_temperature=to.gears)
+        rest = _settled(case, warm, progress, start=rest)
+        return rest, sum(power_with_friction(rest.static.machine, rest.tables)[1].values())
+
+    pairs = [read_teeth(case, n, teeth_under(case, n, load))[0] for n in case.meshes_with_teeth]
+    try:
+        oils = [pair.lubricant for pair in pairs if pair.lubricant is not None]
+        settled, at, heat = balanced(case.heat, oils, solve)
+    except ComputationError as error:
+        raise ComputationError(case._placed(error)) from None
+    warm = replace(load, temperature=at.oil, gear_temperature=at.gears)
+    return settled._replace(load=warm, heat=heat)
+
+
+def _settled(
+    case: MachineCase,
+    load: LoadCase,
+    progress: Progress,
+    *,
+    rehearsal: bool = False,
+    start: Balanced | None = None,
+) -> Balanced:
+    """Static balance of a machine with computed teeth, from that of a similar load."""
     # Deflected shafts misalign the flanks, which changes the stiffness of the teeth and so, a
     # little, the deflection: teeth and balance are repeated until they agree.
-    static = _static(case, load)  # with a usual stiffness of the teeth
-    for _ in range(_PASSES):
+    static = _static(case, load) if start is None else start.static  # with a usual stiffness
+    heated = case.heat is not None and not rehearsal
+    passes, same = (_HEATED_PASSES, _SETTLED) if heated else (_PASSES, _SAME)
+    for _ in range(passes):
         before = {name: static.meshes[name] for name in case.meshes_with_teeth}
         misalignment = {name: misalignment_of(mesh) for name, mesh in before.items()}
         teeth = _teeth(case, load, misalignment, rehearsal, progress)
@@ -142,10 +188,10 @@ def balanced_machine(
             _change(misalignment[name], misalignment_of(static.meshes[name])) / mesh.compression
             for name, mesh in before.items()
         ]
-        if max(changes, default=0.0) <= _SAME:
+        if max(changes, default=0.0) <= same:
             break
     progress.finish()
-    return Balanced(static, tables, misalignment, mesh_warnings)
+    return Balanced(load, static, tables, misalignment, mesh_warnings)
 
 
 def _teeth(
@@ -228,12 +274,18 @@ def _restored_load(case: MachineCase, load: LoadCase, stored: StoredLoad) -> Loa
         name: Misalignment(**value) if isinstance(value, dict) else value
         for name, value in json.loads(data.attrs["misalignment"]).items()
     }
+    heat = read_passes("heat", next(iter(tables.values()), None), data)
+    if heat is not None:
+        warm = (heat.temperature, heat.gear_temperature)
+        oil, gears = (None if each is None else float(each[-1]) for each in warm)
+        load = replace(load, temperature=oil, gear_temperature=gears)
     inputs = {name: inputs_under(case, name, load, misalignment[name]) for name in tables}
     laws = {name: _law(inputs[name], table) for name, table in tables.items()}
     static = _static(case, load, laws, misalignment)
     structure = structure_of(case, static.linearized())
     system, motion = system_of(structure), motion_from(data)
-    return LoadResult(load, structure, static, tables, misalignment, system, motion)
+    at_rest = load, structure, static, tables, misalignment
+    return LoadResult(*at_rest, system, motion, heat=heat)
 
 
 def warn_of_meshes(mesh_warnings: Iterable[MeshWarning]) -> None:

@@ -49,6 +49,8 @@ def _of_machine(result: LoadResult) -> Mapping[str, float | None]:
         "friction_power": lost if result.tables else None,
         "efficiency": efficiency if result.tables and power else None,
         "output_torque": abs(run.torque / ratio) * losses,
+        "oil_temperature": result.load.temperature,
+        "gear_temperature": result.load.gear_temperature,
     }
 
 

@@ -7,12 +7,11 @@ from typing import Any
 
 from tribodyn.errors import Problem
 from tribodyn.study.case.values import written
-from tribodyn.study.machine.pair_cases import MESH_KEYS, SHARED
+from tribodyn.study.machine.pair_cases import HEAT, MESH_KEYS, SHARED
 from tribodyn.study.machine.tables import HypoidMeshTable, MeshDynamics, mesh_table_kind
 
 KeyedProblems = Iterator[tuple[str, Problem]]
 
-_HEAT = ("heat_transfer", "gear_heat_transfer", "ambient_temperature")
 #: Keys of a mesh, and of a gear, that only computed teeth have.
 _OF_TEETH = (
     "composite_roughness",
@@ -67,15 +66,17 @@ def unused_keys(data: Mapping[str, Any]) -> KeyedProblems:
 
 
 def _heat(data: Mapping[str, Any]) -> KeyedProblems:
-    """Keys of a heat balance, which machines do not have."""
-    places = {"lubricant": data.get("lubricant")}
+    """Keys of a mesh of the heat balance, which is that of the whole machine."""
+    stated = "temperature", "gear_temperature", "dynamic_viscosity"
+    why = "The housing has one heat balance, which finds the temperature of all meshes"
+    remedy = (
+        "Give heat_transfer in [lubricant], and oils whose viscosity at any temperature is known"
+    )
+    names = (*HEAT, *(stated if _is_set(data.get("lubricant"), HEAT[0]) else ()))
     for group in ("meshes", "planets"):
         for name, body in _tables(data, group).items():
-            places[f"{group}.{name}.lubricant"] = body.get("lubricant")
-    why = "Machines and stages have no heat balance: the temperatures of oil and gears are given"
-    for key, table in places.items():
-        remedy = "Remove it, and give temperature, and gear_temperature where the gears are warmer"
-        yield from _refused(key, table, _HEAT, why, remedy)
+            table = body.get("lubricant")
+            yield from _refused(f"{group}.{name}.lubricant", table, names, why, remedy)
 
 
 def _planets(data: Mapping[str, Any]) -> KeyedProblems:

@@ -9,12 +9,13 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from tribodyn.errors import ComputationError, InputError, ModelWarning, Problem, collected, warn
+from tribodyn.errors import ComputationError, InputError, Problem, collected, warn
 from tribodyn.nomenclature import GEARS
 from tribodyn.progress import Progress
 from tribodyn.study.case.provenance import effective
 from tribodyn.study.case.sections import Solver
 from tribodyn.study.case.to_models import mesh_law_of
+from tribodyn.study.pipeline.tooth_contact import repeat
 
 if TYPE_CHECKING:
     from tribodyn.dynamics import Response, System
@@ -128,7 +129,7 @@ def _steady(system: System, mesh_frequency: float, steps: int, progress: Progres
                 system, mesh_frequency, steps=steps, periods=periods, progress=progress
             )
         if orbit.converged and orbit.stable:
-            _repeat_warnings(model_warnings)
+            repeat(model_warnings)
             if periods > 1:
                 warn("subharmonic", f"the motion repeats only after {periods} mesh cycles")
             return orbit
@@ -189,11 +190,6 @@ def _restless(case: Case, cycles: int, change: float) -> Problem:
         f'Take the orbit itself with engine = "{_ORBITS}", add damping, or choose method = '
         '"transient"',
     )
-
-
-def _repeat_warnings(model_warnings: list[ModelWarning]) -> None:
-    for warning in model_warnings:
-        warn(warning.code, warning.message, stacklevel=3)
 
 
 def _lost(orbit: Response) -> Problem:

@@ -15,7 +15,7 @@ from tribodyn.study.case.read import unchanged_files
 from tribodyn.study.case.to_models import locate_errors
 from tribodyn.study.coupling import Coupling, Follow, coupled
 from tribodyn.study.first_use import compile_in_parallel
-from tribodyn.study.heat_balance import balanced
+from tribodyn.study.heat_balance import Temperatures, balanced
 from tribodyn.study.mesh_inputs import mesh_inputs
 from tribodyn.study.pipeline.assembly import damping_of, system_of, whole_system
 from tribodyn.study.pipeline.cautions import (
@@ -28,6 +28,7 @@ from tribodyn.study.pipeline.cautions import (
     teeth_cautions,
 )
 from tribodyn.study.pipeline.motion import motion_of, motions_of, steps_of
+from tribodyn.study.pipeline.preview import gearbox_losses_of
 from tribodyn.study.pipeline.result import Result
 from tribodyn.study.pipeline.store import Stored
 from tribodyn.study.pipeline.stored_motion import NOMINAL, read_friction, read_passes, read_response
@@ -45,6 +46,9 @@ if TYPE_CHECKING:
     from tribodyn.study.case.case import Case
     from tribodyn.study.heat_balance import HeatBalance
     from tribodyn.study.pipeline.assembly import Damping
+
+    #: A case with its mesh and its coupling.
+    Meshed = tuple[Case, MeshTable, Coupling | None]
 
 
 def run(
@@ -179,7 +183,7 @@ def prepare_run(
     with unchanged_files(case), locate_errors(case), collected() as model_warnings:
         progress.start("Tooth contact")
 
-        def mesh_at(point: Case) -> tuple[Case, MeshTable, Coupling | None]:
+        def mesh_at(point: Case) -> Meshed:
             if case.solver.coupling != "none":
                 return coupled(point, progress, follow)
             return point, mesh_of(point, progress) if mesh_source is None else mesh_source(), None
@@ -187,7 +191,7 @@ def prepare_run(
         heat = None
         if case.lubricant is not None and case.lubricant.heat_transfer is not None:
             mesh_source = None  # loads and films of the study belong to another temperature
-            case, mesh, coupling, heat = balanced(case, mesh_at)
+            case, mesh, coupling, heat = _at_balance(case, mesh_at)
         else:
             case, mesh, coupling = mesh_at(case)
         friction = load_friction_of(mesh_inputs(case), mesh)
@@ -214,6 +218,29 @@ def restored(case: Case, stored: Stored) -> Result:
     result = Result(*parts, friction, compared, *passes)
     vars(result)["figures"] = stored.summary
     return result
+
+
+def _at_balance(
+    case: Case, mesh_at: Callable[[Case], Meshed]
+) -> tuple[Case, MeshTable, Coupling | None, HeatBalance]:
+    """Case, mesh and coupling at the temperature at which the losses are dissipated."""
+
+    def warmed(point: Case, temperatures: Temperatures) -> Case:
+        return point.replace({f"lubricant.{k}": v for k, v in temperatures.changes().items()})
+
+    def solve(temperatures: Temperatures) -> tuple[Meshed, float]:
+        solved = mesh_at(warmed(case, temperatures))
+        return solved, solved[1].mean_friction_power
+
+    def loss(solved: Meshed, temperatures: Temperatures) -> float:
+        point, mesh, _ = solved
+        losses = gearbox_losses_of(warmed(point, temperatures), mesh.mean_friction_power)
+        return float(losses.total[0, 0])
+
+    oil = case.lubricant
+    assert oil is not None
+    (solved, mesh, coupling), temperatures, heat = balanced(oil, [oil], solve, loss)
+    return warmed(solved, temperatures), mesh, coupling, heat
 
 
 class PendingRun(NamedTuple):

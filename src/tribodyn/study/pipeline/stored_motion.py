@@ -87,7 +87,7 @@ def parts_of(result: Result) -> Parts:
     if result.friction is not None:
         additions.append(_of_friction(result.friction))
     passes = {prefix: getattr(result, prefix) for prefix in _PASSES}
-    additions += [_of_passes(k, each) for k, each in passes.items() if each is not None]
+    additions += [of_passes(k, each) for k, each in passes.items() if each is not None]
     for its_variables, its_facts in additions:
         variables |= its_variables
         facts |= its_facts
@@ -196,7 +196,7 @@ _PASSES: dict[str, tuple[type[Any], str, str]] = {
 }
 
 
-def _of_passes(prefix: str, passes: Record) -> tuple[dict[str, Any], dict[str, Any]]:
+def of_passes(prefix: str, passes: Record) -> tuple[dict[str, Any], dict[str, Any]]:
     """Variables and facts of the passes of an iteration."""
     kind, dimension, meaning = _PASSES[prefix]
     variables, facts = {}, {}
@@ -302,13 +302,14 @@ def read_friction(mesh: MeshTable, data: xarray.Dataset) -> MeshFriction | None:
     return MeshFriction(mesh.grid, **values)
 
 
-def read_passes(prefix: str, mesh: MeshTable, data: xarray.Dataset) -> Any:
+def read_passes(prefix: str, mesh: MeshTable | None, data: xarray.Dataset) -> Any:
     """Passes of an iteration of a data set, if it has any."""
     kind, dimension, _ = _PASSES[prefix]
     if dimension not in data.sizes:
         return None
     # An earlier version stored no axes.
-    axes = {"iteration": np.arange(1.0, data.sizes[dimension] + 1.0), "phase": mesh.phase}
+    axes = {"iteration": np.arange(1.0, data.sizes[dimension] + 1.0)}
+    axes |= {"phase": mesh.phase} if mesh is not None else {}
     keys = {name: f"{prefix}_{name}" for name in labels_of(kind)}
     values = {n: data[key].values if key in data else axes.get(n) for n, key in keys.items()}
     facts = {name: data.attrs[key] for name, key in keys.items() if key in data.attrs}

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import replace
 from functools import partial
 from typing import TYPE_CHECKING, Any
@@ -134,13 +134,18 @@ def meshes_of(points: Sequence[MeshInputs]) -> list[Callable[[], MeshTable]]:
     assert first.cylindrical is not None
     operation = [(point.speed, point.torque) for point in points]
     tables = mesh_tables(first.cylindrical, first.settings, operation, force_law=law)
-    return [partial(_repeat_warnings, *entry) for entry in tables]
+    return [partial(_repeated, *entry) for entry in tables]
 
 
-def _repeat_warnings(table: MeshTable, model_warnings: Sequence[ModelWarning]) -> MeshTable:
+def _repeated(table: MeshTable, model_warnings: Iterable[ModelWarning]) -> MeshTable:
+    repeat(model_warnings)
+    return table
+
+
+def repeat(model_warnings: Iterable[ModelWarning]) -> None:
+    """Issue collected warnings again."""
     for warning in model_warnings:
         warn(warning.code, warning.message, affected=warning.affected)
-    return table
 
 
 def hypoid_friction_of(inputs: MeshInputs, *, loading: Array | None = None) -> HypoidFriction:
