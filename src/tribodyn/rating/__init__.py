@@ -1,4 +1,4 @@
-"""Load capacity of gears by ISO 6336.
+"""Load capacity of gears by ISO 6336: pitting, bending, scuffing, micropitting.
 
 | module | content |
 | --- | --- |
@@ -14,6 +14,7 @@
 | `influence` | K_v, K_Hbeta, K_Halpha: ISO 6336-1 |
 | `pitting` | contact stress and its limit: ISO 6336-2 |
 | `root_section`, `bending`, `root_strength` | root stress and its limit: ISO 6336-3 |
+| `surface` | scuffing and micropitting: ISO/TS 6336-20, -21, -22 |
 | `life` | Z_NT, Y_NT and cycles to failure |
 """
 

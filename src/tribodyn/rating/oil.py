@@ -43,6 +43,8 @@ class GearOil:
         Failure load stage of the FZG micropitting test C-GF/8.3, 5 to 10.
     micropitting_test_temperature : float
         Oil temperature of that test [K].
+    micropitting_test_lubrication : str
+        Lubrication of that test, ``spray``, ``dip`` or ``submerged``.
 
     Raises
     ------
@@ -65,6 +67,7 @@ class GearOil:
     scuffing_load_stage: int | None = None
     micropitting_load_stage: int | None = None
     micropitting_test_temperature: float = 363.15
+    micropitting_test_lubrication: str = "spray"
 
     def __post_init__(self) -> None:
         require_between(
@@ -72,7 +75,8 @@ class GearOil:
         )
         require_between("temperature", self.temperature, 233.15, 473.15, "K")
         require_one_of("base_oil", self.base_oil, LUBRICANT_FACTORS)
-        require_one_of("lubrication", self.lubrication, LUBRICATION_FACTORS)
+        for name in ("lubrication", "micropitting_test_lubrication"):
+            require_one_of(name, getattr(self, name), LUBRICATION_FACTORS)
         if self.density_at_15 is not None:
             require_positive("density_at_15", self.density_at_15, "kg/m^3")
         for name, low, high in (("scuffing_load_stage", 1, 14), ("micropitting_load_stage", 5, 10)):
@@ -88,7 +92,7 @@ class GearOil:
             )
 
     def kinematic_viscosity(self, temperature: float) -> float:
-        """Kinematic viscosity by Walther between 40 and 100 degC.
+        """Kinematic viscosity on the line of Walther through 40 and 100 degC.
 
         Parameters
         ----------
@@ -102,7 +106,8 @@ class GearOil:
         at_40, at_100 = self.kinematic_viscosity_at_40, self.kinematic_viscosity_at_100
         if at_100 is None:
             at_100 = viscosity_at_100_degc(at_40, 95.0)
-        return float(walther_viscosity(temperature, ((313.15, at_40), (373.15, at_100))))
+        points = (313.15, at_40), (373.15, at_100)
+        return float(walther_viscosity(temperature, points, margin=1e4))
 
     def density(self, temperature: float) -> float:
         """Density, falling by 0.7 kg/m3 per kelvin.

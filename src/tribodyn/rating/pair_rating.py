@@ -21,6 +21,10 @@ from tribodyn.rating.oil import GearOil
 from tribodyn.rating.pitting import record_contact_stress, record_film_factors, record_pitting
 from tribodyn.rating.rated_gear import RatedGear
 from tribodyn.rating.root_strength import record_bending
+from tribodyn.rating.surface.micropitting_test import record_micropitting
+from tribodyn.rating.surface.path_load import ScuffingLoad
+from tribodyn.rating.surface.scuffing_flash import record_scuffing_flash
+from tribodyn.rating.surface.scuffing_integral import record_scuffing_integral
 
 #: Names of both gears.
 GEARS = ("pinion", "wheel")
@@ -74,6 +78,8 @@ class PairRating:
         Factors of the mesh, by the names of the standard.
     conditions : RatingConditions
         Load, life and edition.
+    scuffing_safety_flash, scuffing_safety_integral, micropitting_safety : float, optional
+        S_B, S_intS and S_lambda, pure numbers; None where the oil has no load stage of the test.
     overridden : tuple of str
         Factors that the caller gave.
     warnings : tuple of ModelWarning
@@ -84,6 +90,9 @@ class PairRating:
     wheel: GearRating
     factors: Mapping[str, Factor]
     conditions: RatingConditions
+    scuffing_safety_flash: float | None
+    scuffing_safety_integral: float | None
+    micropitting_safety: float | None
     overridden: tuple[str, ...]
     warnings: tuple[ModelWarning, ...]
 
@@ -111,6 +120,9 @@ class PairRating:
         """
         return {
             "edition": self.conditions.edition,
+            "scuffing_safety_flash": self.scuffing_safety_flash,
+            "scuffing_safety_integral": self.scuffing_safety_integral,
+            "micropitting_safety": self.micropitting_safety,
             **{name: rating.to_dict() for name, rating in self.gears.items()},
             "factors": {name: factor.to_dict() for name, factor in self.factors.items()},
             "overridden": list(self.overridden),
@@ -125,10 +137,16 @@ def load_cycles(gear: RatedGear, speed: float, life: float | None) -> float | No
     return speed / (2.0 * math.pi) * life * gear.meshes_per_turn
 
 
-def _gear_ratings(
-    mesh: MeshLoad, oil: GearOil, replacements: Mapping[str, Mapping[str, float]]
-) -> dict[str, GearRating]:
-    """Ratings of both gears; the factors of the mesh are recorded on the way."""
+def _surface_safeties(
+    mesh: MeshLoad, oil: GearOil
+) -> tuple[float | None, float | None, float | None]:
+    """Safeties against scuffing (flash, integral) and micropitting of a mesh."""
+    load = ScuffingLoad(mesh, oil)
+    return record_scuffing_flash(load), record_scuffing_integral(load), record_micropitting(load)
+
+
+def _record_mesh(mesh: MeshLoad, oil: GearOil) -> None:
+    """Factors of a mesh that both gears need."""
     _ = mesh.tangential_force, mesh.pitch_line_speed, mesh.line_load
     record_dynamic_factor(mesh)
     record_face_load_factors(mesh)
@@ -136,6 +154,12 @@ def _gear_ratings(
     record_transverse_load_factors(mesh)
     record_film_factors(mesh, oil)
     record_helix_factor(mesh)
+
+
+def _gear_ratings(
+    mesh: MeshLoad, oil: GearOil, replacements: Mapping[str, Mapping[str, float]]
+) -> dict[str, GearRating]:
+    """Ratings of both gears."""
     ratings = {}
     speeds = mesh.speed, mesh.speed / abs(mesh.ratio)
     for index, name in enumerate(GEARS):
@@ -153,6 +177,8 @@ def rate_mesh(mesh: MeshLoad, oil: GearOil, factors: Mapping[str, float]) -> Pai
     split = split_replacements(factors, ("mesh", *GEARS))
     mesh.factors.replacements.update(split["mesh"])
     with collected() as warnings:
+        _record_mesh(mesh, oil)
+        surface = _surface_safeties(mesh, oil)
         ratings = _gear_ratings(mesh, oil, split)
     for warning in warnings:
         warn(warning.code, warning.message, stacklevel=4)
@@ -162,6 +188,7 @@ def rate_mesh(mesh: MeshLoad, oil: GearOil, factors: Mapping[str, float]) -> Pai
         ratings["wheel"],
         MappingProxyType(mesh.factors),
         mesh.conditions,
+        *surface,
         tuple(factors),
         tuple(warnings),
     )
@@ -178,7 +205,7 @@ def rate_pair(
     factors: Mapping[str, float] | None = None,
     **conditions: Any,
 ) -> PairRating:
-    """Rate a cylindrical gear pair, spur, helical or internal, by ISO 6336-1, -2, -3 and -5.
+    """Rate a cylindrical gear pair, spur, helical or internal: ISO 6336-1, -2, -3, -5, -20 to -22.
 
     Parameters
     ----------
@@ -189,7 +216,8 @@ def rate_pair(
     speed : float [rad/s]
         Of the pinion.
     oil : GearOil
-        Its viscosity at 40 degC is that of the lubricant factors.
+        Its viscosity at 40 degC is that of the lubricant factors; scuffing and micropitting need
+        the load stages of its FZG tests.
     pinion, wheel : RatedGear, optional
         Material, accuracy, roughness and load cycles; Eh MQ of grade 6 by default.
     factors : mapping of str to float, optional
@@ -217,7 +245,8 @@ def rate_pair(
     -----
     Computed factors may replace those of the standard: K_v from the motion, K_Hbeta and K_Halpha
     from a load distribution, K_gamma from the load sharing. Bevel and hypoid pairs are not covered.
-    Sources: ISO 6336-1, -2, -3 (2019, or 2006 with ``edition=2006``), ISO 6336-5:2016.
+    Sources: ISO 6336-1, -2, -3 (2019, or 2006 with ``edition=2006``), ISO 6336-5:2016, scuffing
+    ISO/TS 6336-20 and -21, micropitting ISO/TS 6336-22 method B.
 
     Examples
     --------

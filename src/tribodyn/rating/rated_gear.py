@@ -73,6 +73,14 @@ class RatedGear:
         Number of load cycles N, pure number; by default from the required life.
     meshes_per_turn : int
         Load cycles of a flank per turn: meshes of the gear that load the same flank.
+    structure_factor : float, optional
+        X_W of scuffing: 1 for normal steel (default), 1.5 nitrided (default of NT, NV), 1.25
+        phosphated, 1.15 and 0.85 for little and much austenite, 0.45 austenitic.
+    micropitting_factor : float, optional
+        W_W of micropitting: 1 carburized, 0.95 with more than 25 % austenite, 1.5 nitrided,
+        0.65 induction-hardened, 0.5 through-hardened, by default by the type of material.
+    running_in : float
+        Degree of running-in of the flank, pure number from 0 (new) to 1.
     stress_ratio : float
         Least over greatest root stress R, pure number: 0 for pulsating load, -1.2 for an idler.
 
@@ -99,6 +107,9 @@ class RatedGear:
     cutter: ShaperCutter | None = None
     load_cycles: float | None = None
     meshes_per_turn: int = 1
+    structure_factor: float | None = None
+    micropitting_factor: float | None = None
+    running_in: float = 1.0
     stress_ratio: float = 0.0
 
     def __post_init__(self) -> None:
@@ -111,6 +122,10 @@ class RatedGear:
         if self.load_cycles is not None:
             require_positive("load_cycles", self.load_cycles)
         require_between("meshes_per_turn", self.meshes_per_turn, 1, 100)
+        require_between("running_in", self.running_in, 0.0, 1.0)
+        for name in ("structure_factor", "micropitting_factor"):
+            if getattr(self, name) is not None:
+                require_between(name, getattr(self, name), 0.1, 3.0)
         require_between("stress_ratio", self.stress_ratio, -2.0, 1.0 - 1e-9)
 
     @property

@@ -1,0 +1,158 @@
+"""Micropitting by the specific film thickness: ISO/TS 6336-22, method B.
+
+At A, AB, B, C, D, DE and E, ``S_lambda = lambda_min/lambda_GFP``, ``lambda = h/Ra``,
+``h = 1600 rho_n G_M^0.6 U^0.7 W^-0.13 S_GF^0.22`` in um and mm with ``G_M = 1e6 alpha_M E_r``,
+``U = eta_M v_S/(2000 E_r rho_n)``, ``W = 2 pi p_dyn^2/E_r^2``,
+``S_GF = alpha_B eta_B/(alpha_M eta_M)`` (B at the contact temperature, M at the bulk temperature),
+``p_dyn = sqrt(E_r/(2 pi) F_t X_Y/(b rho_n cos(alpha_t) cos(beta_b)) K)``, the flash temperature of
+Blok, and ``theta_M = theta_oil + 7400 (P mu_m H_v/(a b))^0.72 X_S/(1.2 X_Ca)`` (P in kW, mm).
+"""
+
+from __future__ import annotations
+
+import math
+from typing import Final, NamedTuple
+
+import numpy as np
+
+from tribodyn.contact import path_of_contact
+from tribodyn.errors import warn
+from tribodyn.friction import iso_6336_22
+from tribodyn.rating.factor import check_range
+from tribodyn.rating.oil import GearOil
+from tribodyn.rating.surface.path_load import PART_22, ScuffingLoad, overlap_factor
+from tribodyn.types import Array
+
+#: sqrt(lambda rho c) of gear steel with 45 W/(m K), 7800 kg/m3 and 440 J/(kg K).
+THERMAL_COEFFICIENT: Final = math.sqrt(45.0 * 7800.0 * 440.0)
+#: alpha_38 = a eta_38^b [m^2/N, Pa s] by base oil.
+_PRESSURE_VISCOSITY: Final = {
+    "mineral": (2.657e-8, 0.1348), "pao": (1.466e-8, 0.0507), "polyglycol": (1.392e-8, 0.1572),
+    "water-soluble polyglycol": (1.392e-8, 0.1572),
+}  # fmt: skip
+
+
+#: Temperature [K] above which the pressure-viscosity coefficient has no meaning.
+_HOTTEST: Final = 673.15
+
+
+class FilmPoints(NamedTuple):
+    """Film at points of the path of contact."""
+
+    position: Array  #: G
+    pressure: Array  #: p_dyn [Pa]
+    flash_temperature: Array  #: [K]
+    film_thickness: Array  #: h [m]
+    film_ratio: Array  #: lambda
+
+
+def pressure_viscosity(oil: GearOil, temperature: Array) -> Array:
+    """Pressure-viscosity coefficient [1/Pa] at temperatures [K]."""
+    scale, exponent = _PRESSURE_VISCOSITY.get(oil.base_oil, _PRESSURE_VISCOSITY["mineral"])
+    at_38 = scale * oil.dynamic_viscosity(311.15) ** exponent
+    return np.asarray(at_38 * (1.0 + 516.0 * (1.0 / temperature - 1.0 / 311.0)))
+
+
+def load_losses_factor(load: ScuffingLoad) -> float:
+    """H_v."""
+    pair = load.mesh.pair
+    first, second = load.addendum_ratios
+    total = pair.transverse_contact_ratio
+    shape = first**2 + second**2 + 1.0 - total if total < 2.0 else 0.5 * total
+    teeth = 1.0 / pair.pinion.teeth + 1.0 / abs(pair.wheel.teeth) * pair.wheel.sign
+    value = shape * teeth * math.pi / math.cos(pair.base_helix_angle)
+    return load.factors.record("H_v", value, f"{PART_22}, load losses factor")
+
+
+def _friction(load: ScuffingLoad) -> float:
+    """mu_m at the oil temperature."""
+    pair, oil = load.mesh.pair, load.oil
+    normal = load.line_load * load.helical_factor / math.cos(pair.transverse_pressure_angle)
+    speed = 2.0 * load.pitch_speed * math.sin(pair.operating_pressure_angle)
+    radius = load.pitch_radius / math.cos(pair.base_helix_angle)
+    viscosity = oil.dynamic_viscosity(oil.temperature)
+    value = iso_6336_22(normal, speed, radius, viscosity, load.roughness, oil.lubricant_factor)
+    return load.factors.record("mu_mGF", float(value), f"{PART_22}, mean friction")
+
+
+def _relief_factor(load: ScuffingLoad) -> tuple[float, str]:
+    """X_Ca of method B, with adequate relief and grade 6 or finer."""
+    relief = min(gear.modification.tip_relief for gear in load.mesh.gears)
+    if relief < 0.999 * load.effective_relief or (load.grade is not None and load.grade > 6):
+        return 1.0, "no adequate relief"
+    return overlap_factor(relief, relief, max(load.addendum_ratios)), "adequate relief"
+
+
+def bulk_temperature(load: ScuffingLoad, friction: float) -> float:
+    """theta_M [K]."""
+    mesh, oil = load.mesh, load.oil
+    power = 1e-3 * mesh.torque * mesh.speed
+    area = 1e6 * mesh.pair.center_distance * mesh.face_width
+    relief, branch = _relief_factor(load)
+    relief = load.factors.record("X_Ca_22", relief, f"{PART_22}, tip relief factor", branch=branch)
+    heat = power * friction * load_losses_factor(load) / area
+    rise = 7400.0 * heat**0.72 * oil.lubrication_factor / (1.2 * relief)
+    return load.factors.record("theta_MGF", oil.temperature + rise, PART_22, unit="K")
+
+
+def _oil_temperatures(contact: Array, bulk: float) -> tuple[Array, float]:
+    """Temperatures at which properties of the oil are taken, at most 400 degC [K]."""
+    hottest = float(contact.max()) - 273.15
+    check_range("theta_B", hottest, -20.0, 250.0, "the properties of an oil, in degC")
+    if hottest > 400.0:
+        warn("rating-range", f"theta_B = {hottest:.4g} degC: properties of the oil at 400 degC")
+    return np.minimum(contact, _HOTTEST), min(bulk, _HOTTEST)
+
+
+def film_points(load: ScuffingLoad, position: Array) -> FilmPoints:
+    """Film at positions G of the path of contact."""
+    mesh, pair, oil = load.mesh, load.mesh.pair, load.oil
+    friction = _friction(load)
+    bulk = bulk_temperature(load, friction)
+    motion = path_of_contact(pair).kinematics(load.points.path(position), mesh.speed)
+    radius, modulus = motion.equivalent_radius, load.modulus
+    angles = math.cos(pair.transverse_pressure_angle) * math.cos(pair.base_helix_angle)
+    share = load.points.share(position, load.grade)
+    pressure = np.sqrt(modulus / (2.0 * np.pi) * share * load.line_load / (radius * angles))
+    carried = np.sqrt(np.abs(motion.pinion_surface_speed))
+    carried = THERMAL_COEFFICIENT * (carried + np.sqrt(np.abs(motion.wheel_surface_speed)))
+    flash = 0.5 * math.sqrt(math.pi) * friction * pressure * np.abs(motion.sliding_speed) / carried
+    flash *= np.sqrt(8.0 * radius * pressure / modulus)
+    contact, bulk = _oil_temperatures(bulk + flash, bulk)
+    eta_m = oil.dynamic_viscosity(bulk)
+    alpha_m = pressure_viscosity(oil, np.asarray(bulk))
+    eta_b = np.array([oil.dynamic_viscosity(temperature) for temperature in contact])
+    sliding = pressure_viscosity(oil, contact) * eta_b / (alpha_m * eta_m)
+    speed = eta_m * motion.entrainment_speed / (modulus * radius)
+    loaded = 2.0 * np.pi * pressure**2 / modulus**2
+    film = 1.6 * radius * (alpha_m * modulus) ** 0.6 * speed**0.7 * loaded**-0.13 * sliding**0.22
+    return FilmPoints(position, pressure, flash, film, film / load.roughness)
+
+
+def material_factor(load: ScuffingLoad) -> float:
+    """W_W, mean of both gears, by type of material unless stated."""
+    values = []
+    for gear in load.mesh.rated:
+        kind = gear.material.kind
+        default = 1.0 if kind == "Eh" else 1.5 if kind.startswith("N") else 0.5
+        default = 0.65 if kind == "IF" else default
+        values.append(default if gear.micropitting_factor is None else gear.micropitting_factor)
+    return sum(values) / 2.0
+
+
+def least_film_ratio(load: ScuffingLoad) -> float:
+    """lambda_min of a mesh, with the film at each named point."""
+    names = load.points.named
+    within = load.points.ends
+    films = film_points(load, np.array(list(names.values())))
+    record = load.factors.record
+    for name, place, film, ratio in zip(
+        names, films.position, films.film_thickness, films.film_ratio, strict=True
+    ):
+        if within[0] <= place <= within[1]:
+            branch = f"G = {place:.4g}, h = {film * 1e6:.4g} um"
+            record(f"lambda_{name}", float(ratio), f"{PART_22}, film ratio", branch=branch)
+    inside = (films.position >= within[0]) & (films.position <= within[1])
+    least = int(np.argmin(np.where(inside, films.film_ratio, np.inf)))
+    branch = f"at {list(names)[least]}"
+    return record("lambda_min", float(films.film_ratio[least]), PART_22, branch=branch)
