@@ -10,12 +10,12 @@ from dash import dcc, html
 from tribodyn.app.session import RUNS, TabSession
 from tribodyn.app.studies import STUDIES, offered
 from tribodyn.errors import InputError, TribodynError, collected
-from tribodyn.report.figure_blocks import block_of_figure, topic_of
-from tribodyn.study.machine.case import MachineCase
+from tribodyn.report.figure_blocks import block_of_figure
+from tribodyn.study.studies.needs import PAIRS, kind_of
 
 if TYPE_CHECKING:
     from tribodyn.app.jobs import Job
-    from tribodyn.study.case.case import Case
+    from tribodyn.study.machine.case import MachineCase
 
 #: Derived values of the geometry that are displayed as cards.
 _FIRST = (
@@ -133,8 +133,8 @@ def pair(desk: TabSession) -> list[Any]:
     from tribodyn.study.pipeline.cautions import case_cautions
     from tribodyn.study.pipeline.preview import operating_figures
 
-    case = desk.case
-    if isinstance(case, MachineCase):
+    case: Any = desk.case
+    if kind_of(case) not in PAIRS:
         return _parts(desk, case)
     with collected():
         figures = {n: float(v) for n, v in (geometry(case) | operating_figures(case)).items()}
@@ -193,7 +193,7 @@ def _outdated(desk: TabSession) -> list[Any]:
     return notice("Drawing and figures are out of date", [line])
 
 
-def _drawing(case: Case) -> list[Any]:
+def _drawing(case: Any) -> list[Any]:
     from tribodyn import plot
 
     try:
@@ -250,13 +250,17 @@ def _overview(content: dict[str, Any]) -> list[Any]:
 
 def _topics(content: dict[str, Any]) -> dict[str, list[Any]]:
     """Overview, figures by topic, and tables of a result."""
-    drawn_blocks = [block for block in content.get("blocks", []) if not block["missing"]]
-    first = [block for block in drawn_blocks if block["name"] == "mesh_force"]
-    topics: dict[str, list[Any]] = {"Overview": first or drawn_blocks}
-    for block in content.get("blocks", []) if first else []:
-        topics.setdefault(topic_of(block["name"]), []).append(block)
-    for heading, head, rows in content.get("tables", []):
-        topics[heading] = [{"heading": heading, "head": head, "rows": rows}]
+    blocks = content.get("blocks", [])
+    drawn = [block for block in blocks if not block["missing"]]
+    topics: dict[str, list[Any]] = {"Overview": drawn}
+    if "cards" in content:  # of a run: the mesh force, or the picture of the machine
+        forces = [block for block in drawn if block["name"] == "mesh_force"]
+        topics["Overview"] = forces or drawn[:1]
+        for block in blocks:
+            topics.setdefault(block["topic"], []).append(block)
+    for topic, head, rows, *title in content.get("tables", []):
+        heading = (title or [""])[0] or topic
+        topics.setdefault(topic, []).append({"heading": heading, "head": head, "rows": rows})
     return topics
 
 

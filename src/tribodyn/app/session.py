@@ -24,13 +24,14 @@ from tribodyn.cases.catalogue import cases
 from tribodyn.cases.load import load_case
 from tribodyn.errors import InputError, TribodynError, collected
 from tribodyn.model import Option
-from tribodyn.study.machine.case import MachineCase
 from tribodyn.study.result_comparison import differing
+from tribodyn.study.studies.needs import PAIRS, kind_of
 from tribodyn.units import UnitProblemError, format_quantity, parse, split
 from tribodyn.validated_files import plain_number
 
 if TYPE_CHECKING:
     from tribodyn.study.case.case import Case
+    from tribodyn.study.machine.case import MachineCase
 
     AnyCase = Case | MachineCase
 
@@ -82,9 +83,8 @@ class TabSession:
     @property
     def form(self) -> CaseForm | MachineForm:
         """The form of the case."""
-        if isinstance(self.case, MachineCase):
-            return MachineForm(self.case, self.typed, self.units)
-        return CaseForm(self.case, self.typed, self.units)
+        kind = CaseForm if kind_of(self.case) in PAIRS else MachineForm
+        return kind(self.case, self.typed, self.units)  # type: ignore[arg-type]
 
     @property
     def job_in_view(self) -> Job | None:

@@ -168,7 +168,7 @@ def _harris(case: Case, values: Values, progress: Progress, target: Path) -> Sho
 
 
 def _modes(case: Case, values: Values, progress: Progress, target: Path) -> Shown:
-    from tribodyn.report.machine_report import any_modes_report_data
+    from tribodyn.report.modes_report_data import any_modes_report_data
 
     ends = _ends("speeds", values["speeds"]) if values["speeds"] else None
     return _of(any_modes_report_data(case, ends, progress), "modes", case, target)

@@ -112,44 +112,15 @@ def _case(order: Mapping[str, Any]) -> Case | MachineCase:
 
 def _run(order: Mapping[str, Any], folder: Path, tell: Tell) -> None:
     """Compute a case, send its contents, and write the directory of ``tribodyn run``."""
-    from tribodyn.report.figure_blocks import figure_blocks
-    from tribodyn.report.numbers import HEAD, headlines, modes_table, table
-    from tribodyn.study.machine.case import MachineCase
-    from tribodyn.study.pipeline.run import computed
-
-    case = _case(order)
-    if isinstance(case, MachineCase):
-        _run_parts(case, folder, tell)
-        return
-    result = computed(case, Teller(tell))
-    tell(task="Figures", done=0, total=None)
-    summary = result.summary()
-    modes = modes_table(result) if "natural_frequency_1" in summary else []
-    tables = [["Critical speeds", list(HEAD), modes]] if modes else []
-    rows = [[n.topic, n.label, f"{n.value} {n.unit}".strip(), n.meaning] for n in table(summary)]
-    tables.append(["All numbers", ["Topic", "Quantity", "Value", "Meaning"], rows])
-    content = {
-        "cards": [[card.label, card.value, card.unit] for card in headlines(summary)],
-        "sentences": [],
-        "warnings": [str(warning) for warning in result.warnings],
-        "tables": tables,
-        "blocks": _written(figure_blocks(result), folder),
-    }
-    tell(state="done", content=content, task="")
-    result.save(folder / "result")
-    tell(saved=True)
-
-
-def _run_parts(case: MachineCase, folder: Path, tell: Tell) -> None:
-    """Compute a machine or stage, send its contents, and write the directory of the command."""
     from tribodyn.cases.load import run
     from tribodyn.errors import collected
-    from tribodyn.report.machine_report import machine_content
+    from tribodyn.report.html import result_content
 
-    with collected():  # the result has them
-        result = run(case, Teller(tell))  # type: ignore[arg-type]
+    with collected(), catch_warnings():  # the result has them
+        simplefilter("ignore")
+        result = run(_case(order), Teller(tell))  # type: ignore[arg-type]
     tell(task="Figures", done=0, total=None)
-    content = machine_content(result)
+    content = result_content(result)
     tell(state="done", content={**content, "blocks": _written(content["blocks"], folder)}, task="")
     result.save(folder / "result")
     tell(saved=True)

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from tribodyn.arguments import guard
 from tribodyn.report.html import render_report, write_report
-from tribodyn.report.machine_report import render_machine_report, write_machine_report
 from tribodyn.report.signal_report import write_signal_report
 from tribodyn.report.study import write_bifurcation_report, write_study_report, write_sweep_report
 
@@ -21,7 +20,8 @@ __all__ = [
     "write_sweep_report",
 ]
 
-#: Names of an earlier version: a planetary stage is a machine.
-render_planetary_report, write_planetary_report = render_machine_report, write_machine_report
+#: Names of an earlier version: all kinds of cases have one report.
+render_machine_report = render_planetary_report = render_report
+write_machine_report = write_planetary_report = write_report
 
 guard(__name__)

@@ -2,14 +2,19 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, replace
-from typing import Any
+from typing import Any, NamedTuple
 
+import numpy as np
+
+from tribodyn import plot
 from tribodyn.drawing import Sketch
 from tribodyn.errors import InputError
+from tribodyn.gear import Misalignment
 from tribodyn.plot import FIGURES, Drawing
 from tribodyn.plot.theme.style import TOP
+from tribodyn.study.studies.needs import PAIRS, kind_of
 
 #: Figures of the report in order, by topic.
 TOPICS = {
@@ -54,6 +59,17 @@ _OTHER_TOPICS = {
     "coupling": "Friction and film",
     "face_maps": "Stiffness",
     "turning_motion": "Motion",
+    "machine": "Machine",
+    "machine_power": "Machine",
+    "machine_orders": "Motion",
+    "machine_forces": "Motion",
+    "machine_modes": "Natural modes",
+    "machine_campbell": "Natural modes",
+    "planetary_stage": "Gears",
+    "planetary_forces": "Motion",
+    "ring_sensor": "Motion",
+    "planetary_modes": "Natural modes",
+    "hypoid_misalignment": "Stiffness",
 }
 
 #: Margin above the panels for marks and buttons [px].
@@ -77,6 +93,7 @@ class Block:
     title: str = ""  #: title of the figure
     height: int = 0  #: height of the figure [px]
     json: str = ""  #: data and layout of the figure, safe within a script element
+    topic: str = "Figures"  #: of the figures that belong together
 
 
 def script_json(text: str) -> str:
@@ -94,17 +111,30 @@ def block_of_figure(name: str, heading: str, plotted: Any, caption: str) -> Bloc
     return Block(name, heading, caption, title=title, height=round(layout["height"]), json=text)
 
 
-def _block(figure: Drawing, result: Any) -> Block:
-    try:
-        reason = figure.missing(result)
-        sketch = None if reason else figure.sketch(result)
-    except InputError as error:
-        # Mesh tables of other programs may have no gears.
-        problem = error.problems[0]
-        reason, sketch = f"{problem.what}: {problem.why}", None
-    if sketch is None:
-        return Block(figure.name, figure.heading, missing=reason)
-    return block_of_figure(figure.name, figure.heading, sketch, figure.caption_of(result))
+class _Place(NamedTuple):
+    """A figure of the report, what it draws, and its name and heading where they differ."""
+
+    figure: Drawing
+    subject: Any
+    name: str = ""
+    heading: str = ""
+
+    def block(self) -> Block:
+        """Draw the figure, or give the reason why it is missing."""
+        figure, subject = self.figure, self.subject
+        try:
+            reason = figure.missing(subject)
+            sketch = None if reason else figure.sketch(subject)
+        except InputError as error:
+            # Mesh tables of other programs may have no gears.
+            problem = error.problems[0]
+            reason, sketch = f"{problem.what}: {problem.why}", None
+        name, heading = self.name or figure.name, self.heading or figure.heading
+        if sketch is None:
+            block = Block(name, heading, missing=reason)
+        else:
+            block = block_of_figure(name, heading, sketch, figure.caption_of(subject))
+        return replace(block, topic=topic_of(figure.name))
 
 
 def _joined(blocks: Iterable[Block]) -> list[Block]:
@@ -129,11 +159,64 @@ def sections_of(case: Any) -> tuple[str, ...]:
 
 
 def figure_blocks(result: Any) -> list[Block]:
-    """Draw every figure of the report and merge missing figures by reason."""
+    """Draw every figure of the report of any kind of case.
+
+    Figures of a pair that are missing are merged by reason; parts have those that they need.
+    """
+    if kind_of(result.case) in PAIRS:
+        return _joined(place.block() for place in _of_pair(result))
+    return [block for place in _of_parts(result) if not (block := place.block()).missing]
+
+
+def _of_pair(result: Any) -> Iterator[_Place]:
     names = [*sections_of(result.case), *(["coupling"] if result.coupling is not None else [])]
     if result.mesh.face_position is not None:
         names.insert(names.index("load_sharing") + 1, "face_maps")
     if result.case.faults is not None:
         names.insert(names.index("spectrum") + 1, "turning_motion")
-    figures = (FIGURES[name] for name in names)
-    return _joined(_block(figure, result) for figure in figures if isinstance(figure, Drawing))
+    for name in names:
+        if isinstance(figure := FIGURES[name], Drawing):
+            yield _Place(figure, result)
+
+
+def _of_parts(result: Any) -> Iterator[_Place]:
+    """Figures of the whole, of each stage, of each mesh, and of the motion of all parts."""
+    for figure in (plot.machine, plot.machine_power):
+        yield _Place(figure, result)
+    yield from _of_stages(result)
+    yield from _of_meshes(result)
+    for figure in (plot.machine_orders, plot.machine_forces):
+        yield _Place(figure, result)
+    for figure in (plot.machine_modes, plot.machine_campbell):
+        yield _Place(figure, result)
+
+
+def _of_stages(result: Any) -> Iterator[_Place]:
+    """Figures of each planetary stage."""
+    for number, name in enumerate(result.machine.planets):
+        stage, end = result.operation.stage(name), f"-{number + 1}" if number else ""
+        # As Inalpolat and Kahraman: the sensor feels the planet that passes it.
+        sensor = stage.ring_sensor(window=2.0 * np.pi / stage.stage.count)
+        for figure, part, place in (
+            (plot.planetary_stage, result, "stage"),
+            (plot.planetary_forces, stage.motion, "forces"),
+            (plot.ring_sensor, sensor, "ring-sensor"),
+            (plot.planetary_modes, stage.modes, "mode-shapes"),
+        ):
+            if not (number and part is result):
+                yield _Place(figure, part, f"{place}{end}", f"{name}: {figure.heading}")
+
+
+def _of_meshes(result: Any) -> Iterator[_Place]:
+    """Maps of the meshes, those of planets with equal teeth once, and how shafts move them."""
+    load, drawn = result.operation, set[int]()
+    for number, (mesh, table) in enumerate(load.tables.items(), 1):
+        if id(table) not in drawn:
+            heading = f"Mesh {mesh}: maps over the face"
+            yield _Place(plot.face_maps, table, f"face-maps-{number}", heading)
+        drawn.add(id(table))
+    for number, (mesh, errors) in enumerate(load.misalignment.items(), 1):
+        if isinstance(errors, Misalignment):
+            study, heading = result.mounting_study(mesh), "contact with deflected shafts"
+            place = f"mounting-{number}", f"Mesh {mesh}: {heading}"
+            yield _Place(plot.hypoid_misalignment, study, *place)

@@ -9,18 +9,21 @@ from typing import TYPE_CHECKING, Any
 
 from tribodyn.drawing import report_of
 from tribodyn.report.figure_blocks import Block, figure_blocks
-from tribodyn.report.numbers import HEAD, compared_friction, headlines, modes_table, table
-from tribodyn.report.provenance import operating_point, provenance, version
+from tribodyn.report.numbers import (
+    MOST_MODES,
+    compared_friction,
+    headlines,
+    modes_of,
+    number_tables,
+)
+from tribodyn.report.provenance import case_text, operating_point, provenance, version
 from tribodyn.study.pipeline.save import write_file
 
 if TYPE_CHECKING:
     from tribodyn.study import Result
+    from tribodyn.study.machine.result import MachineResult
 
 _FOLDER = Path(__file__).parent
-_MODES = (
-    "Linearized about the static load with the mean mesh stiffness. For each mode: the moving "
-    "bodies, the strained springs, and the speed of the {0} at which a mesh harmonic excites it."
-)
 
 
 @lru_cache(maxsize=4)
@@ -61,12 +64,12 @@ def embedded_figures(blocks: list[Block]) -> Any:
     return Markup("{\n" + ",\n".join(entries) + "\n}")
 
 
-def render_report(result: Result) -> str:
+def render_report(result: Result | MachineResult) -> str:
     """Write a result as one self-contained HTML page.
 
     Parameters
     ----------
-    result : Result
+    result : Result or MachineResult
         What :func:`tribodyn.run` returns.
 
     Returns
@@ -74,24 +77,23 @@ def render_report(result: Result) -> str:
     str
         HTML with embedded scripts, styles and data. User texts are escaped.
     """
-    summary, blocks = result.summary(), figure_blocks(result)
+    case, summary, blocks = result.case, result.summary(), figure_blocks(result)
     return str(
         template("template.html.j2").render(
-            title=result.case.title,
+            title=case.title,
             version=version(),
-            operating_point=operating_point(result.case),
+            operating_point=operating_point(case),
             cards=headlines(summary),
-            rows=table(summary),
-            modes=modes_table(result) if "natural_frequency_1" in summary else [],
-            modes_head=HEAD,
-            modes_text=_MODES.format(result.case.operation.speed_of),
+            tables=number_tables(summary),
+            modes=modes_of(result),
+            most_modes=MOST_MODES,
             compared=compared_friction(summary),
             blocks=blocks,
             warnings=[str(warning) for warning in result.warnings],
             assumptions=result.assumptions,
             citations=_lines(result.cite()),
             provenance=provenance(result),
-            case_text=result.case.to_toml(),
+            case_text=case_text(case),
             figures=embedded_figures(blocks),
             style=text_of("report.css"),
             script=text_of("report.js"),
@@ -100,20 +102,36 @@ def render_report(result: Result) -> str:
     )
 
 
+def result_content(result: Result | MachineResult) -> dict[str, Any]:
+    """Cards, tables, warnings and figures of a result of any kind for the page."""
+    summary, modes = result.summary(), modes_of(result)
+    tables = [["Natural modes", list(modes.head), modes.rows]] if modes.rows else []
+    for each in number_tables(summary):
+        tables.append(["All numbers", *each.cells(), each.title])
+    return {
+        "cards": [[card.label, card.value, card.unit] for card in headlines(summary)],
+        "sentences": [],
+        "warnings": [str(warning) for warning in result.warnings],
+        "tables": tables,
+        "blocks": figure_blocks(result),
+    }
+
+
 def _lines(citations: Any) -> list[str]:
     """Citations as separate lines, from one text or several."""
     return citations.splitlines() if isinstance(citations, str) else [str(c) for c in citations]
 
 
 @report_of("Result")
-def write_report(result: Result, path: str | os.PathLike[str]) -> Path:
+@report_of("MachineResult")
+def write_report(result: Result | MachineResult, path: str | os.PathLike[str]) -> Path:
     """Write the report of a result to a file.
 
     The file is written atomically: first to a temporary file, which is then renamed.
 
     Parameters
     ----------
-    result : Result
+    result : Result or MachineResult
         What :func:`tribodyn.run` returns.
     path : path
         File to write; an existing one is replaced.

@@ -3,16 +3,19 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
-from typing import Any
+from dataclasses import dataclass, replace
+from typing import Any, NamedTuple
 
 from tribodyn.plot.theme.labels import display_unit, displayed, engineering, readable, significant
+from tribodyn.study.machine.modes import MODES_HEAD, axial_notes
+from tribodyn.study.machine.modes import mode_rows as part_rows
 from tribodyn.study.pipeline.summary_figures import by_topic, figure_of
-from tribodyn.study.pipeline.summary_labels import in_words
+from tribodyn.study.pipeline.summary_labels import in_words, split_key
 from tribodyn.study.studies.modes import ORDERS, Mode, mode_rows
+from tribodyn.study.studies.needs import PAIRS, kind_of
 from tribodyn.units import convert
 
-#: Summary figures on the cards at the top, in order of importance.
+#: Summary figures on the cards at the top, in order of importance; of parts those of each.
 HEADLINES = (
     "pitch_line_velocity",
     "line_load",
@@ -32,6 +35,18 @@ HEADLINES = (
     "oil_viscosity",
     "minimum_film_ratio",
 )
+_HEADLINES_OF_PARTS = (
+    "input_power",
+    "efficiency",
+    "load_factor",
+    "mesh_frequency",
+    "dynamic_factor_peak",
+    "transmission_error_peak_to_peak",
+    "static_transmission_error_peak_to_peak",
+)
+_MOST_CARDS = 12
+#: Prefixes of units, and the part of the largest value of a row that is rounding.
+_PREFIXES, _ROUNDING = {"": 1.0, "k": 1e3, "M": 1e6, "G": 1e9}, 1e-9
 
 
 @dataclass(frozen=True)
@@ -63,14 +78,91 @@ def describe(name: str, value: float, digits: int = 5) -> Number:
     )
 
 
-def table(summary: Mapping[str, float]) -> list[Number]:
-    """Format all figures of a summary, grouped by topic."""
-    return [describe(n, summary[n]) for names in by_topic(summary).values() for n in names]
-
-
 def headlines(summary: Mapping[str, float]) -> list[Number]:
-    """Format the headline figures that a summary has."""
-    return [describe(name, summary[name], digits=4) for name in HEADLINES if name in summary]
+    """Format the headline figures that a summary has; of equal planets one."""
+    if all("." not in name for name in summary):
+        return [describe(name, summary[name], digits=4) for name in HEADLINES if name in summary]
+    keys: dict[tuple[str, object], str] = {}
+    for figure in _HEADLINES_OF_PARTS:
+        for key in summary:
+            load, kind, _, name = split_key(key)
+            if name == figure and not load and kind in ("machine", "meshes", "planets"):
+                # The meshes of all planets have one frequency.
+                shared = figure == "mesh_frequency"
+                keys.setdefault((figure, summary[key] if shared else key), key)
+    cards = [describe(key, summary[key], digits=4) for key in list(keys.values())[:_MOST_CARDS]]
+    return [
+        replace(card, label=in_words(split_key(card.name)[3]))
+        if card.name.startswith("machine.")
+        else card
+        for card in cards
+    ]
+
+
+@dataclass(frozen=True)
+class NumberRow:
+    """A summary figure of all parts of one kind."""
+
+    figure: Number  #: of the first part
+    values: tuple[str, ...]  #: of each part, in the unit of the first
+
+
+@dataclass(frozen=True)
+class NumberTable:
+    """Summary figures of one kind of part; of a pair all figures, without parts."""
+
+    title: str
+    parts: tuple[str, ...]
+    rows: tuple[NumberRow, ...]
+    load: str = ""  #: load case, beside the operating point
+
+    def cells(self) -> tuple[list[str], list[list[str]]]:
+        """Head and rows as text, with the unit beside the values."""
+        if not self.parts:
+            head = ["Topic", "Quantity", "Value", "Meaning"]
+            numbers = [row.figure for row in self.rows]
+            return head, [
+                [n.topic, n.label, f"{n.value} {n.unit}".strip(), n.meaning] for n in numbers
+            ]
+        rows = [[r.figure.label, *r.values, r.figure.unit, r.figure.meaning] for r in self.rows]
+        return ["Quantity", *self.parts, "Unit", "Meaning"], rows
+
+
+def number_tables(summary: Mapping[str, float]) -> list[NumberTable]:
+    """Format all figures of a summary: one table for each kind of part under each load."""
+    tables: dict[tuple[str, str], dict[str, dict[str, str]]] = {}
+    for key in (name for names in by_topic(summary).values() for name in names):
+        load, kind, part, figure = split_key(key)
+        tables.setdefault((kind, load), {}).setdefault(figure, {})[part or kind] = key
+    ordered = sorted(tables.items(), key=lambda each: each[0][1] != "")  # the operation first
+    return [_number_table(*place, rows, summary) for place, rows in ordered]
+
+
+def _number_table(
+    kind: str, load: str, figures: Mapping[str, Mapping[str, str]], summary: Mapping[str, float]
+) -> NumberTable:
+    title = f"{kind[:1].upper()}{kind[1:]}{f', load case {load}' if load else ''}"
+    parts = tuple(dict.fromkeys(part for keys in figures.values() for part in keys))
+    rows = []
+    for figure, keys in figures.items():
+        largest = max(keys.values(), key=lambda key: abs(summary[key]))
+        number = describe(largest, summary[largest])
+        values = {part: _like(number, float(summary[key])) for part, key in keys.items()}
+        label = in_words(figure) if title else number.label
+        cells = tuple(values.get(part, "–") for part in parts)
+        rows.append(NumberRow(replace(number, name=figure, label=label), cells))
+    return NumberTable(title, parts if title else (), tuple(rows), load)
+
+
+def _like(largest: Number, value: float) -> str:
+    """A figure in the unit of the largest of its row; 0 where it is rounding beside that."""
+    if abs(value) <= _ROUNDING * abs(float(largest.si)):
+        return "0"
+    figure = figure_of(largest.name)
+    prefix = largest.unit.removesuffix(readable(figure.display_unit))
+    value_in_unit = convert(value, figure.unit, figure.display_unit) / _PREFIXES[prefix]
+    text = significant(value_in_unit, 5)
+    return text.rstrip("0").rstrip(".") if "." in text and "e" not in text else text
 
 
 _ENDING = "_nominal_friction"
@@ -106,6 +198,8 @@ def _change(coupled: float, nominal: float) -> str:
     return f"{100.0 * (coupled - nominal) / abs(nominal):+.3f} %" if nominal else "–"
 
 
+#: Modes in the table of a report; the others are folded away.
+MOST_MODES = 10
 #: Head of the table of modes, in reports and in the terminal.
 HEAD = (
     "Mode",
@@ -135,3 +229,30 @@ def modes_table(result: Any) -> list[list[str]]:
     """Table rows of all elastic modes of a result."""
     rows = mode_rows(result.natural_modes, result.case, result.mesh.mesh_frequency)
     return [cells(row) for row in rows]
+
+
+_OF_PAIR = (
+    "Linearized about the static load with the mean mesh stiffness. For each mode: the moving "
+    "bodies, the strained springs, and the speed of the {0} at which a mesh harmonic excites it."
+)
+_OF_PARTS = (
+    "About the static load, at the speed of the case, with the mean stiffness of the meshes. For "
+    "each mode: which parts move, and where its energy is."
+)
+
+
+class ModesTable(NamedTuple):
+    """Natural modes of a result as a table, and how they were found."""
+
+    head: tuple[str, ...]
+    rows: list[list[str]]
+    text: str
+
+
+def modes_of(result: Any) -> ModesTable:
+    """Natural modes of a result of any kind; without rows where there are none."""
+    if kind_of(result.case) in PAIRS:
+        rows = modes_table(result) if "natural_frequency_1" in result.summary() else []
+        return ModesTable(HEAD, rows, _OF_PAIR.format(result.case.operation.speed_of))
+    text = " ".join([_OF_PARTS, *axial_notes(result.modes)])
+    return ModesTable(MODES_HEAD, part_rows(result.modes), text)

@@ -3,12 +3,15 @@
 from __future__ import annotations
 
 import platform
+from collections.abc import Sequence
 from datetime import UTC, datetime
 from importlib.metadata import version as installed
 from typing import TYPE_CHECKING, Any
 
 from tribodyn.plot.theme.labels import display_unit, displayed
-from tribodyn.study.machine.case import MachineCase
+from tribodyn.study.case.provenance import Assumption, assumptions
+from tribodyn.study.machine.housing_files import HOUSING
+from tribodyn.study.studies.needs import PAIRS, kind_of
 
 if TYPE_CHECKING:
     from tribodyn.study.planetary.machine_stages import CaseStage
@@ -30,7 +33,7 @@ def _with_unit(name: str, value: float) -> str:
 
 def operating_point(case: Any) -> list[tuple[str, str]]:
     """Speed, load, surfaces, oil and models of a case as formatted (name, value) pairs."""
-    if isinstance(case, MachineCase):
+    if kind_of(case) not in PAIRS:
         start, end = case.ends
         return [
             ("Speed", _with_unit("speed", case.operating_point.speed)),
@@ -69,6 +72,20 @@ def _of_stage(stage: CaseStage) -> list[tuple[str, str]]:
     ]
 
 
+def case_text(case: Any) -> str:
+    """The case file, with the files of a housing called as in a directory of results."""
+    named = case if kind_of(case) in PAIRS else case.with_files(HOUSING)
+    return str(named.to_toml())
+
+
+def assumptions_of(case: Any) -> Sequence[Assumption]:
+    """What a case of any kind assumes; nothing without a case."""
+    if case is None:
+        return ()
+    stated: Sequence[Assumption] = assumptions(case) if kind_of(case) in PAIRS else case.assumptions
+    return stated
+
+
 def provenance(result: Any) -> list[tuple[str, str]]:
     """Software versions and date of a report as (name, value) pairs."""
     from tribodyn.study.pipeline.stored_motion import describe_stored_cycles
@@ -79,7 +96,7 @@ def provenance(result: Any) -> list[tuple[str, str]]:
         ("Built on", f"Python {platform.python_version()}, {packages}"),
         *(
             [("Motion in response.nc", describe_stored_cycles(result.response))]
-            if result is not None
+            if hasattr(result, "response")
             else []
         ),
         ("Report written", f"{datetime.now(UTC):%Y-%m-%d %H:%M} UTC"),

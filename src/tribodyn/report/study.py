@@ -14,9 +14,13 @@ from tribodyn.aliases import with_old_names
 from tribodyn.drawing import report_of
 from tribodyn.report.figure_blocks import Block, block_of_figure
 from tribodyn.report.html import plotly_script, template, text_of
-from tribodyn.report.provenance import operating_point, provenance, version
-from tribodyn.study.case.provenance import Assumption, assumptions
-from tribodyn.study.machine.case import MachineCase
+from tribodyn.report.provenance import (
+    assumptions_of,
+    case_text,
+    operating_point,
+    provenance,
+    version,
+)
 from tribodyn.study.pipeline.save import write_file
 from tribodyn.study.pipeline.summary_figures import figure_of
 from tribodyn.study.pipeline.summary_labels import in_words
@@ -24,6 +28,7 @@ from tribodyn.study.pipeline.summary_labels import in_words
 if TYPE_CHECKING:
     from tribodyn.analysis import Bifurcation
     from tribodyn.study import Case, Sweep
+    from tribodyn.study.machine.case import MachineCase
 
 #: Most rows of the table; the data files contain all rows.
 _ROWS = 400
@@ -44,12 +49,6 @@ class _Page:
     rows: Sequence[Sequence[str]]
     more: str = ""  #: note on rows that the table leaves out
     heading: str = ""  #: title of the report, where it is not that of the case
-
-
-def _assumptions(case: Case | MachineCase | None) -> Sequence[Assumption]:
-    if case is None:
-        return ()
-    return case.assumptions if isinstance(case, MachineCase) else assumptions(case)
 
 
 @report_of("Sweep")
@@ -323,9 +322,9 @@ def _write(path: Path, case: Any, page: _Page) -> Path:
         operating_point=[
             chip for chip in (operating_point(case) if case else ()) if chip[0] not in varied_chips
         ],
-        assumptions=[row for row in _assumptions(case) if row.key not in page.varied],
+        assumptions=[row for row in assumptions_of(case) if row.key not in page.varied],
         provenance=provenance(None),
-        case_text=case.to_toml() if case else "",
+        case_text=case_text(case) if case else "",
         figures=Markup("{\n" + figures_json + "\n}"),
         style=text_of("report.css"),
         script=text_of("report.js"),

@@ -111,32 +111,6 @@ def save_bifurcation(
         )
 
 
-def modes_report_data(case: Case, ends: Any, progress: Progress = SILENT) -> StudyReportData:
-    """Natural frequencies and critical speeds; ``ends`` limits the speeds [rad/s]."""
-    from tribodyn.dynamics import natural_modes
-    from tribodyn.report.numbers import HEAD, cells
-    from tribodyn.study.studies.case_grid import build_system
-    from tribodyn.study.studies.modes import ORDERS, diagram_of, mode_rows
-    from tribodyn.study.studies.study_axes import operation_values
-
-    speeds = None if ends is None else operation_values("speed", ends, case)
-    system, mesh_frequency = build_system(case, progress=progress)
-    modes = natural_modes(system)
-    diagram = diagram_of(system, case, mesh_frequency, speeds)
-    rows = mode_rows(modes, case, mesh_frequency)
-    figures = [
-        figure_with_caption(plot.mode_shapes, modes),
-        figure_with_caption(plot.campbell, diagram),
-    ]
-    statements = [f"{_title(figures[1])}; speeds are those of the {case.operation.speed_of}."]
-    facts = {
-        "mesh_frequency": mesh_frequency,
-        "orders": list(ORDERS),
-        "modes": [vars(row) for row in rows],
-    }
-    return StudyReportData(modes, figures, statements, HEAD, [cells(row) for row in rows], facts)
-
-
 def harris_report_data(
     case: Case | MachineCase, torque: Sequence[Any] | None, mesh: str | None = None
 ) -> StudyReportData:

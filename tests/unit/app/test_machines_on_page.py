@@ -148,8 +148,8 @@ def test_the_worker_computes_and_overlays_machines(tmp_path: Path) -> None:
         worker._carry_out(orders[-1], lambda **message: messages.append(message))
     content = next(each["content"] for each in messages if each.get("state") == "done")
     assert {block["name"] for block in content["blocks"]} >= {"machine", "machine_orders"}
-    assert [heading for heading, *_ in content["tables"]] == ["Natural modes", "All numbers"]
-    assert all(len(row) == len(head) for _, head, rows in content["tables"] for row in rows)
+    assert {topic for topic, *_ in content["tables"]} == {"Natural modes", "All numbers"}
+    assert all(len(row) == len(head) for _, head, rows, *_ in content["tables"] for row in rows)
     places = [str(tmp_path / str(number) / "result") for number in range(2)]
     assert (Path(places[0]) / "report.html").is_file()
     order = {"kind": "overlay", "results": places, "names": ["a", "b"], "folder": str(tmp_path)}

@@ -68,7 +68,7 @@ def test_the_worker_computes_and_overlays_stages(tmp_path: Path) -> None:
         worker._carry_out(order, lambda **message: messages.append(message))
     content = next(each["content"] for each in messages if each.get("state") == "done")
     assert {block["name"] for block in content["blocks"]} >= {"stage", "forces", "machine_campbell"}
-    assert all(len(row) == len(head) for _, head, rows in content["tables"] for row in rows)
+    assert all(len(row) == len(head) for _, head, rows, *_ in content["tables"] for row in rows)
     places = [str(tmp_path / str(number) / "result") for number in range(2)]
     order = {"kind": "overlay", "results": places, "names": ["a", "b"], "folder": str(tmp_path)}
     worker._carry_out(order, lambda **message: messages.append(message))

@@ -7,7 +7,7 @@ from itertools import pairwise
 import pytest
 
 from tribodyn.plot.theme.labels import engineering
-from tribodyn.report.numbers import HEADLINES, describe, headlines, table
+from tribodyn.report.numbers import HEADLINES, describe, headlines, number_tables
 from tribodyn.study import SUMMARY
 from tribodyn.study.pipeline.summary_labels import in_a_sentence, in_words
 from tribodyn.units import parse
@@ -71,13 +71,15 @@ def test_large_numbers_have_no_power_of_ten(
 
 
 def test_rows_stand_by_topic() -> None:
-    topics = [row.topic for row in table(dict.fromkeys(reversed(SUMMARY), 1.5))]
+    (pair,) = number_tables(dict.fromkeys(reversed(SUMMARY), 1.5))
+    topics = [row.figure.topic for row in pair.rows]
     assert topics[0] == "Operating point"
     assert len(dict.fromkeys(topics)) == 1 + sum(a != b for a, b in pairwise(topics))
 
 
 def test_every_summary_figure_can_be_printed() -> None:
-    rows = table(dict.fromkeys(SUMMARY, 1.5))
+    (pair,) = number_tables(dict.fromkeys(SUMMARY, 1.5))
+    rows = [row.figure for row in pair.rows]
     assert [row.name for row in rows] == list(SUMMARY)
     assert all(row.meaning for row in rows)
     assert len({row.label for row in rows}) == len(rows)
@@ -96,3 +98,29 @@ def test_cards_have_a_fixed_order_and_omit_missing_figures() -> None:
     summary = dict.fromkeys(reversed(HEADLINES[:3]), 1.0)
     assert [card.name for card in headlines(summary)] == list(HEADLINES[:3])
     assert set(HEADLINES) <= set(SUMMARY)
+
+
+def test_figures_of_parts_are_rows_with_a_column_for_each_part() -> None:
+    summary = {
+        "machine.input_power": 2.5e9,
+        "meshes.first.mean_mesh_force": 2.0e6,
+        "meshes.second.mean_mesh_force": 1500.0,
+        "meshes.second.mesh_frequency": 400.0,
+        "load_cases.slow.meshes.first.mean_mesh_force": 100.0,
+        "bearings.A.mean_radial_force": 1e-12,
+        "bearings.B.mean_radial_force": 5.0,
+    }
+    tables = {each.title: each for each in number_tables(summary)}
+    assert list(tables) == ["Machine", "Meshes", "Bearings", "Meshes, load case slow"]
+    meshes = {row.figure.name: row for row in tables["Meshes"].rows}
+    assert set(tables["Meshes"].parts) == {"first", "second"}
+    force = dict(zip(tables["Meshes"].parts, meshes["mean_mesh_force"].values, strict=True))
+    # One unit for the row; a part without the figure has a dash.
+    assert meshes["mean_mesh_force"].figure.unit == "kN"
+    assert {name: float(value) for name, value in force.items()} == {"first": 2e3, "second": 1.5}
+    assert "–" in meshes["mesh_frequency"].values
+    (bearings,) = tables["Bearings"].rows
+    assert dict(zip(tables["Bearings"].parts, bearings.values, strict=True)) == {"A": "0", "B": "5"}
+    assert tables["Meshes, load case slow"].load == "slow"
+    head, rows = tables["Meshes"].cells()
+    assert all(len(row) == len(head) for row in rows)

@@ -11,7 +11,7 @@ from tests.unit.study.test_summary_names import QUICK
 import tribodyn as td
 from tribodyn.errors import ModelWarning
 from tribodyn.exchange import write_tables
-from tribodyn.report.machine_report import render_machine_report
+from tribodyn.report import render_machine_report
 from tribodyn.study.machine.read import read_any_case
 from tribodyn.study.machine.run import MeshWarning, warn_of_meshes
 

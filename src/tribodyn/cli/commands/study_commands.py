@@ -88,7 +88,7 @@ def modes(
         Write the modes in SI as one JSON object to stdout.
     """
     from tribodyn.cli.progress_bar import progress_bar
-    from tribodyn.report.machine_report import any_modes_report_data
+    from tribodyn.report.modes_report_data import any_modes_report_data
 
     ready, target = prepare_study("modes", case, out, set_, force)
     ends = None if between is None else read_ends(between)
