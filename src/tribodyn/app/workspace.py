@@ -11,7 +11,6 @@ from tribodyn.errors import InputError, OutputExistsError
 from tribodyn.study.case.read import named_files, parse_toml, read_text
 from tribodyn.study.machine.housing_files import copy_housing
 from tribodyn.study.machine.read import is_machine, machine_files, read_any_case
-from tribodyn.study.studies.needs import PAIRS, kind_of
 
 if TYPE_CHECKING:
     from tribodyn.study.case.case import Case
@@ -103,8 +102,7 @@ class Workspace:
             remedy = "Choose another name, or save once more to replace it"
             raise OutputExistsError(f'"{self.relative_name(place)}" exists already', "", "", remedy)
         self._parent(place)
-        if kind_of(case) not in PAIRS:
-            case = copy_housing(case, place.parent, f"{place.stem}-")  # type: ignore[arg-type]
+        case = copy_housing(case, place.parent, f"{place.stem}-")
         write_file(place, case.to_toml())
         return place
 

@@ -72,7 +72,6 @@ def _load_toml(
     name_or_path: str | os.PathLike[str], changes: Mapping[str, Any], by: str = ""
 ) -> Any:
     from tribodyn.cases.catalogue import with_known_reasons
-    from tribodyn.study.case.case import Case
     from tribodyn.study.case.read import read_text
     from tribodyn.study.machine.read import read_any_case
     from tribodyn.validated_files import file_kind
@@ -93,7 +92,7 @@ def _load_toml(
     if name in paths:
         return read_any_case(read_text(path), path.name, path.parent, changes, by)
     case = read_any_case(read_text(path), name, None, changes, by)
-    return with_known_reasons(case) if isinstance(case, Case) else case
+    return with_known_reasons(case) if case.lumped else case
 
 
 def _not_found(name: str, path: Path, names: list[str]) -> Problem:
@@ -138,10 +137,9 @@ def run(case: Case | MachineCase | str | os.PathLike[str], progress: Progress = 
     >>> result = run("fzg-roughness")  # doctest: +SKIP
     """
     from tribodyn.study import run as compute
-    from tribodyn.study.machine.case import MachineCase
 
     ready: Any = load_case(case) if isinstance(case, (str, os.PathLike)) else case
-    if isinstance(ready, MachineCase):
+    if not ready.lumped:
         from tribodyn.study.machine.run import run_machine
 
         return run_machine(ready, progress, stacklevel=3)

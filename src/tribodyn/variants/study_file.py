@@ -186,7 +186,7 @@ class _Reader:
             why = f"Exactly one of {', '.join(_VARIES)} defines what varies"
             self.put("".join(varies[-1:]), Problem(what, "", why, _EXAMPLE))
         case = self._case(top.get("case"))
-        if isinstance(case, MachineCase) and kind == "motions":
+        if case is not None and not case.lumped and kind == "motions":
             what, why = f'compute = "{kind}"', "It integrates the motions of gear pairs in batches"
             self.put("compute", Problem(what, "", why, 'Write compute = "summary"'))
         if self.faults or case is None:

@@ -41,8 +41,6 @@ def check(case: CaseName, /, *, set_: Settings = None, json: Flag = False) -> No
     json : bool
         Write one flat JSON object in SI to stdout.
     """
-    from tribodyn.study.case.provenance import assumptions
-    from tribodyn.study.machine.case import MachineCase
     from tribodyn.study.pipeline.assembly import geometry
     from tribodyn.study.pipeline.cautions import case_cautions
     from tribodyn.study.pipeline.preview import operating_figures
@@ -50,7 +48,7 @@ def check(case: CaseName, /, *, set_: Settings = None, json: Flag = False) -> No
     from tribodyn.study.pipeline.summary_figures import summary_rows
 
     ready = changed_any_case(case, set_ or [])
-    if isinstance(ready, MachineCase):
+    if not ready.lumped:
         _check_machine(ready, json)
         return
     warnings = rehearse(ready)
@@ -64,7 +62,7 @@ def check(case: CaseName, /, *, set_: Settings = None, json: Flag = False) -> No
 
             say(f"The motion with its faults repeats after {turning_clock(ready)}.")
     show_warnings([*case_cautions(ready), *warnings])
-    kinds = [assumption.kind for assumption in assumptions(ready)]
+    kinds = [assumption.kind for assumption in ready.assumptions]
     tell(
         f"The case is in order; {kinds.count('assumed')} values are assumed, "
         f"{kinds.count('default')} are defaults."
@@ -125,7 +123,6 @@ def new(
         Write one JSON object to stdout.
     """
     from tribodyn.cases.load import load_case
-    from tribodyn.study.machine.case import MachineCase
     from tribodyn.study.machine.housing_files import copy_housing
     from tribodyn.study.pipeline.save import write_file
 
@@ -137,7 +134,7 @@ def new(
     check_file(path, force)
     source = load_case(from_) if from_ else None
     files = []
-    if isinstance(source, MachineCase):
+    if source is not None:
         prefix = f"{path.stem}-"
         files = [path.parent / name for name in source.with_files(prefix).housing_files.values()]
         for file in files:

@@ -401,9 +401,7 @@ class _CaseMesh(NamedTuple):
 
 def _meshes_of(case: Any) -> Iterator[_CaseMesh]:
     """Meshes of a case of any kind at its operating point."""
-    from tribodyn.study.machine.case import MachineCase
-
-    if isinstance(case, MachineCase):
+    if not case.lumped:
         machine = case.machine()
         for name, mesh in machine.meshes.items():
             gears = {gear: machine.gears[gear] for gear in mesh.gears}

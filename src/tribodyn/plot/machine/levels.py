@@ -14,7 +14,6 @@ from tribodyn.plot.theme.curves import FROM_ZERO, curves
 from tribodyn.plot.theme.labels import axis_label, displayed, rounded
 from tribodyn.plot.theme.panels import Panel, Row, event_lines, stack, stack_rows
 from tribodyn.plot.theme.style import MUTED, Trace, marked
-from tribodyn.study.machine.case import MachineCase
 from tribodyn.study.pipeline.summary_labels import in_words
 from tribodyn.study.studies.sweep_result import OF_PARTS, level_keys
 
@@ -173,7 +172,7 @@ def machine_level_lines(study: MachineLevels) -> Any:
 
 
 def _lack(study: Sweep) -> str:
-    if not isinstance(study.case, MachineCase):
+    if study.case.lumped:
         return "It is the sweep of a pair of gears; draw one of its figures."
     if len(study.axes) > 1:
         return "It has several keys; draw one of its figures."
@@ -224,7 +223,7 @@ def _met(study: Sweep) -> list[Resonance]:
 
 
 def _not_of_machines(comparison: ResultComparison) -> str:
-    machines = all(isinstance(each.case, MachineCase) for each in comparison.results)
+    machines = all(not each.case.lumped for each in comparison.results)
     return "" if machines else "It compares pairs of gears; draw it by result_comparison."
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from abc import abstractmethod
 from collections.abc import Callable
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Self
 
 from tribodyn.errors import InputError
 from tribodyn.study.case.provenance import Assumption, provenance
@@ -85,6 +85,16 @@ class BaseCase:
     def stated(self) -> Stated:
         """Values that the reasons and the origin of the case refer to."""
         return self._stated
+
+    @property
+    def housing_files(self) -> dict[str, str]:
+        """Paths of the files of the housing by key."""
+        files = {key.partition("housing."): path for key, path in self._named_files().items()}
+        return {name: str(path) for (before, _, name), path in files.items() if name and not before}
+
+    def with_files(self, prefix: str) -> Self:
+        """Copy whose housing files lie beside its case file."""
+        return self
 
     def __getitem__(self, key: str) -> Any:
         """Value of a dotted key in SI, given or by default; of a list also by number from 1."""

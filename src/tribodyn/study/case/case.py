@@ -7,7 +7,7 @@ from copy import copy
 from dataclasses import replace
 from functools import cached_property, partial
 from inspect import Signature
-from typing import TYPE_CHECKING, Any, ClassVar
+from typing import TYPE_CHECKING, Any, ClassVar, Literal
 
 from tribodyn.aliases import with_old_names
 from tribodyn.errors import InputError, Problem
@@ -88,6 +88,7 @@ class Case(CaseData, case=True):
     """
 
     __signature__: ClassVar[Signature]
+    lumped: ClassVar[Literal[True]] = True  #: whether ``[dynamics]`` names a lumped structure
 
     def __init__(self, source: Source | None = None, /, **data: Any) -> None:
         problems = list(unsound(data))
@@ -232,7 +233,9 @@ class Case(CaseData, case=True):
         if (section := section_at(path)) is not None:
             remedy = f"Name one of its keys, such as {key}.{next(iter(section.fields))}"
             return Problem(f"{key} is a table", "", "", remedy)
-        return replace(unknown_key(path, None), what=f'there is no key "{key}"')
+        while section_at(path[:-1]) is None:
+            path = path[:-1]
+        return replace(unknown_key(path, None), what=f"{'.'.join(path)}: unknown key")
 
     @property
     def _sensors(self) -> PairSensors:

@@ -226,13 +226,12 @@ def _recorder(
     case: Case | MachineCase, sensor: str
 ) -> Callable[[float, float, Scatter], Recording]:
     """Function of duration, rate and scatter that samples the motion of a case."""
-    from tribodyn.study.machine.case import MachineCase
     from tribodyn.study.machine.run import run_machine
     from tribodyn.study.pipeline.run import prepare_run
 
     check_sensors(case._sensors, sensor)
     motion: PeriodicMotion
-    if isinstance(case, MachineCase):
+    if not case.lumped:
         motion = run_machine(case.replace({"load_cases": None})).turning_motion
     else:
         motion = turning_motion(prepare_run(case))

@@ -7,7 +7,7 @@ from copy import copy
 from dataclasses import replace
 from functools import cached_property
 from pathlib import Path
-from typing import Any
+from typing import Any, ClassVar, Literal
 
 from tribodyn.aliases import with_old_names
 from tribodyn.errors import InputError, Problem, TribodynError
@@ -62,7 +62,6 @@ from tribodyn.study.machine.read_parts import (
     tables_of,
 )
 from tribodyn.study.machine.tables import (
-    HousingTable,
     MeshDynamics,
     MotionTable,
     mesh_table_kind,
@@ -122,6 +121,7 @@ class MachineCase(PartsBase):
     Machine(2 shafts, 2 gears, 1 mesh, 0 bearings)
     """
 
+    lumped: ClassVar[Literal[False]] = False  #: its parts vibrate
     gears: dict[str, Gear]
     operating_point: LoadCase
 
@@ -459,12 +459,6 @@ class MachineCase(PartsBase):
         """
         stage, role = self._stage_of.get(mesh, (None, ""))
         return mesh if stage is None else f"{stage.key}.{role}"
-
-    @property
-    def housing_files(self) -> dict[str, str]:
-        """Paths of the files of the housing by key."""
-        table = self.data.get("housing", {})
-        return {key: table[key] for key in HousingTable.fields if isinstance(table.get(key), str)}
 
     def with_files(self, prefix: str) -> MachineCase:
         """Copy whose housing files lie beside its case file.

@@ -6,7 +6,7 @@ import io
 import shutil
 from collections.abc import Callable, Mapping
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, TypeVar
 
 import numpy as np
 
@@ -19,8 +19,9 @@ from tribodyn.types import Array
 from tribodyn.validated_files import read_bytes
 
 if TYPE_CHECKING:
-    from tribodyn.study.machine.case import MachineCase
+    from tribodyn.study.case.base import BaseCase
 
+Kind = TypeVar("Kind", bound="BaseCase")
 _MATRICES = {"stiffness": "K", "mass": "M", "damping": "C"}
 #: Before the names of the files of the housing in the folder of a result.
 HOUSING = "housing-"
@@ -117,7 +118,7 @@ def _market(file: io.BytesIO) -> Array:
     return matrix + np.tril(matrix, -1).T if symmetry == "symmetric" else matrix
 
 
-def copy_housing(case: MachineCase, folder: Path, prefix: str) -> MachineCase:
+def copy_housing(case: Kind, folder: Path, prefix: str) -> Kind:
     """Copy the files of a housing into a folder, and return the case that refers to the copies."""
     moved = case.with_files(prefix)
     for key, path in case.housing_files.items():

@@ -12,10 +12,10 @@ from tribodyn.nomenclature import GEARS
 from tribodyn.study.case.gears import is_idle
 from tribodyn.study.case.provenance import changed_keys
 from tribodyn.study.case.section import section_at
-from tribodyn.study.machine.case import MachineCase
 
 if TYPE_CHECKING:
     from tribodyn.study.case.case import Case
+    from tribodyn.study.machine.case import MachineCase
 
 
 STYLES = ("text", "bibtex")
@@ -37,7 +37,7 @@ def _library() -> dict[str, dict[str, Any]]:
 
 def papers(case: Case | MachineCase) -> dict[str, dict[str, Any]]:
     """Papers behind the models that a case uses, each once."""
-    if isinstance(case, MachineCase):
+    if not case.lumped:
         entries = _package() | _values_source(case)
         for _, pair, _ in case.mesh_pairs():
             entries |= _papers_of_pair(pair, ("stiffness", "friction", "film"))
@@ -83,8 +83,6 @@ def _package() -> dict[str, dict[str, Any]]:
 def _papers_of_parts(case: MachineCase) -> list[str]:
     """Keys of the papers behind shafts, bearings, reduction and planets."""
     planets = ["lin-parker", "parker-lin"]
-    if not isinstance(case, MachineCase):
-        return planets
     keys = planets if case.stages else []
     keys += ["cowper"] if any(not shaft.is_rigid for shaft in case.shafts.values()) else []
     keys += ["craig-bampton"] if case.motion.frequency_limit is not None else []

@@ -9,7 +9,6 @@ import numpy as np
 
 from tribodyn.machine import MachineModes, machine_modes
 from tribodyn.progress import SILENT, Progress
-from tribodyn.study.machine.case import MachineCase
 from tribodyn.study.machine.modes import (
     MachineCampbell,
     MeshOrder,
@@ -25,6 +24,7 @@ if TYPE_CHECKING:
 
     from tribodyn.dynamics import Campbell, NaturalModes, System
     from tribodyn.study.case.case import Case
+    from tribodyn.study.machine.case import MachineCase
     from tribodyn.types import Array
 
 #: Mesh harmonics whose critical speeds are reported.
@@ -79,7 +79,7 @@ def natural_modes(
     """
     from tribodyn.dynamics import natural_modes as compute
 
-    if isinstance(case, MachineCase):
+    if not case.lumped:
         return modes_at_rest(case, progress).modes
     return compute(build_system(case, progress=progress)[0])
 
@@ -123,7 +123,7 @@ def campbell(
     >>> [(met.order, round(met.speed * 30 / np.pi)) for met in diagram.resonances]
     [(5, 3784), (4, 4730)]
     """
-    if isinstance(case, MachineCase):
+    if not case.lumped:
         if between is None:
             return parts_campbell(case, None, progress)
         low, high = ends_of(case, _SPEED, between)

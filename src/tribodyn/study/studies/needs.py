@@ -55,9 +55,7 @@ STUDIES: dict[str, Need] = {
 
 def kind_of(case: Case | MachineCase) -> str:
     """Kind of a case, of :data:`KINDS`."""
-    from tribodyn.study.case.case import Case
-
-    if isinstance(case, Case):
+    if case.lumped:
         return dict(zip(("spur", "hypoid", "table"), PAIRS, strict=True))[case.gears.kind]
     return case.kind.lower()
 

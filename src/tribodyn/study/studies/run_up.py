@@ -18,7 +18,6 @@ from tribodyn.study.case.to_models import locate_errors
 from tribodyn.study.case.values import FaultError, Plain, read_value
 from tribodyn.study.faults.clock import turning_clock, varies_over_turns
 from tribodyn.study.first_use import compile_in_parallel
-from tribodyn.study.machine.case import MachineCase
 from tribodyn.study.pipeline.assembly import rotation_of
 from tribodyn.study.planetary.common import common_lines, line_labels
 from tribodyn.study.studies.case_grid import Member, result_under, results_under, varied
@@ -28,6 +27,7 @@ from tribodyn.study.studies.study_axes import read_axes
 if TYPE_CHECKING:
     from tribodyn.dynamics import RunUp, SpeedSweep, System
     from tribodyn.study.case.case import Case
+    from tribodyn.study.machine.case import MachineCase
     from tribodyn.study.machine.motion import MachineMotion
     from tribodyn.study.machine.result import LoadResult
     from tribodyn.types import Array
@@ -103,7 +103,7 @@ def run_up(
     from tribodyn.dynamics import speed_ramp
 
     low, high = _ends(between)
-    if isinstance(case, MachineCase):
+    if not case.lumped:
         ends = (low, high)
         return parts_run_up(case, ends, duration, down=down, hold=hold, progress=progress)
     count = int(tables)
@@ -266,7 +266,7 @@ def speed_sweep(
         )
     (axis,) = read_axes(case, {_SPEED: (*between, points)})
     speeds = np.array(axis.values, dtype=float)
-    if isinstance(case, MachineCase):
+    if not case.lumped:
         return parts_speed_sweep(case, speeds, progress)
     nodes = np.geomspace(speeds[0], speeds[-1], tables) if tables > 1 else [speeds.mean()]
     with locate_errors(case), collected():

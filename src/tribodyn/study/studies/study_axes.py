@@ -12,14 +12,12 @@ from numpy.typing import NDArray
 
 from tribodyn.aliases import with_old_names
 from tribodyn.errors import InputError
-from tribodyn.study.case.section import section_at
 from tribodyn.study.case.sections import Operation
 from tribodyn.study.case.values import FaultError, Plain, read_value
-from tribodyn.study.machine.case import MachineCase
-from tribodyn.study.machine.pair_cases import unknown_key
 
 if TYPE_CHECKING:
     from tribodyn.study.case.case import Case
+    from tribodyn.study.machine.case import MachineCase
 
 
 _EXAMPLE = 'Write, for example, {"operation.speed": ("400 rpm", "3500 rpm", 60)}'
@@ -86,15 +84,8 @@ def ends_of(
 def member_value(case: Case | MachineCase, key: str, value: Any, by: str) -> Any:
     """Read a value of one key; conflicts with other keys are found when it is computed."""
     spec = case.option_of(key)
-    if spec is None and isinstance(case, MachineCase):
-        raise InputError(replace(unknown_key(case, key), where=_location(by)))
-    if spec is None and section_at(tuple(key.split("."))) is not None:
-        remedy = f"Name one of its keys, such as {key}.{_first_key(case, key)}"
-        raise InputError(f"{key} is a table", _location(by), "", remedy)
     if spec is None:
-        case.replace({key: value}, by=by or "over")  # raises an error that lists the keys
-        what, why = f'there is no key "{key}"', "Axes of a study are keys of the case"
-        raise InputError(what, _location(by), why, "Choose a key that tribodyn explain lists")
+        raise InputError(replace(case._unknown_key(key), where=_location(by)))
     if spec.kind == "numbers":
         what, why = f"{key} is a list", "An axis of a study is one value"
         raise InputError(what, _location(by), why, f"Name one of its values, such as {key}.1")
@@ -117,11 +108,6 @@ def _example(by: str) -> str:
 
 def _location(by: str) -> str:
     return by or "argument over"
-
-
-def _first_key(case: Case | MachineCase, key: str) -> str:
-    section = section_at(tuple(key.split(".")))
-    return next(iter(section.fields)) if section else ""
 
 
 def read_axes(

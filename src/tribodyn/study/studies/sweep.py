@@ -20,7 +20,6 @@ from tribodyn.mesh.film.film_lookup import shared_films
 from tribodyn.model import known_elsewhere
 from tribodyn.progress import SILENT, Progress
 from tribodyn.study.first_use import compile_in_parallel
-from tribodyn.study.machine.case import MachineCase
 from tribodyn.study.pipeline.run import (
     PendingRun,
     PreparedRun,
@@ -35,6 +34,7 @@ from tribodyn.study.studies.sweep_result import Sweep, SweepPoint
 
 if TYPE_CHECKING:
     from tribodyn.study.case.case import Case
+    from tribodyn.study.machine.case import MachineCase
 
 Value = TypeVar("Value")
 #: Computes points of a grid by the values of the keys; prepares one of them.
@@ -115,7 +115,7 @@ def sweep(
 
 def _sources(case: Case | MachineCase, keys: Sequence[str]) -> tuple[PointsAt, CaseAt | None]:
     """What computes a case at values of its keys, and the pair whose kernels it needs first."""
-    if isinstance(case, MachineCase):
+    if not case.lumped:
         return partial(points_of_parts, case, keys), None
     pending_at = partial(_pending_at, case, keys)
     return partial(_points, pending_at), pending_at

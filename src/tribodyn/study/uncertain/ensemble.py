@@ -14,7 +14,6 @@ from tribodyn.drawing import figures_of
 from tribodyn.errors import Argument, InputError, quiet, require_one_of
 from tribodyn.progress import SILENT, Progress
 from tribodyn.record import Record, fact, quantity, record
-from tribodyn.study.machine.case import MachineCase
 from tribodyn.study.uncertain.cycles import SIGNALS, steady_cycles
 from tribodyn.study.uncertain.lanes import draw, lanes_of, points_of_values
 from tribodyn.study.uncertain.machine_ensemble import MachineEnsemble, ensemble_of
@@ -23,6 +22,7 @@ from tribodyn.uncertainty import Band, bootstrap_band
 
 if TYPE_CHECKING:
     from tribodyn.study.case.case import Case
+    from tribodyn.study.machine.case import MachineCase
     from tribodyn.study.pipeline.result import Result
 
 #: Phases of a mesh cycle, and largest number of variants whose full results are computed.
@@ -290,7 +290,7 @@ def ensemble(
         why, remedy = "", 'Give {"friction.coefficient": "0.05 +- 0.83 %"}'
         raise InputError("nothing is spread", Argument("distributions"), why, remedy)
     values = draw(case, spread, require_whole("size", size, 3), method=method, seed=seed)
-    if isinstance(case, MachineCase):
+    if not case.lumped:
         return _of_machine(case, values, int(seed), progress)
     lanes = lanes_of(case, values, progress)
     signals = steady_cycles(lanes, _PHASES, progress)

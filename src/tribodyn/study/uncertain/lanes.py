@@ -12,12 +12,9 @@ from tribodyn.dynamics.equations.program import compile_system
 from tribodyn.errors import Argument, InputError, quiet
 from tribodyn.nonlinear.parameter_map import SCALES
 from tribodyn.progress import SILENT, Progress
-from tribodyn.study.case.case import Case
 from tribodyn.study.case.provenance import effective
 from tribodyn.study.case.to_models import locate_errors
 from tribodyn.study.case.user_input import spread_problem
-from tribodyn.study.machine.case import MachineCase
-from tribodyn.study.machine.pair_cases import unknown_key
 from tribodyn.study.pipeline.motion import steps_of
 from tribodyn.study.studies.case_grid import Member, built, contact_without_speed, varied
 from tribodyn.study.studies.sweep import points_under
@@ -26,6 +23,8 @@ from tribodyn.uncertainty import distribution, sample
 
 if TYPE_CHECKING:
     from tribodyn.dynamics import LaneParameters
+    from tribodyn.study.case.case import Case
+    from tribodyn.study.machine.case import MachineCase
     from tribodyn.study.studies.sweep_result import SweepPoint
 
 #: Factor by which a lane takes fewer steps than a single motion (accurate to about 1e-6), and the
@@ -77,11 +76,8 @@ def distributions_of(case: Case | MachineCase, spread: Mapping[str, Any]) -> dic
     distributions = {}
     for key, text in spread.items():
         spec = None if key in SCALES else case.option_of(str(key))
-        if spec is None and key not in SCALES and isinstance(case, MachineCase):
-            raise InputError(replace(unknown_key(case, str(key)), where=f"distributions {key}"))
         if spec is None and key not in SCALES:
-            # Raises an error that lists the keys.
-            case.replace({str(key): text}, by="distributions")
+            raise InputError(replace(case._unknown_key(str(key)), where=f"distributions {key}"))
         distributions[str(key)] = distribution(str(key), text, spec.unit if spec else "")
         problem = spread_problem(spec, str(key), text) if spec and isinstance(text, str) else None
         if problem is not None:
@@ -124,12 +120,12 @@ def lanes_of(case: Case, values: Mapping[str, Array], progress: Progress = SILEN
 def check_spread_key(case: Case | MachineCase, key: str, column: Array) -> None:
     """Raise if a key is no number of the case, or its least or greatest value is out of range."""
     spec = case.option_of(key)
-    value = effective(case).get(key) if isinstance(case, Case) else None
+    value = case.get(key)
     number = spec is not None and spec.kind not in ("file", "text", "choice", "flag")
     if not number or isinstance(value, bool | str):
         where = Argument("distributions")
         what, why = f"{key} cannot be spread", "Numbers of the case can"
-        factors = f", and the factors {', '.join(SCALES)}" if isinstance(case, Case) else ""
+        factors = f", and the factors {', '.join(SCALES)}" if case.lumped else ""
         raise InputError(what, where, why + factors, "Name one of these")
     for end in (np.min(column), np.max(column)):
         case.replace({key: float(end)})

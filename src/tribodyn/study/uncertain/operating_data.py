@@ -10,7 +10,6 @@ import numpy as np
 from tribodyn.checks import require_whole
 from tribodyn.errors import Argument, ComputationError, InputError, warn
 from tribodyn.progress import SILENT, Progress
-from tribodyn.study.machine.case import MachineCase
 from tribodyn.study.pipeline.summary_figures import figure_of
 from tribodyn.study.studies.sweep_result import OF_PARTS, level_keys
 from tribodyn.study.uncertain.cycles import steady_cycles
@@ -20,6 +19,7 @@ from tribodyn.study.uncertain.vibration_data import data_set
 
 if TYPE_CHECKING:
     from tribodyn.study.case.case import Case
+    from tribodyn.study.machine.case import MachineCase
     from tribodyn.types import Array
 
 #: Response figures of every operating point, with units.
@@ -37,12 +37,11 @@ _LOW, _HIGH, _PHASES = 0.7, 1.3, 8
 
 def default_ranges(case: Case | MachineCase) -> dict[str, str]:
     """Ranges of torque and speed about the case, of a pair also of what its teeth depend on."""
-    load = case.operating_point if isinstance(case, MachineCase) else case.operation
     ranges = {
-        "operation.torque": _about(float(load.torque), "N*m"),
-        "operation.speed": _about(float(load.speed), "rad/s"),
+        "operation.torque": _about(case["operation.torque"], "N*m"),
+        "operation.speed": _about(case["operation.speed"], "rad/s"),
     }
-    if isinstance(case, MachineCase):
+    if not case.lumped:
         return ranges
     ranges |= dict.fromkeys(("friction_scale", "stiffness_scale"), f"{_LOW} .. {_HIGH}")
     if case.gears.composite_roughness is not None and case.friction.law not in ("none", "constant"):
@@ -114,7 +113,7 @@ def operating_data(
         "size": count,
         "seed": int(seed),
     }
-    if isinstance(case, MachineCase):
+    if not case.lumped:
         return _of_parts(case, inputs, settings, progress)
     lanes = lanes_of(case, inputs, progress)
     cycles = steady_cycles(lanes, _PHASES, progress)
