@@ -15,11 +15,30 @@
 | `pitting` | contact stress and its limit: ISO 6336-2 |
 | `root_section`, `bending`, `root_strength` | root stress and its limit: ISO 6336-3 |
 | `surface` | scuffing and micropitting: ISO/TS 6336-20, -21, -22 |
+| `elements` | life of rolling bearings, fatigue of shafts: ISO 281, ISO/TS 16281, DIN 743 |
 | `life` | Z_NT, Y_NT and cycles to failure |
 """
 
 from tribodyn.arguments import guard
 from tribodyn.rating.conditions import RatingConditions
+from tribodyn.rating.elements.bearing_life import (
+    BearingLife,
+    RatedBearing,
+    bearing_life,
+    contamination_factor,
+    deep_groove_load,
+    life_modification_factor,
+    reference_viscosity,
+    system_life,
+)
+from tribodyn.rating.elements.element_life import ball_bearing_life, roller_bearing_life
+from tribodyn.rating.elements.shaft_fatigue import (
+    ShaftMaterial,
+    ShaftNotch,
+    ShaftRating,
+    ShaftStress,
+    rate_shaft,
+)
 from tribodyn.rating.factor import Factor
 from tribodyn.rating.influence.dynamic_factor import DynamicFactor, dynamic_factor
 from tribodyn.rating.influence.face_load import face_load_factor
@@ -32,6 +51,7 @@ from tribodyn.rating.spectrum import GearDamage, LoadCase, SpectrumRating, rate_
 from tribodyn.rating.tolerances import Deviations, gear_tolerances
 
 __all__ = [
+    "BearingLife",
     "Deviations",
     "DynamicFactor",
     "Factor",
@@ -42,17 +62,31 @@ __all__ = [
     "LoadCase",
     "PairRating",
     "PinionShaft",
+    "RatedBearing",
     "RatedGear",
     "RatingConditions",
+    "ShaftMaterial",
+    "ShaftNotch",
+    "ShaftRating",
+    "ShaftStress",
     "ShaperCutter",
     "SpectrumRating",
+    "ball_bearing_life",
+    "bearing_life",
+    "contamination_factor",
     "cycles_to_failure",
+    "deep_groove_load",
     "dynamic_factor",
     "face_load_factor",
     "gear_tolerances",
     "life_factor",
+    "life_modification_factor",
     "rate_pair",
+    "rate_shaft",
     "rate_spectrum",
+    "reference_viscosity",
+    "roller_bearing_life",
+    "system_life",
 ]
 
 guard(__name__)
