@@ -98,7 +98,7 @@ def run_back(part: T) -> T:
     """Contact or friction of a driving pinion for a driving wheel, which turns it back in time."""
     changes: dict[str, Any] = {n: _back(getattr(part, n)) for n in _ENTRIES if hasattr(part, n)}
     # What slides the other way rubs the other way.
-    opposed = "friction" if isinstance(part, Contact) else "coefficients"
+    opposed = "friction" if "friction" in changes else "coefficients"
     changes[opposed] = _opposed(changes[opposed])
     return replace(part, **changes, events=tuple(sorted({-event % 1.0 for event in part.events})))
 

@@ -163,7 +163,7 @@ class RollingElementBearing(ABC):
                 f"Give {name}, or both diameters",
             )
         value = rule(self.bore_diameter, self.outer_diameter)
-        text = f"{1e3 * value:.4g} mm" if isinstance(value, float) else str(value)
+        text = str(value) if isinstance(value, int) else f"{1e3 * value:.4g} mm"
         object.__setattr__(self, name, value)
         note = f"{name} = {text}, estimated: {basis}"
         object.__setattr__(self, "assumptions", (*self.assumptions, note))

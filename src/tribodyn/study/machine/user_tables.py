@@ -384,10 +384,10 @@ def with_spreads(tables: Mapping[str, Any], spreads: Mapping[str, str]) -> dict[
     data = deepcopy(dict(tables))
     for key, text in spreads.items():
         *names, name = key.split(".")
-        table = data
+        table: Any = data
         for each in names:
             table = table[each]
-        table[name if isinstance(table, dict) else int(name) - 1] = text  # type: ignore[index]
+        table[name if isinstance(table, dict) else int(name) - 1] = text
     return data
 
 

@@ -102,7 +102,7 @@ def readable(folder: Path) -> Iterator[None]:
         raise
     # What a damaged file holds makes its readers stumble in many ways.
     except Exception as error:
-        why = f"{error or type(error).__name__}: it is damaged, or an earlier version wrote it"
+        why = f"{str(error) or type(error).__name__}: it is damaged, or an earlier version wrote it"
         remedy = f"Compute it again: tribodyn run {folder / 'case.toml'}"
         raise InputError("this result cannot be read back", str(folder), why, remedy) from None
 
