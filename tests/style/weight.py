@@ -24,6 +24,7 @@ __all__ = ["ANY", "FILES", "LINES", "import_circles", "lines_of_code", "measures
 #: many phases are linearised in seconds. dynamics: no warning of few lanes on a graphics processor.
 #: app, report, study: studies of one mesh, recordings and friction from losses on the page.
 #: report: figures of parts as tables with a column for each part.
+#: plot: bearing forces about their means, marks of the modes that the mesh strains.
 #: study: cases of parts are equal, printed, and have [based_on] as pairs have.
 #: analysis, cli, plot, study: kinematic frequencies of every case.
 #: study: heat balance of machines.
@@ -61,11 +62,11 @@ LINES: dict[str, int] = {
     "model": 222,
     "nomenclature": 214,
     "nonlinear": 2432,
-    "plot": 9256,
+    "plot": 9303,
     "progress": 26,
     "rating": 2591,
     "record": 177,
-    "report": 1781,
+    "report": 1788,
     "signals": 1754,
     "stiffness": 5084,
     "study": 16594,

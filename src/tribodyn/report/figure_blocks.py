@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, replace
-from typing import Any, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
@@ -15,6 +15,9 @@ from tribodyn.gear import Misalignment
 from tribodyn.plot import FIGURES, Drawing
 from tribodyn.plot.theme.style import TOP
 from tribodyn.study.studies.needs import PAIRS, kind_of
+
+if TYPE_CHECKING:
+    from tribodyn.study import MachineResult, Result
 
 #: Figures of the report in order, by topic.
 TOPICS = {
@@ -168,7 +171,7 @@ def figure_blocks(result: Any) -> list[Block]:
     return [block for place in _of_parts(result) if not (block := place.block()).missing]
 
 
-def _of_pair(result: Any) -> Iterator[_Place]:
+def _of_pair(result: Result) -> Iterator[_Place]:
     names = [*sections_of(result.case), *(["coupling"] if result.coupling is not None else [])]
     if result.mesh.face_position is not None:
         names.insert(names.index("load_sharing") + 1, "face_maps")
@@ -179,10 +182,11 @@ def _of_pair(result: Any) -> Iterator[_Place]:
             yield _Place(figure, result)
 
 
-def _of_parts(result: Any) -> Iterator[_Place]:
+def _of_parts(result: MachineResult) -> Iterator[_Place]:
     """Figures of the whole, of each stage, of each mesh, and of the motion of all parts."""
-    for figure in (plot.machine, plot.machine_power):
-        yield _Place(figure, result)
+    if result.case.lone_stage is None:  # a stage by itself has its front view
+        yield _Place(plot.machine, result)
+    yield _Place(plot.machine_power, result)
     yield from _of_stages(result)
     yield from _of_meshes(result)
     for figure in (plot.machine_orders, plot.machine_forces):
@@ -191,7 +195,7 @@ def _of_parts(result: Any) -> Iterator[_Place]:
         yield _Place(figure, result)
 
 
-def _of_stages(result: Any) -> Iterator[_Place]:
+def _of_stages(result: MachineResult) -> Iterator[_Place]:
     """Figures of each planetary stage."""
     for number, name in enumerate(result.machine.planets):
         stage, end = result.operation.stage(name), f"-{number + 1}" if number else ""
@@ -207,7 +211,7 @@ def _of_stages(result: Any) -> Iterator[_Place]:
                 yield _Place(figure, part, f"{place}{end}", f"{name}: {figure.heading}")
 
 
-def _of_meshes(result: Any) -> Iterator[_Place]:
+def _of_meshes(result: MachineResult) -> Iterator[_Place]:
     """Maps of the meshes, those of planets with equal teeth once, and how shafts move them."""
     load, drawn = result.operation, set[int]()
     for number, (mesh, table) in enumerate(load.tables.items(), 1):

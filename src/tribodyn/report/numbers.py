@@ -6,8 +6,10 @@ from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from typing import Any, NamedTuple
 
+import numpy as np
+
 from tribodyn.plot.theme.labels import display_unit, displayed, engineering, readable, significant
-from tribodyn.study.machine.modes import MODES_HEAD, axial_notes
+from tribodyn.study.machine.modes import MODES_HEAD, axial_notes, nearest_first
 from tribodyn.study.machine.modes import mode_rows as part_rows
 from tribodyn.study.pipeline.summary_figures import by_topic, figure_of
 from tribodyn.study.pipeline.summary_labels import in_words, split_key
@@ -226,9 +228,12 @@ def cells(mode: Mode) -> list[str]:
 
 
 def modes_table(result: Any) -> list[list[str]]:
-    """Table rows of all elastic modes of a result."""
-    rows = mode_rows(result.natural_modes, result.case, result.mesh.mesh_frequency)
-    return [cells(row) for row in rows]
+    """Table rows of all elastic modes of a result, those nearest to a mesh harmonic first."""
+    mesh_frequency = result.mesh.mesh_frequency
+    rows = mode_rows(result.natural_modes, result.case, mesh_frequency)
+    harmonics = mesh_frequency * np.array(ORDERS)
+    distances = [np.min(np.abs(harmonics / row.frequency - 1.0)) for row in rows]
+    return [cells(row) for row in nearest_first(rows, distances)]
 
 
 _OF_PAIR = (

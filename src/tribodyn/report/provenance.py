@@ -8,7 +8,7 @@ from datetime import UTC, datetime
 from importlib.metadata import version as installed
 from typing import TYPE_CHECKING, Any
 
-from tribodyn.plot.theme.labels import display_unit, displayed
+from tribodyn.plot.theme.labels import display_unit, displayed, engineering
 from tribodyn.study.case.provenance import Assumption, assumptions
 from tribodyn.study.machine.housing_files import HOUSING
 from tribodyn.study.studies.needs import PAIRS, kind_of
@@ -28,7 +28,7 @@ def version() -> str:
 
 
 def _with_unit(name: str, value: float) -> str:
-    return f"{float(displayed(name, value)):.5g} {display_unit(name)}"
+    return " ".join(engineering(float(displayed(name, value)), display_unit(name))).rstrip()
 
 
 def operating_point(case: Any) -> list[tuple[str, str]]:

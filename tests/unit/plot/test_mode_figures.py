@@ -144,3 +144,26 @@ def test_a_table_of_modes_begins_with_those_nearest_to_an_excitation(count):
         assert np.all(np.diff(nearest) >= 0.0)
         assert nearest.max() <= np.abs(distance)[rows[10:]].min()
         assert rows[10:] == sorted(rows[10:])
+
+
+def test_modes_that_are_close_keep_readable_numbers():
+    nothing = float("nan")
+    diagram = _diagram([300.0, 301.0, 500.0], [[0.4, 0.4, nothing]] * 3)
+    figure = plot.machine_campbell(diagram)
+    numbers = [trace.text[0] for trace in figure.data if trace.name == "natural mode"]
+    assert [text.strip() for text in numbers] == ["1", "2", "3"]
+    # The number of the second stands beside that of the first, that of the third by itself.
+    assert len(numbers[0]) < len(numbers[1]) > len(numbers[2])
+    # Names at the ends of the lines have room within the axis.
+    assert figure.layout.xaxis.range[1] > 400.0 * 30.0 / np.pi
+    assert len([t for t in figure.data if t.name == "turning shafts" and t.showlegend]) == 1
+
+
+@pytest.mark.filterwarnings("ignore::tribodyn.errors.ModelWarning")
+def test_rigid_shafts_have_no_shapes_to_draw() -> None:
+    from tribodyn.cases.load import load_case
+    from tribodyn.machine import machine_modes
+    from tribodyn.study.machine.run import structure_at_rest
+
+    modes = machine_modes(structure_at_rest(load_case("planetary-stage")))
+    assert "rigid" in plot.machine_modes.missing(modes)

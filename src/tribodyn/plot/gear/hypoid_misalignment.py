@@ -65,7 +65,7 @@ def hypoid_misalignment(study: MisalignmentStudy) -> Any:
         Row("Rotation of the wheel from the calculation point [°]",
             Panel("Wheel ahead [µrad]", errors)),
     ]  # fmt: skip
-    low, high = 1e6 * study.peak_to_peak.min(), 1e6 * study.peak_to_peak.max()
+    ends = f"{1e6 * study.peak_to_peak.min():.3g}", f"{1e6 * study.peak_to_peak.max():.3g}"
     side = study.contacts[0].flanks.side
-    title = f"Transmission error of {low:.3g} to {high:.3g} µrad on the {side} flank"
+    title = f"Transmission error of {' to '.join(dict.fromkeys(ends))} µrad on the {side} flank"
     return stack_rows(title, rows, {"hovermode": "closest"})

@@ -22,13 +22,13 @@ _SAMPLES, _PARTS, _HEIGHT = 30_000, 8, 0.42
 
 
 def _caption(motion: MachineMotion) -> str:
-    drawn = (("mesh", motion.mesh), ("bearing", motion.bearing))
+    drawn = (("meshes", motion.mesh), ("bearings", motion.bearing))
     left_out = [
-        f"{len(names) - _PARTS} {kind}{'es' if kind == 'mesh' else 's'}"
+        f"{len(names) - _PARTS} of {len(names)} {kind}"
         for kind, names in drawn
         if len(names) > _PARTS
     ]
-    rest = f" Not drawn: {' and '.join(left_out)} that vary less." if left_out else ""
+    rest = f" Left out: {' and '.join(left_out)} with smaller variations." if left_out else ""
     bearings = ", and the radial force on each bearing" if motion.bearing else ""
     return (
         f"Force of each mesh along its line of action{bearings}, without its mean, each to its own "

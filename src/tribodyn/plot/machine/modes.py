@@ -11,11 +11,11 @@ import numpy as np
 from tribodyn.drawing import drawing
 from tribodyn.plot.machine.orders import COLORS
 from tribodyn.plot.machine.side_view import SideView, joined_names, shaft_outline
+from tribodyn.plot.motion.linear import crossing_dots, natural_lines
 from tribodyn.plot.theme.labels import axis_label, display_unit, displayed, rounded, significant
 from tribodyn.plot.theme.panels import Panel, event_lines, stack
 from tribodyn.plot.theme.style import (
     GRID,
-    INK,
     MUTED,
     PAIR_COLORS,
     PINION,
@@ -23,8 +23,6 @@ from tribodyn.plot.theme.style import (
     Trace,
     figure,
     line,
-    marked,
-    translucent,
 )
 from tribodyn.study.machine.modes import energy_shares, modes_in_reach
 from tribodyn.types import Array, ComplexArray
@@ -35,8 +33,6 @@ if TYPE_CHECKING:
 
 #: Modes that can be chosen, points along a shaft, and largest drawn displacement over the height.
 _MOST, _POINTS, _SIZE = 16, 41, 0.12
-#: Colour of modes that no mesh excites.
-_FAINT = translucent(MUTED, 0.45)
 #: Directions drawn on a shaft: label, row of the displacement, colour, dash.
 _DRAWN = (("y", 1, PINION, "solid"), ("z", 2, WHEEL, "dash"), ("x", 0, PAIR_COLORS[0], "dot"))
 
@@ -83,12 +79,18 @@ def _deflection(
     ]
 
 
+def _rigid(modes: MachineModes) -> str:
+    shafts = modes.structure.machine.shafts.values()
+    return "" if any(shaft.sections for shaft in shafts) else "All shafts are rigid points."
+
+
 @drawing(
     "machine_modes",
     heading="Natural modes on the shafts",
     caption="Choose a mode: its displacement along y, z and x is drawn as a distance from the axis "
     "of each shaft, to one scale. The title lists where its strain energy is; meshes excite the "
     "modes that strain them.",
+    missing=_rigid,
     of=("MachineModes", "MachineResult.modes"),
     made_by="Run a case with shafts, or call tribodyn.machine.machine_modes.",
 )
@@ -122,8 +124,8 @@ def machine_modes(modes: MachineModes) -> Any:
         "height": 520,
         "hovermode": False,
         "updatemenus": [{**menu, "yanchor": "top", "bgcolor": "white"}],
-        "xaxis": {"title": {"text": "Along the shafts [mm]"}},
-        "yaxis": {"title": {"text": "Across [mm]"}, "scaleanchor": "x"},
+        "xaxis": {"title": {"text": "Along the shafts [mm]"}, "constrain": "domain"},
+        "yaxis": {"title": {"text": "Across [mm]"}, "scaleanchor": "x", "constrain": "domain"},
     }
     title = (
         f"{first + 1}: {rounded('frequency', float(modes.frequency[first]), 4)}: "
@@ -149,22 +151,6 @@ def _equal_orders(diagram: MachineCampbell) -> dict[str, int]:
     return lines
 
 
-def _natural(diagram: MachineCampbell, speed: Array, top: float, met: set[int]) -> list[Trace]:
-    """Lines of the modes: dark with a number where a mesh meets them, light otherwise."""
-    unit, traces = display_unit("frequency"), []
-    for column, values in enumerate(displayed("frequency", diagram.frequency).T):
-        if values.min() > 1.05 * top:
-            continue
-        color, width = (INK, 1.6) if column in met else (_FAINT, 1.0)
-        trace = line(speed, values, f"mode {column + 1}", color, unit=unit, width=width)
-        if column in met:
-            trace |= {"mode": "lines+text", "textposition": "top right", "textfont": {"size": 11}}
-            trace["text"] = [f"{column + 1}"] + [""] * (speed.size - 1)
-        # One name: that modes coincide is no note.
-        traces.append({**trace, "name": "natural mode", "showlegend": False})
-    return traces
-
-
 def _excitations(diagram: MachineCampbell, speed: Array, hertz: Array) -> list[Trace]:
     """Lines of the mesh harmonics in the colour of the mesh, and of the turning of the shafts."""
     equal, traces, unit = _equal_orders(diagram), list[Trace](), display_unit("frequency")
@@ -172,8 +158,9 @@ def _excitations(diagram: MachineCampbell, speed: Array, hertz: Array) -> list[T
     colors = dict(zip(dict.fromkeys(groups.values()), cycle(COLORS), strict=False))
     named: set[str] = set()
     for name, number in equal.items():
-        group, mesh = groups[name], " x " in name
-        color, dash = (colors[group], "solid") if mesh else (MUTED, "dot")
+        mesh = " x " in name
+        group = groups[name] if mesh else "turning shafts"
+        color, dash = (colors[groups[name]], "solid") if mesh else (MUTED, "dot")
         trace = line(speed, hertz[number], group, color, unit=unit, dash=dash)
         if mesh:
             text = [""] * (len(speed) - 1) + [name.removeprefix("mesh ")]
@@ -185,18 +172,13 @@ def _excitations(diagram: MachineCampbell, speed: Array, hertz: Array) -> list[T
 
 
 def _crossings(met: Sequence[Meeting]) -> Trace:
-    """Dots where mesh harmonics meet modes, by the share of the mesh in the strain energy."""
-    x = displayed("speed", np.array([each.speed for each in met]))
-    y = displayed("frequency", np.array([each.frequency for each in met]))
-    dots = marked(x, y, "resonance", INK, size=6, symbol="circle")
-    dots["marker"]["size"] = 5.0 + 9.0 * np.sqrt([each.share for each in met])
     texts = [
         f"{each.excitation} meets mode {each.mode + 1}, {100.0 * each.share:.2g} % of its strain"
         for each in met
     ]
-    hover = f"%{{customdata}}: %{{y:.5g}} {display_unit('frequency')} at %{{x:.5g}} "
-    hover += f"{display_unit('speed')}<extra></extra>"
-    return {**dots, "customdata": texts, "hovertemplate": hover}
+    speed = displayed("speed", np.array([each.speed for each in met]))
+    hertz = displayed("frequency", np.array([each.frequency for each in met]))
+    return crossing_dots(speed, hertz, [each.share for each in met], texts)
 
 
 @drawing(
@@ -214,7 +196,7 @@ def machine_campbell(diagram: MachineCampbell) -> Any:
     speed = displayed("speed", diagram.speed)
     hertz = displayed("frequency", np.multiply.outer(diagram.order, diagram.speed) / (2.0 * np.pi))
     top, met = float(hertz.max()), diagram.meetings()
-    traces = _natural(diagram, speed, top, {each.mode for each in met})
+    traces = natural_lines(speed, diagram.frequency, 1, {each.mode for each in met}, top)
     traces += _excitations(diagram, speed, hertz)
     title = "No mesh meets a natural frequency that it strains in this range of speeds"
     if met:
@@ -225,5 +207,7 @@ def machine_campbell(diagram: MachineCampbell) -> Any:
         )
     marks = [("operation", float(displayed("speed", diagram.operating_speed)))]
     panel = Panel(axis_label("frequency"), traces, {"range": [0.0, 1.02 * top]}, height=2.0)
-    layout = {"hovermode": "closest", **event_lines(marks)}
-    return stack(title, axis_label("speed", "Speed of the input"), [panel], layout)
+    end = float(speed[-1])  # with room for the names at the ends of the lines
+    layout = {"hovermode": "closest", "xaxis": {"range": [-0.03 * end, 1.12 * end]}}
+    label = axis_label("speed", "Speed of the input")
+    return stack(title, label, [panel], {**layout, **event_lines(marks)})

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from tribodyn.drawing import drawing
+from tribodyn.plot.machine.side_view import joined_names
 from tribodyn.plot.theme.labels import axis_label, display_unit, displayed, rounded
 from tribodyn.plot.theme.panels import ROUNDING, from_zero, stack
 from tribodyn.plot.theme.style import INK, PAIR_COLORS, PINION, WHEEL, Trace, marked, stems
@@ -97,7 +98,12 @@ def machine_orders(motion: MachineMotion) -> Any:
     orders = motion.mesh_orders(_HARMONICS)
     top = int(np.argmax(values))
     order, meshes = list(orders.items())[top]
-    cause = " and ".join(f"harmonic {number} of mesh {name}" for name, number in meshes)
+    harmonics: dict[int, list[str]] = {}
+    for name, number in meshes:
+        harmonics.setdefault(number, []).append(name)
+    cause = " and ".join(
+        f"harmonic {number} of mesh {joined_names(names)}" for number, names in harmonics.items()
+    )
     title = (
         f"{label}: the largest line, {rounded(quantity, float(values[top]))}, is {cause} at "
         f"{rounded('frequency', order * motion.frequency)}"

@@ -31,6 +31,8 @@ _POINTS, _DRAWN, _FRAMES = 40, [0, 5, 9, 13, 17, 21, 25, 29, 33], 24
 _CARRIER = PAIR_COLORS[0]
 #: Orders of the carrier on both sides of a harmonic.
 _SIDEBANDS = 9
+#: Distance of the mean place of the sun from the centre over its motion that is none.
+_CENTRED = 1e-3
 
 
 def _outline(gear: CylindricalGear) -> ComplexArray:
@@ -158,10 +160,11 @@ def planetary_forces(motion: PlanetaryMotion) -> Any:
     sun = motion.displacement[:, motion.member.index("sun"), :2]
     at = motion.mean(sun)
     size = float(np.abs(motion.displacement).max())
-    mean = " and ".join(rounded("deflection", float(each)) for each in at)
-    label = f"Sun, about x and y<br>of {mean}"
-    if np.abs(at).max() <= ROUNDING * size:
-        label = "Sun, about the centre"
+    mean = ", ".join(
+        f"{k} = {rounded('deflection', float(v))}" for k, v in zip("xy", at, strict=True)
+    )
+    centred = np.abs(at).max() <= max(ROUNDING * size, _CENTRED * np.ptp(sun))
+    label = "Sun, about the centre" if centred else f"Sun, about<br>{mean}"
     orbit = [("xy"[k], sun[:, k] - at[k], COLORS[k]) for k in range(2)]
     panel = curves("deflection", label, motion.phase, orbit)
     panels.append(replace(panel, size=float(displayed("deflection", size))))

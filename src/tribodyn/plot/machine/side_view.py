@@ -354,7 +354,11 @@ def machine(machine: Machine) -> Any:
     layout = {
         "hovermode": "closest",
         "height": 520,
-        "xaxis": {"title": {"text": "Along the shafts [mm]"}, "zeroline": False},
+        "xaxis": {
+            "title": {"text": "Along the shafts [mm]"},
+            "zeroline": False,
+            "constrain": "domain",
+        },
         "yaxis": {
             "title": {"text": "Across [mm]"},
             "scaleanchor": "x",

@@ -8,10 +8,10 @@ import numpy as np
 
 from tribodyn.mesh.face.maps import face_map
 from tribodyn.plot.mesh.cycle import table_drawing
-from tribodyn.plot.theme.labels import axis_label, display_unit, displayed, rounded
+from tribodyn.plot.theme.labels import axis_label, display_unit, displayed, label_with, rounded
 from tribodyn.plot.theme.panels import event_lines
 from tribodyn.plot.theme.path import pair_letters, roll_label
-from tribodyn.plot.theme.style import HEAT, Trace, figure, heat
+from tribodyn.plot.theme.style import HEAT, MUTED, Trace, figure, heat
 
 if TYPE_CHECKING:
     from tribodyn.mesh import MeshTable
@@ -76,11 +76,11 @@ def face_maps(mesh: MeshTable) -> Any:
         radius = chart.path if pair.driver == "pinion" else pair.line_of_action_length - chart.path
         top = 1.0 - number * (_HEIGHT + _GAP) / total
         domain = (max(top - _HEIGHT / total, 0.0), top)
-        label = f"{_NAMES[column]} [{unit}]" if unit else _NAMES[column]
+        label = label_with(_NAMES[column].replace(" ", "<br>", 1), unit)
         heading = {"text": axis_label("face_position", "Face")}
         layout[f"yaxis{suffix}"] = {"title": heading, "domain": domain}
         bar = Trace(y=sum(domain) / 2.0, len=domain[1] - domain[0], thickness=14)
-        bar["title"] = {"text": label, "side": "right"}
+        bar["title"] = {"text": label, "side": "right", "font": {"size": 12, "color": MUTED}}
         most = np.nanquantile(values, _COLORED if "film" in column else 1.0)
         x = displayed("roll_angle", radius / pair.driving.base_radius)
         y = displayed("face_position", chart.face_position)

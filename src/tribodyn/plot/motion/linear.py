@@ -2,15 +2,17 @@
 
 from __future__ import annotations
 
+from collections.abc import Collection, Sequence
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from tribodyn.drawing import drawing
-from tribodyn.plot.theme.curves import curve, curves, points
+from tribodyn.plot.theme.curves import curve, curves
 from tribodyn.plot.theme.labels import axis_label, display_unit, displayed, rounded, significant
 from tribodyn.plot.theme.panels import Panel, event_lines, stack
 from tribodyn.plot.theme.style import (
+    INK,
     MUTED,
     PAIR_COLORS,
     PINION,
@@ -19,8 +21,10 @@ from tribodyn.plot.theme.style import (
     Trace,
     bars,
     line,
+    marked,
     translucent,
 )
+from tribodyn.types import Array
 
 if TYPE_CHECKING:
     from tribodyn.dynamics import Campbell, ForcedResponse, NaturalModes
@@ -30,8 +34,11 @@ _HATCHES = ("", "/", "x", ".")
 #: Springs with a smaller strain share in every mode are left out; the mesh does not excite a mode
 #: with a smaller share of strain in it.
 _LEAST = 1e-3
-#: Widths of the curve of a mode without and with all of its strain in the mesh [px].
-_THIN, _THICK = 1.0, 4.0
+#: Colour of modes that no mesh excites, and distance of two numbers over the height of the axis.
+_FAINT, _CLOSE = translucent(MUTED, 0.45), 0.02
+NARROW = "\N{EN SPACE}"
+#: Modes from which number and frequency are two lines.
+_MANY = 8
 
 
 def _bars(labels: list[str], shares: dict[str, Any]) -> list[Trace]:
@@ -74,7 +81,8 @@ def mode_shapes(modes: NaturalModes) -> Any:
     first, unit = modes.rigid, display_unit("frequency")
     hertz = displayed("frequency", modes.frequency[first:])
     # Modes can have the same frequency: the mode number makes the labels unique.
-    labels = [f"{first + k}: {significant(float(value), 4)}" for k, value in enumerate(hertz)]
+    apart = ": " if len(hertz) < _MANY else "<br>"
+    labels = [f"{first + k}{apart}{significant(float(v), 4)}" for k, v in enumerate(hertz)]
     moving = {body: share[first:] for body, share in modes.body_share().items()}
     strained = _strained(modes)
     share = modes.contact_share[first:]
@@ -91,7 +99,11 @@ def mode_shapes(modes: NaturalModes) -> Any:
         Panel(f"{kind} energy [%]", _bars(labels, shares), {"range": [0.0, 100.0]})
         for kind, shares in kinds
     ]
-    layout = {"barmode": "stack", "xaxis": {"type": "category"}, "hovermode": "closest"}
+    layout = {
+        "barmode": "stack",
+        "xaxis": {"type": "category", "tickangle": 0},
+        "hovermode": "closest",
+    }
     return stack(title, f"Mode: natural frequency [{unit}]", panels, layout)
 
 
@@ -105,20 +117,35 @@ def _title(diagram: Campbell) -> str:
     )
 
 
-def _modes(diagram: Campbell, speed: Any, top: float) -> list[Trace]:
-    """Lines of the modes; those above the plotted range have no legend entry."""
-    traces = []
-    for column in range(diagram.frequency.shape[1]):
-        share = float(np.mean(diagram.contact_share[:, column]))
-        name = f"mode {diagram.first_mode + column}"
-        color = PAIR_COLORS[column % len(PAIR_COLORS)]
-        values = diagram.frequency[:, column]
-        width = _THIN + (_THICK - _THIN) * share
-        color = color if share > _LEAST else translucent(MUTED, 0.45)  # the mesh cannot excite it
-        in_key = bool(np.min(displayed("frequency", values)) <= top and share > _LEAST)
-        style: Trace = {"width": width, "showlegend": in_key}
-        traces.append(curve("frequency", speed, values, name, color, **style))
+def natural_lines(
+    speed: Any, frequency: Array, first: int, strained: Collection[int], top: float
+) -> list[Trace]:
+    """Natural frequencies [Hz] over speed: dark with a number where the excitation reaches them."""
+    traces, unit = list[Trace](), display_unit("frequency")
+    row, before = 0, -np.inf
+    for column, values in enumerate(displayed("frequency", frequency).T):
+        if values.min() > 1.05 * top:
+            continue
+        color, width = (INK, 1.6) if column in strained else (_FAINT, 1.0)
+        trace = line(speed, values, f"mode {first + column}", color, unit=unit, width=width)
+        if column in strained:
+            # Numbers of close modes stand beside each other.
+            row = row + 1 if values[0] - before < _CLOSE * top else 0
+            before = values[0]
+            trace |= {"mode": "lines+text", "textposition": "top right", "textfont": {"size": 11}}
+            trace["text"] = [f"{4 * row * NARROW}{first + column}"] + [""] * (len(speed) - 1)
+        # One name: that modes coincide is no note.
+        traces.append({**trace, "name": "natural mode", "showlegend": False})
     return traces
+
+
+def crossing_dots(speed: Any, hertz: Any, share: Any, texts: Sequence[str]) -> Trace:
+    """Dots where excitations meet modes, by the share of the mesh in the strain energy."""
+    dots = marked(speed, hertz, "resonance", INK, size=6, symbol="circle")
+    dots["marker"]["size"] = 5.0 + 9.0 * np.sqrt(share)
+    hover = f"%{{customdata}}: %{{y:.5g}} {display_unit('frequency')} at %{{x:.5g}} "
+    hover += f"{display_unit('speed')}<extra></extra>"
+    return {**dots, "customdata": list(texts), "hovertemplate": hover}
 
 
 def _rising(diagram: Campbell, speed: Any, top: float) -> list[Trace]:
@@ -132,35 +159,31 @@ def _rising(diagram: Campbell, speed: Any, top: float) -> list[Trace]:
             texts[visible[-1]] = str(order)
         name, unit = f"harmonic {order}", display_unit("frequency")
         style: Trace = {
-            "dash": "dash",
-            "width": 1.0,
+            "width": 1.5,
             "mode": "lines+text",
             "textposition": "top left",
+            "showlegend": False,
         }
-        traces.append(line(speed, values, name, MUTED, unit=unit, text=texts, **style))
+        traces.append(line(speed, values, name, PINION, unit=unit, text=texts, **style))
     return traces
 
 
 def _met(diagram: Campbell) -> list[Trace]:
-    if not diagram.resonances:
-        return []
     met = diagram.resonances
-    hover = f"harmonic %{{customdata[0]}}, %{{y:.5g}} {display_unit('frequency')}, mesh "
-    dots = points(
-        "frequency", displayed("speed", np.array([each.speed for each in met])),
-        np.array([each.frequency for each in met]), "resonance", WHEEL, size=6.0, symbol="circle",
-        customdata=[[each.order, 100.0 * each.contact_share] for each in met],
-        hovertemplate=f"{hover}%{{customdata[1]:.0f}} %<extra>resonance</extra>",
-    )  # fmt: skip
-    size = 6.0 + 10.0 * np.array([each.contact_share for each in met])
-    return [{**dots, "marker": {"color": WHEEL, "size": size}}]
+    if not met:
+        return []
+    speed = displayed("speed", np.array([each.speed for each in met]))
+    hertz = displayed("frequency", np.array([each.frequency for each in met]))
+    share = np.array([each.contact_share for each in met])
+    texts = [f"harmonic {each.order}, mesh {100.0 * each.contact_share:.0f} %" for each in met]
+    return [crossing_dots(speed, hertz, share, texts)]
 
 
 @drawing(
     "campbell",
     heading="Campbell diagram",
-    caption="Natural frequencies and mesh harmonics over the speed. Where two lines cross, the "
-    "mesh can excite a resonance; the thicker the line of a mode and the larger the dot, the "
+    caption="Natural frequencies and the numbered mesh harmonics over the speed. Where a harmonic "
+    "crosses a dark, numbered mode, the mesh can excite a resonance: the larger the dot, the "
     "higher the share of strain in the mesh. Light lines are modes that do not strain it. For a "
     "case the operating speed is marked, and the stiffness is taken at this speed and load.",
     of=("Campbell", "Result.campbell"),
@@ -173,7 +196,10 @@ def campbell(diagram: Campbell) -> Any:
     lines = float(np.max(displayed("frequency", max(diagram.orders) * diagram.mesh_frequency)))
     top = 1.1 * (min(modes, lines) or lines)
     axis = {"range": [0.0, top]}
-    traces = [*_modes(diagram, speed, top), *_rising(diagram, speed, top), *_met(diagram)]
+    share = np.mean(diagram.contact_share, axis=0)
+    strained = set(np.flatnonzero(share > _LEAST).tolist())
+    traces = natural_lines(speed, diagram.frequency, diagram.first_mode, strained, top)
+    traces += [*_rising(diagram, speed, top), *_met(diagram)]
     now = diagram.operating_speed
     marks = [] if now is None else [("operation", float(displayed("speed", now)))]
     panel = Panel(axis_label("frequency"), traces, axis, height=1.8)

@@ -12,7 +12,7 @@ import numpy as np
 from tribodyn.analysis import Spectrum, amplitude_spectrum
 from tribodyn.plot.mesh.cycle import run_drawing
 from tribodyn.plot.motion.motion import Motion, no_translation
-from tribodyn.plot.motion.time_histories import GEARS, directions, two_line_label
+from tribodyn.plot.motion.time_histories import GEARS, directions, wrapped_label
 from tribodyn.plot.theme.labels import axis_label, display_unit, displayed, rounded, significant
 from tribodyn.plot.theme.panels import Panel, event_lines, stack
 from tribodyn.plot.theme.style import MUTED, TOP, TOTAL, Trace, bars, button_row
@@ -29,6 +29,10 @@ _DECADES = 4.0
 _SEEN = 1.8
 #: Left end of the axis of the orders, and the part of it within which marks share a name.
 _FIRST, _APART = 0.4, 0.04
+#: Last order up to which every order has its number.
+_EVERY = 12.0
+#: Least share of the strain in the mesh of modes that are marked, and most of them.
+_REACHED, _MARKED = 0.01, 8
 #: Height of two rows of numbers above the panels [px].
 _NAMES = 30
 
@@ -73,7 +77,7 @@ def _gear_panels(result: Result, quantity: str) -> list[Panel]:
         _panel(
             result,
             quantity,
-            two_line_label(quantity, direction),
+            wrapped_label(quantity, direction),
             [(gear, color, motion.of_gear(quantity, gear, axis)) for gear, color in GEARS],
         )
         for axis, direction in directions(result)
@@ -92,10 +96,12 @@ def _natural(result: Result, last: float) -> tuple[dict[str, Any], list[Trace]]:
     """Mark the natural frequencies in the range of the harmonics and list them in the legend."""
     # Numbers of close frequencies share one label above the panels.
     modes, places = result.natural_modes, list[tuple[str, float]]()
-    legend: list[Trace] = []
+    shares, legend = modes.contact_share[modes.rigid :], list[Trace]()
+    inside = modes.frequency[modes.rigid :] <= last * result.mesh.mesh_frequency
+    least = max(_REACHED, float(np.sort([*np.zeros(_MARKED), *shares[inside]])[-_MARKED]))
     for number, hertz in enumerate(modes.frequency[modes.rigid :], start=1):
         place = float(hertz) / result.mesh.mesh_frequency
-        if _FIRST < place <= last:
+        if _FIRST < place <= last and shares[number - 1] >= least:
             places.append((str(number), place))
             name = f"{number}: {rounded('frequency', float(hertz))}"
             style = {"color": MUTED, "width": 1, "dash": "dot"}
@@ -132,6 +138,7 @@ def _harmonic_layout(result: Result, panels: Sequence[Panel]) -> tuple[dict[str,
         linear |= {f"{axis}.type": "linear", f"{axis}.autorange": True}
         logarithmic |= {f"{axis}.type": "log", f"{axis}.range": _decades(panel)}
     orders = {"range": [_FIRST, ends[0]], "showgrid": False}
+    orders |= {"dtick": 1} if ends[0] < _EVERY else {}
     menu = button_row([("linear", linear), ("logarithmic", logarithmic)])
     menu["pad"] = {"b": 6 + _NAMES}
     lines, legend = _natural(result, ends[0])
@@ -165,9 +172,9 @@ def _decades(panel: Panel) -> list[float]:
     "spectrum",
     heading="Spectra",
     caption="Amplitude of each mesh harmonic. Harmonic 1 is the mesh frequency, the number of "
-    "teeth that engage per second. Dotted lines are natural frequencies, numbered as in the table "
-    "of results: they amplify the harmonics close to them. The buttons switch to a logarithmic "
-    "scale, which shows the small harmonics.",
+    "teeth that engage per second. Dotted lines are the natural frequencies that the mesh strains "
+    "most, numbered as in the table of results: they amplify the harmonics close to them. The "
+    "buttons switch to a logarithmic scale, which shows the small harmonics.",
     missing=_no_harmonics,
 )
 def spectrum(result: Result) -> Any:
@@ -190,8 +197,8 @@ def _no_bearing_harmonics(result: Result) -> str:
     "bearing_spectrum",
     heading="Spectra of the bearing forces",
     caption="Forces that the bearings transmit to the housing, by mesh harmonic. A harmonic close "
-    "to a natural frequency of the housing dominates the noise. Dotted lines are natural "
-    "frequencies of the gears on their supports.",
+    "to a natural frequency of the housing dominates the noise. Dotted lines are the natural "
+    "frequencies of the gears on their supports that the mesh strains most.",
     missing=_no_bearing_harmonics,
 )
 def bearing_spectrum(result: Result) -> Any:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from textwrap import wrap
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -23,6 +24,9 @@ DIRECTIONS = (("y", "along the line of action"), ("x", "across the line of actio
 #: Smallest relative shift of the mean force that the caption reports.
 _SHIFTED = 1e-3
 _ALONG = "along the line of action"
+#: Characters of a line of a label, distance of two means over the swing from which each signal is
+#: drawn about its mean, and swing of a force over its size from which its axis begins at zero.
+_LINE, _APART, _SEEN = 26, 2.0, 0.1
 
 
 def directions(result: Result) -> tuple[tuple[str, str], ...]:
@@ -39,26 +43,45 @@ def _along(result: Result) -> str:
     return dict(directions(result))["y"]
 
 
-def two_line_label(quantity: str, direction: str) -> str:
-    """Label of a quantity with its direction on a second line."""
-    return f"{quantity_label(quantity)}<br>{direction}"
+def wrapped_label(quantity: str, direction: str) -> str:
+    """Label of a quantity with its direction below, in lines that fit beside a panel."""
+    return "<br>".join([quantity_label(quantity), *wrap(direction, _LINE)])
+
+
+def _means(result: Result, quantity: str, axis: str) -> tuple[float, ...]:
+    """Means of a signal of both gears where it varies little about different ones; else none."""
+    motion = Motion(result)
+    signals = [motion.measured(motion.of_gear(quantity, gear, axis)) for gear, _ in GEARS]
+    means = tuple(float(np.mean(signal)) for signal in signals)
+    swing = max(float(np.ptp(signal)) for signal in signals)
+    return means if abs(means[1] - means[0]) > _APART * swing else ()
 
 
 def _motion_panels(result: Result, quantity: str) -> list[Panel]:
-    """Panels with a signal of pinion and wheel over the mesh cycle or over time."""
-    motion = Motion(result)
+    """Panels with a signal of pinion and wheel, about its means where it varies little."""
+    motion, panels = Motion(result), []
+    for axis, direction in directions(result):
+        means = _means(result, quantity, axis)
+        label = wrapped_label(quantity, direction + ", without its mean" * bool(means))
+        traces = [
+            motion.line(
+                quantity, motion.of_gear(quantity, gear, axis) - mean, gear, color, width=1.5
+            )
+            for (gear, color), mean in zip(GEARS, means or (0.0, 0.0), strict=True)
+        ]
+        size = float(displayed(quantity, max(map(abs, means), default=0.0)))
+        panels.append(Panel(axis_label(quantity, label), traces, size=size))
+    return panels
 
-    def curve(gear: str, axis: str, color: str) -> dict[str, Any]:
-        signal = motion.of_gear(quantity, gear, axis)
-        return motion.line(quantity, signal, gear, color, width=1.5)
 
-    return [
-        Panel(
-            axis_label(quantity, two_line_label(quantity, direction)),
-            [curve(gear, axis, color) for gear, color in GEARS],
-        )
-        for axis, direction in directions(result)
-    ]
+def _levels(result: Result, quantity: str) -> str:
+    """Sentence on the means that the curves leave out."""
+    levels = []
+    for axis, direction in directions(result):
+        if means := _means(result, quantity, axis):
+            pinion, wheel = (rounded(quantity, mean) for mean in means)
+            levels.append(f"{pinion} (pinion) and {wheel} (wheel) {direction}")
+    return f"Means that the curves leave out: {'; '.join(levels)}. " if levels else ""
 
 
 def _below_zero(result: Result) -> str:
@@ -111,9 +134,14 @@ def mesh_force(result: Result) -> Any:
         motion.line("mesh_force", force, "dynamic", TOTAL),
         motion.line("mesh_force", static, "static", MUTED, dash="dash"),
     ]
-    low, high = (rounded("mesh_force", float(f(motion.measured(force)))) for f in (np.min, np.max))
-    panel = from_zero(axis_label("mesh_force"), traces, height=1.3)
-    return motion.figure(f"The mesh force varies between {low} and {high}", [panel])
+    ends = [float(f(motion.measured(force))) for f in (np.min, np.max)]
+    low, high = (rounded("mesh_force", end) for end in ends)
+    # A force that varies little is drawn to its own scale.
+    panel = from_zero if ends[1] - ends[0] > _SEEN * ends[1] else Panel
+    return motion.figure(
+        f"The mesh force varies between {low} and {high}",
+        [panel(axis_label("mesh_force"), traces, height=1.3)],
+    )
 
 
 def _friction_caption(result: Result) -> str:
@@ -228,6 +256,7 @@ def _bearing_caption(result: Result) -> str:
     planar = "Along the line of action the bearings carry the mesh force, across it the friction. "
     return (
         "The mean force loads the bearings; the variation about it excites the housing. "
+        + _levels(result, "bearing_force")
         + (planar if _along(result) == _ALONG else "")
         + _settling(result, "bearing_force")
     ).rstrip()
@@ -270,7 +299,7 @@ def tooth_force(result: Result) -> Any:
     panels = []
     for axis, color, component in zip("xyz", (PINION, WHEEL, TOTAL), values.T, strict=True):
         curve = motion.line("mesh_force", component, axis, color, width=1.5)
-        panels.append(Panel(axis_label("mesh_force", two_line_label("mesh_force", axis)), [curve]))
+        panels.append(Panel(axis_label("mesh_force", wrapped_label("mesh_force", axis)), [curve]))
     means = [rounded("mesh_force", float(fine.weight @ component)) for component in values.T]
     title = f"The mean tooth force is {means[0]}, {means[1]} and {means[2]}"
     return motion.figure(title, panels)
