@@ -7,9 +7,9 @@ steady orbit. Both are iterated to their fixed point.
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from dataclasses import replace
-from typing import TYPE_CHECKING, Any
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, Any, Protocol, Self, TypeVar
 
 import numpy as np
 
@@ -22,7 +22,7 @@ from tribodyn.study.mesh_inputs import MeshInputs, mesh_inputs
 from tribodyn.study.pipeline.assembly import geometry, whole_system
 from tribodyn.study.pipeline.motion import motion_of
 from tribodyn.study.pipeline.response_series import mesh_force, one_sided_phase
-from tribodyn.study.pipeline.tooth_contact import hypoid_friction_of, mesh_of
+from tribodyn.study.pipeline.tooth_contact import fitted_law, hypoid_friction_of, mesh_of
 from tribodyn.types import Array
 
 if TYPE_CHECKING:
@@ -30,6 +30,10 @@ if TYPE_CHECKING:
     from tribodyn.mesh import MeshTable
     from tribodyn.study.case.case import Case
 
+#: Mesh tables by the name of the mesh, and the name of that of a pair.
+Tables = Mapping[str, "MeshTable"]
+_MESH = "mesh"
+Point = TypeVar("Point", bound="Settling")
 #: Takes a case and its mesh; returns the case updated by the mesh, such as with warmer oil.
 Follow = Callable[["Case", "MeshTable"], "Case"]
 
@@ -85,54 +89,105 @@ class Coupling(Record):
         return float(last[-1] / last[0]) if last.size > 1 and last[0] > 0.0 else 0.0
 
 
+class Settling(Protocol):
+    """Teeth that are to agree with their load: of a pair, or of all meshes of a machine."""
+
+    def required(self, tables: Tables) -> dict[str, Array]:
+        """Force of all pairs that results from the teeth, over its nominal force, by mesh."""
+
+    def following(self, tables: Tables) -> tuple[Self, float]:
+        """The same with what else follows from the teeth, such as warmer oil, and its change."""
+
+    def under(self, loading: Mapping[str, Array]) -> Tables:
+        """Teeth under given forces."""
+
+
+@dataclass(frozen=True)
+class _Pair:
+    """A pair, whose oil may follow from its mesh."""
+
+    case: Case
+    nominal: MeshTable
+    progress: Progress
+    follow: Follow | None
+
+    def required(self, tables: Tables) -> dict[str, Array]:
+        (mesh,) = tables.values()
+        return {_MESH: _loading(self.case.solver.coupling, self.case, mesh, self.progress)}
+
+    def following(self, tables: Tables) -> tuple[_Pair, float]:
+        changed = self.case if self.follow is None else self.follow(self.case, tables[_MESH])
+        if changed == self.case:
+            return self, 0.0
+        nominal = mesh_of(changed, self.progress)
+        point = replace(self, case=changed, nominal=nominal)
+        return point, _viscosity_change(self.case, changed)
+
+    def under(self, loading: Mapping[str, Array]) -> Tables:
+        return {_MESH: mesh_under_load(mesh_inputs(self.case), self.nominal, loading[_MESH])}
+
+
 def coupled(
     case: Case, progress: Progress, follow: Follow | None
 ) -> tuple[Case, MeshTable, Coupling]:
     """Iterate mesh and load to convergence; return the case, the mesh and the iteration."""
-    nominal = mesh = mesh_of(case, progress)
-    kind, tolerance = case.solver.coupling, case.solver.coupling_tolerance
-    loading, relaxation, last_change = np.ones(mesh.phase.size), 1.0, np.inf
-    rows: list[tuple[float, ...]] = []
+    nominal, solver = mesh_of(case, progress), case.solver
+    start = _Pair(case, nominal, progress, follow)
+    point, tables, loading, rows = settled(
+        start, {_MESH: nominal}, solver.coupling, solver.coupling_tolerance
+    )
+    mesh = tables[_MESH]
+    columns: dict[str, Any] = dict(zip(_CHANGES, np.array(rows).T, strict=True))
+    record = Coupling(
+        iteration=np.arange(1.0, len(rows) + 1.0),
+        phase=mesh.phase,
+        loading=loading[_MESH],
+        kind=solver.coupling,
+        tolerance=solver.coupling_tolerance,
+        **columns,
+    )
+    return point.case, mesh, record
+
+
+def settled(
+    point: Point, tables: Tables, kind: str, tolerance: float
+) -> tuple[Point, Tables, dict[str, Array], list[tuple[float, ...]]]:
+    """Iterate teeth and load until they agree, from the teeth under the nominal load."""
+    loading = {name: np.ones(table.phase.size) for name, table in tables.items()}
+    relaxation, last_change, rows = 1.0, np.inf, list[tuple[float, ...]]()
     while True:
-        with collected():  # The final mesh and motion repeat these warnings.
-            required = _loading(kind, case, mesh, progress)
-            step = np.maximum(required, _LIGHT) - loading
-            change = float(np.abs(step).max())
+        with collected():  # The teeth under the nominal load and the motion have these warnings.
+            required = point.required(tables)
+            steps = {n: np.maximum(required[n], _LIGHT) - loading[n] for n in tables}
+            change = max(float(np.abs(step).max()) for step in steps.values())
             if change > last_change:
                 relaxation *= 0.5
             last_change = change
-            loading = loading + relaxation * step
-            changed = case if follow is None else follow(case, mesh)
-            if changed != case:
-                nominal = mesh_of(changed, progress)
-            solved = _mesh_under_load(mesh_inputs(changed), nominal, loading)
-        rows.append((change, *_changes(mesh, solved), _viscosity_change(case, changed)))
-        case, mesh = changed, solved
+            loading = {name: loading[name] + relaxation * step for name, step in steps.items()}
+            point, other = point.following(tables)
+            solved = point.under(loading)
+        of_meshes = [_changes(tables[name], solved[name]) for name in tables]
+        rows.append((change, *map(max, zip(*of_meshes, strict=True)), other))
+        tables = solved
         if max(rows[-1]) < tolerance:
             break
         if not np.isfinite(change) or relaxation < _MIN_RELAXATION or len(rows) == _MAX_PASSES:
             raise ComputationError(_not_converged(kind, rows))
-    if np.any(required < _LIGHT):
-        warn(
-            "coupling-light-load",
-            f"the teeth carry less than {100.0 * _LIGHT:g} % of their nominal force in "
-            f"{100.0 * float(mesh.grid.mean((required < _LIGHT).astype(float))):.2g} % of the mesh "
-            "cycle; film and friction there are computed at that force",
-        )
-    columns: dict[str, Any] = dict(zip(_CHANGES, np.array(rows).T, strict=True))
-    order = np.arange(1.0, len(rows) + 1.0)
-    record = Coupling(
-        iteration=order,
-        phase=mesh.phase,
-        loading=loading,
-        kind=kind,
-        tolerance=tolerance,
-        **columns,
-    )
-    return case, mesh, record
+    for name, mesh in tables.items():
+        light = (required[name] < _LIGHT).astype(float)
+        if light.any():
+            warn(
+                "coupling-light-load",
+                f"the teeth carry less than {100.0 * _LIGHT:g} % of their nominal force in "
+                f"{100.0 * float(mesh.grid.mean(light)):.2g} % of the mesh "
+                "cycle; film and friction there are computed at that force",
+            )
+    return point, tables, loading, rows
 
 
-def _mesh_under_load(inputs: MeshInputs, nominal: MeshTable, loading: Array) -> MeshTable:
+def mesh_under_load(
+    inputs: MeshInputs, nominal: MeshTable, loading: Array, *, about_load: bool = False
+) -> MeshTable:
     """Compute the mesh under given forces; static errors stay those of the nominal torque."""
     from tribodyn.mesh.build import loaded_mesh
 
@@ -143,7 +198,7 @@ def _mesh_under_load(inputs: MeshInputs, nominal: MeshTable, loading: Array) -> 
             inputs.cylindrical,
             inputs.settings,
             (inputs.speed, inputs.torque),
-            force_law=inputs.law == "force-law",
+            force_law=fitted_law(inputs, about_load),
             loading=loading,
         ).table(inputs.settings)
     if inputs.law == "tangent":
@@ -181,16 +236,28 @@ def balanced_load(case: Case, mesh: MeshTable) -> Array:
     held_gear = {"drive": case.gears.driver, "both": None}.get(
         case.operation.torque_balance, case.gears.driven
     )
-    body, direction, friction = geometry(case), np.atleast_2d(mesh.direction), mesh.friction
-    numerator = denominator = np.zeros(1)
+    if held_gear is not None:
+        return load_of_torque(mesh, held_gear)
+    body, numerator, denominator = geometry(case), np.zeros(1), np.zeros(1)
     for gear in GEARS:
-        if held_gear not in (gear, None):
-            continue
-        pushes, rubs = (column_of(each, f"{gear}_theta") for each in (direction, friction))
-        lever = pushes / (1.0 if held_gear else body[f"moment_of_inertia_{gear}"])
+        pushes, rubs = _levers(mesh, gear)
+        lever = pushes / body[f"moment_of_inertia_{gear}"]
         numerator = numerator + lever * pushes
         denominator = denominator + lever * (pushes + rubs)
     return np.asarray(numerator / denominator)
+
+
+def load_of_torque(mesh: MeshTable, gear: str) -> Array:
+    """Return the force that holds the torque of a gear with friction, over that without it."""
+    pushes, rubs = _levers(mesh, gear)
+    return np.asarray(pushes / (pushes + rubs))
+
+
+def _levers(mesh: MeshTable, gear: str) -> tuple[Array, Array]:
+    """Levers of the teeth and of their friction about the axis of a gear."""
+    both = np.atleast_2d(mesh.direction), mesh.friction
+    pushes, rubs = (column_of(each, f"{gear}_theta") for each in both)
+    return pushes, rubs
 
 
 def force_at_knots(mesh: MeshTable, response: Response) -> Array:

@@ -58,6 +58,7 @@ from tribodyn.study.machine.read_parts import (
     read_gear,
     read_heat,
     read_shaft,
+    read_solver,
     table_of,
     tables_of,
 )
@@ -80,7 +81,7 @@ from tribodyn.study.planetary.machine_stages import (
 
 _TOP = (
     *("title", "origin", *GROUPS, "planets", "housing", "operation", "load_cases", "dynamics"),
-    *(*SHARED, "assumed"),
+    *("solver", *SHARED, "assumed"),
 )
 #: Tables in which problems of parts are placed.
 _PLACED = (*GROUPS, "planets", "operation", "housing", "lubricant")
@@ -163,6 +164,7 @@ class MachineCase(PartsBase):
         self.heat: LubricantData | None = read_heat(self.data.get("lubricant", {}), problems)
         motion = {k: v for k, v in self.data.get("dynamics", {}).items() if k not in MESH_KEYS}
         self.motion = table_of(MotionTable, motion, "dynamics", problems)
+        self.solver = read_solver(self.data, problems)
         self.faults: dict[str, Any] = read_each(groups, "faults", read_fault_table, problems)
         problems += machine_fault_problems(self)
         self.load_cases: tuple[LoadCase, ...] = ()  #: of ``[[load_cases]]``

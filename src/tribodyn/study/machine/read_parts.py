@@ -24,7 +24,14 @@ from tribodyn.study.case.values import (
     written,
 )
 from tribodyn.study.faults.section import PartFaultTable
-from tribodyn.study.machine.tables import BearingTable, CouplingTable, GearTable, ShaftTable
+from tribodyn.study.machine.tables import (
+    SOLVER_OF_PAIRS,
+    BearingTable,
+    CouplingTable,
+    GearTable,
+    ShaftTable,
+    SolverTable,
+)
 
 LENGTH = number(
     REQUIRED, 0.0, 100.0, "guards against a wrong unit", unit="m", display_unit="mm",
@@ -267,6 +274,25 @@ def read_heat(oil: Mapping[str, object], problems: KeyedProblems) -> LubricantDa
     table: LubricantData | None = None
     if "heat_transfer" in oil:
         table = table_of(LubricantData, oil, "lubricant", problems)
+    return table
+
+
+def read_solver(data: Mapping[str, Any], problems: KeyedProblems) -> SolverTable:
+    """Table ``[solver]``, of which a machine has the coupling at rest."""
+    values = {k: v for k, v in data.get("solver", {}).items() if k not in SOLVER_OF_PAIRS}
+    table: SolverTable = table_of(SolverTable, values, "solver", problems)
+    bodies = [data.get("dynamics", {})]
+    bodies += [body for group in ("meshes", "planets") for body in data.get(group, {}).values()]
+    follows = any(isinstance(b, Mapping) and b.get("friction_load") == "dynamic" for b in bodies)
+    kind, what, why = getattr(table, "coupling", "none"), 'coupling = "dynamic"', ""
+    if kind == "dynamic":
+        why = "The load of a mesh of a machine is no function of its own phase alone"
+    elif kind == "static" and follows:
+        what = 'coupling = "static" and friction_load = "dynamic"'
+        why = "The coupling already makes friction follow the load"
+    if why:
+        remedy = 'Write coupling = "static", or friction_load = "dynamic" without coupling'
+        problems.append(("solver.coupling", Problem(what, "", why, remedy)))
     return table
 
 

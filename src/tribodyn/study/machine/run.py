@@ -7,7 +7,8 @@ import re
 import sys
 import warnings
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
+from functools import cached_property
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from tribodyn.dynamics import law_contact
@@ -31,6 +32,7 @@ from tribodyn.machine import (
 )
 from tribodyn.machine import system as system_of
 from tribodyn.progress import SILENT, Progress
+from tribodyn.study.coupling import load_of_torque, mesh_under_load, settled
 from tribodyn.study.heat_balance import HeatBalance, Temperatures, balanced
 from tribodyn.study.machine.case import MachineCase
 from tribodyn.study.machine.first_look import warn_of_period
@@ -53,6 +55,7 @@ if TYPE_CHECKING:
     from tribodyn.dynamics import LoadFriction, Response
     from tribodyn.machine import Machine, MeshBalance, StaticBalance
     from tribodyn.mesh import MeshTable
+    from tribodyn.types import Array
 
 #: Passes of teeth and balance at most, and change of the misalignment over the compression of the
 #: teeth that ends them.
@@ -138,24 +141,94 @@ def balanced_machine(
     case: MachineCase, load: LoadCase, progress: Progress = SILENT, *, rehearsal: bool = False
 ) -> Balanced:
     """Static balance of a machine with computed teeth, at the temperature of its heat balance."""
-    if case.heat is None or rehearsal:
-        return _settled(case, load, progress, rehearsal=rehearsal)
+    if rehearsal:
+        return _settled(case, load, progress, rehearsal=True)
+    if case.heat is None:
+        return _coupled(case, load, progress)
     rest: Balanced | None = None
 
     def solve(to: Temperatures) -> tuple[Balanced, float]:
         nonlocal rest
         warm = replace(load, temperature=to.oil, gear_temperature=to.gears)
-        rest = _settled(case, warm, progress, start=rest)
+        rest = _coupled(case, warm, progress, rest)
         return rest, sum(power_with_friction(rest.static.machine, rest.tables)[1].values())
 
     pairs = [read_teeth(case, n, teeth_under(case, n, load))[0] for n in case.meshes_with_teeth]
     try:
         oils = [pair.lubricant for pair in pairs if pair.lubricant is not None]
-        settled, at, heat = balanced(case.heat, oils, solve)
+        warm_rest, at, heat = balanced(case.heat, oils, solve)
     except ComputationError as error:
         raise ComputationError(case._placed(error)) from None
     warm = replace(load, temperature=at.oil, gear_temperature=at.gears)
-    return settled._replace(load=warm, heat=heat)
+    return warm_rest._replace(load=warm, heat=heat)
+
+
+def _coupled(
+    case: MachineCase, load: LoadCase, progress: Progress, start: Balanced | None = None
+) -> Balanced:
+    """Static balance of a machine with teeth that agree with their load, where the case says so."""
+    rest, solver = _settled(case, load, progress, start=start), case.solver
+    if solver.coupling == "none":
+        return rest
+    meshes = _Meshes(case, load, progress, rest)
+    meshes, tables, *_ = settled(meshes, rest.tables, solver.coupling, solver.coupling_tolerance)
+    return meshes.rest._replace(static=meshes.balance(tables), tables=dict(tables))
+
+
+@dataclass(frozen=True)
+class _Meshes:
+    """Teeth of all meshes of a machine, whose shafts deflect under their forces."""
+
+    case: MachineCase
+    load: LoadCase
+    progress: Progress
+    rest: Balanced  #: with the teeth under the nominal load
+
+    @cached_property
+    def inputs(self) -> dict[str, MeshInputs]:
+        """What the teeth are computed from."""
+        misaligned = self.rest.misalignment.items()
+        return {name: inputs_under(self.case, name, self.load, m) for name, m in misaligned}
+
+    def balance(self, tables: Mapping[str, MeshTable]) -> StaticBalance:
+        """Static balance with the force laws of mesh tables."""
+        return _balance(self.case, self.load, tables, self.rest.misalignment)
+
+    def required(self, tables: Mapping[str, MeshTable]) -> dict[str, Array]:
+        """Forces that hold the torques which reach the meshes, less the friction before them."""
+        machine = self.rest.static.machine
+        flow, nominal = power_with_friction(machine, tables)[0].meshes, machine.kinematics.meshes
+        return {
+            name: flow[name].power
+            / nominal[name].power
+            * load_of_torque(table, self.inputs[name].driver)
+            for name, table in tables.items()
+        }
+
+    def following(self, tables: Mapping[str, MeshTable]) -> tuple[_Meshes, float]:
+        """The same with the misalignments by these teeth, and their change."""
+        static, before = self.balance(tables), self.rest.misalignment
+        change, after = _moved(before, static)
+        if change <= _SETTLED:
+            return self, change
+        teeth = _teeth(self.case, self.load, after, False, self.progress)
+        nominal = {name: table for name, (table, _, _) in teeth.items()}
+        rest = self.rest._replace(static=static, tables=nominal, misalignment=after)
+        return replace(self, rest=rest), change
+
+    def under(self, loading: Mapping[str, Array]) -> dict[str, MeshTable]:
+        """Teeth under given forces; planets with equal teeth and forces share them."""
+        nominal = self.rest.tables
+        keys = {n: (id(nominal[n]), of.round(12).tobytes()) for n, of in loading.items()}
+        first = {key: name for name, key in reversed(keys.items())}
+
+        def compute(name: str) -> MeshTable:
+            parts = self.inputs[name], nominal[name], loading[name]
+            return mesh_under_load(*parts, about_load=True)
+
+        listed = in_threads(compute, [*first.values()], processors())
+        tables = dict(zip(first, listed, strict=True))
+        return {name: tables[key] for name, key in keys.items()}
 
 
 def _settled(
@@ -173,8 +246,7 @@ def _settled(
     heated = case.heat is not None and not rehearsal
     passes, same = (_HEATED_PASSES, _SETTLED) if heated else (_PASSES, _SAME)
     for _ in range(passes):
-        before = {name: static.meshes[name] for name in case.meshes_with_teeth}
-        misalignment = {name: misalignment_of(mesh) for name, mesh in before.items()}
+        misalignment = {n: misalignment_of(static.meshes[n]) for n in case.meshes_with_teeth}
         teeth = _teeth(case, load, misalignment, rehearsal, progress)
         tables = {name: table for name, (table, _, _) in teeth.items()}
         laws = {name: law for name, (_, law, _) in teeth.items()}
@@ -184,11 +256,7 @@ def _settled(
             for warning in of_mesh
         ]
         static = _static(case, load, laws, misalignment)
-        changes = [
-            _change(misalignment[name], misalignment_of(static.meshes[name])) / mesh.compression
-            for name, mesh in before.items()
-        ]
-        if max(changes, default=0.0) <= same:
+        if _moved(misalignment, static)[0] <= same:
             break
     progress.finish()
     return Balanced(load, static, tables, misalignment, mesh_warnings)
@@ -231,6 +299,15 @@ def teeth_of_meshes(
 def misalignment_of(mesh: MeshBalance) -> float | Misalignment:
     """Misalignment of a mesh by its deflected shafts [m]; mounting errors on crossed axes."""
     return mesh.misalignment if mesh.mounting is None else mesh.mounting
+
+
+def _moved(
+    before: Mapping[str, float | Misalignment], static: StaticBalance
+) -> tuple[float, dict[str, float | Misalignment]]:
+    """Greatest change of a misalignment over the compression of the teeth, and all of them."""
+    after = {name: misalignment_of(static.meshes[name]) for name in before}
+    changes = [_change(before[n], after[n]) / static.meshes[n].compression for n in before]
+    return max(changes, default=0.0), after
 
 
 def _change(before: float | Misalignment, after: float | Misalignment) -> float:
@@ -279,13 +356,23 @@ def _restored_load(case: MachineCase, load: LoadCase, stored: StoredLoad) -> Loa
         warm = (heat.temperature, heat.gear_temperature)
         oil, gears = (None if each is None else float(each[-1]) for each in warm)
         load = replace(load, temperature=oil, gear_temperature=gears)
-    inputs = {name: inputs_under(case, name, load, misalignment[name]) for name in tables}
-    laws = {name: _law(inputs[name], table) for name, table in tables.items()}
-    static = _static(case, load, laws, misalignment)
+    static = _balance(case, load, tables, misalignment)
     structure = structure_of(case, static.linearized())
     system, motion = system_of(structure), motion_from(data)
     at_rest = load, structure, static, tables, misalignment
     return LoadResult(*at_rest, system, motion, heat=heat)
+
+
+def _balance(
+    case: MachineCase,
+    load: LoadCase,
+    tables: Mapping[str, MeshTable],
+    misalignment: Mapping[str, float | Misalignment],
+) -> StaticBalance:
+    """Static balance with the force laws of mesh tables."""
+    inputs = {name: inputs_under(case, name, load, misalignment[name]) for name in tables}
+    laws = {name: _law(inputs[name], table) for name, table in tables.items()}
+    return _static(case, load, laws, misalignment)
 
 
 def warn_of_meshes(mesh_warnings: Iterable[MeshWarning]) -> None:

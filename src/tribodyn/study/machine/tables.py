@@ -10,7 +10,7 @@ from tribodyn.machine import ROLLING_BEARINGS, STEEL
 from tribodyn.model import REQUIRED, choice, file_path, flag, integer, number, numbers, text
 from tribodyn.study.case import gears
 from tribodyn.study.case.section import Section
-from tribodyn.study.case.sections import Dynamics, MaterialData
+from tribodyn.study.case.sections import Dynamics, MaterialData, Solver
 from tribodyn.study.faults.section import PartFaultTable
 
 _GUARD = "guards against a wrong unit"
@@ -129,7 +129,6 @@ _OF_PAIR = (
 )
 
 
-#: Kinds of meshes.
 _KINDS = {
     "spur": "cylindrical gears, spur or helical, external or internal",
     "hypoid": "hypoid or bevel gears, whose axes cross or intersect",
@@ -330,6 +329,17 @@ class MotionTable(Section):
     )
 
 
+class SolverTable(Section):
+    """The ``[solver]`` table of a machine."""
+
+    coupling: str = Solver.fields["coupling"]  # type: ignore[assignment]
+    coupling_tolerance: float = Solver.fields["coupling_tolerance"]  # type: ignore[assignment]
+
+
+#: Keys of ``[solver]`` that only pairs have.
+SOLVER_OF_PAIRS = tuple(name for name in Solver.fields if name not in SolverTable.fields)
+
+
 #: Keys of a mesh that both meshes of a stage share.
 _OF_STAGE = (
     "normal_module",
@@ -451,6 +461,7 @@ TABLES: dict[str, type[Section]] = {
     "operation": OperationTable,
     "load_cases": LoadCaseTable,
     "dynamics": MotionTable,
+    "solver": SolverTable,
     "faults": PartFaultTable,
 }
 

@@ -8,7 +8,12 @@ from typing import Any
 from tribodyn.errors import Problem
 from tribodyn.study.case.values import written
 from tribodyn.study.machine.pair_cases import HEAT, MESH_KEYS, SHARED
-from tribodyn.study.machine.tables import HypoidMeshTable, MeshDynamics, mesh_table_kind
+from tribodyn.study.machine.tables import (
+    SOLVER_OF_PAIRS,
+    HypoidMeshTable,
+    MeshDynamics,
+    mesh_table_kind,
+)
 
 KeyedProblems = Iterator[tuple[str, Problem]]
 
@@ -61,6 +66,8 @@ def _tables(data: Mapping[str, Any], group: str) -> dict[str, Mapping[str, Any]]
 def unused_keys(data: Mapping[str, Any]) -> KeyedProblems:
     """Keys of a machine or of a stage by itself that have no effect."""
     yield from _heat(data)
+    why = "The motion of a machine is found by harmonic balance, over the period of all meshes"
+    yield from _refused("solver", data.get("solver"), SOLVER_OF_PAIRS, why, "Remove it")
     yield from _planets(data)
     yield from _constant_meshes(data)
 
@@ -125,7 +132,7 @@ def _constant_meshes(data: Mapping[str, Any]) -> KeyedProblems:
         why = "The stiffness of hypoid teeth is line_stiffness or stiffness_model of their mesh"
         yield from _refused("", data, ("stiffness",), why, "Remove [stiffness]")
     elif meshes and not (crossed or plane):
-        shared = ("lubricant", "film", "stiffness", "friction")
+        shared = ("lubricant", "film", "stiffness", "friction", "solver")
         yield from _refused("", data, shared, why, remedy)
         keys = [name for name in _OF_TEETH if name in MESH_KEYS]
         yield from _refused("dynamics", data.get("dynamics"), keys, why, remedy)

@@ -69,20 +69,23 @@ def mesh_table(
         fewest = {"steps": _FEWEST, "cells": _FEWEST} if rehearsal else {}
         loaded = hypoid_loaded_contact_of(inputs, load=load, progress=progress, **fewest)
         return _friction_in_cells(inputs, loaded, settings).table()
-    fitted: FittedLaw = inputs.law == "force-law"
-    if about_load:
-        fitted = "about-load" if fitted else "tangent"
-    if friction_alone:
-        fitted = "tangent"
     return of_cylindrical(
         inputs.teeth,
         settings,
         steps=_FEWEST if rehearsal else None,
         pinion_speed=inputs.speed,
         pinion_torque=inputs.torque * load,
-        force_law=fitted,
+        force_law="tangent" if friction_alone else fitted_law(inputs, about_load),
         progress=progress,
     )
+
+
+def fitted_law(inputs: MeshInputs, about_load: bool = False) -> FittedLaw:
+    """How the force law of a mesh is fitted: with few ramps about the load, or with all."""
+    fitted: FittedLaw = inputs.law == "force-law"
+    if about_load:
+        fitted = "about-load" if fitted else "tangent"
+    return fitted
 
 
 def _rehearsed(settings: ToothContact) -> ToothContact:
