@@ -91,7 +91,8 @@ def test_power_of_the_motion_is_that_of_the_torques(result):
     held = structure.bearing_load("low_ring", fine.mean(fine.position))[3]
     torque = result.operation.power_flow.shafts["ring"].torque
     assert abs(held) == pytest.approx(torque, rel=0.004)
-    assert result.operation.stage().motion.load_factor == pytest.approx(1.0, abs=1e-3)
+    # The phases of the planets are thirds of a cycle, which its 200 steps do not meet.
+    assert result.operation.stage().motion.load_factor == pytest.approx(1.0, abs=2e-5)
 
 
 def test_every_choice_of_driving_and_driven_member(case, result):
@@ -120,7 +121,7 @@ def test_floating_sun_shares_the_load_and_a_held_one_does_not(case):
         assert (abs(stage.shares.load_factor - 1.0) < 1e-9) == floats
         assert (stage.shares.share[0] < 0.99) != floats  # the pin that is ahead carries less
         plane = load_shares(**{**stage.plane_data, "carrier_speed": 0.0})
-        np.testing.assert_allclose(stage.shares.share, plane.share, rtol=2e-3)
+        np.testing.assert_allclose(stage.shares.share, plane.share, rtol=1e-9)
 
 
 def test_table_of_modes_lists_the_harmonics_that_excite_each_type(result):

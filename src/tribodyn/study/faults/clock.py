@@ -94,12 +94,15 @@ def turning_clock(case: Case) -> TurningClock:
         if pair is not None
         else math.lcm(*(teeth[fault.gear] for fault in faults))
     )
-    cycles = clock_cycles(of_teeth, tuple(excitations(case).values()), teeth, frequency)
+    excited = tuple(excitations(case).values())
+    cycles = clock_cycles(of_teeth, excited, teeth, frequency)
+    # Cycles that last as long as a random load do so to the last digit.
+    period = max((cycles / frequency, *(each._duration for each in excited)))
     remedy = (
         "Give faults of one gear, orders that repeat after fewer turns, or a random load of a "
         f"shorter duration ({of_teeth} mesh cycles are those of the teeth)"
     )
-    refuse_long_period(cycles, cycles / frequency, MOST_CYCLES, remedy)
+    refuse_long_period(cycles, period, MOST_CYCLES, remedy)
     cost = _LEAST + cycles * _MOTION
     if pair is not None:
         over_face = pair.has_lead_modification or any(fault._varies_over_face for fault in faults)
@@ -108,4 +111,4 @@ def turning_clock(case: Case) -> TurningClock:
         cracks = sum(isinstance(fault, Crack) and fault.depth > 0.0 for fault in faults)
         cost += cracks * _CRACK[in_space]
     turns_pinion, turns_wheel = (cycles / teeth[gear] for gear in ("pinion", "wheel"))
-    return TurningClock(cycles, cycles / frequency, turns_pinion, turns_wheel, cost)
+    return TurningClock(cycles, period, turns_pinion, turns_wheel, cost)

@@ -336,7 +336,6 @@ class SolverTable(Section):
     coupling_tolerance: float = Solver.fields["coupling_tolerance"]  # type: ignore[assignment]
 
 
-#: Keys of ``[solver]`` that only pairs have.
 SOLVER_OF_PAIRS = tuple(name for name in Solver.fields if name not in SolverTable.fields)
 
 
