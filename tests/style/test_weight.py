@@ -23,6 +23,11 @@ def test_code_is_counted_without_docstrings_and_comments() -> None:
     assert not weight.overweight({"gear": 5}, {"gear": 5})
 
 
+def test_no_modules_import_each_other() -> None:
+    circles = weight.import_circles(modules())
+    assert not circles, "\n".join(", ".join(sorted(circle)) for circle in circles)
+
+
 def test_a_circle_of_imports_is_found() -> None:
     first = read("from tribodyn.b import x\n", "src/tribodyn/a.py")
     second = read("def f():\n    from tribodyn.a import y\n", "src/tribodyn/b.py")

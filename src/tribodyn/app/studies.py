@@ -251,9 +251,11 @@ def first_names(kind: str, case: Case | MachineCase) -> dict[str, str]:
 
 def _listed(kind: str, case: Case | MachineCase) -> dict[str, tuple[str, ...]]:
     """Names in the case that a study chooses from; a pair has but one mesh."""
+    from tribodyn.study.faults.sensors import sensors_of
+
     meshes = study_meshes(kind, case) if NEEDS[kind].of_mesh else (PAIR_MESH,)
     listed = {} if meshes == (PAIR_MESH,) else {"mesh": meshes}
-    return {**listed, **({"sensor": case._sensors.names} if kind == "recording" else {})}
+    return {**listed, **({"sensor": sensors_of(case).names} if kind == "recording" else {})}
 
 
 def form_of(

@@ -77,9 +77,10 @@ def _diagram_speeds(ends: Any) -> Any:
 def _pair_modes_report_data(case: Case, ends: Any, progress: Progress = SILENT) -> StudyReportData:
     """Natural frequencies and critical speeds; ``ends`` limits the speeds [rad/s]."""
     from tribodyn.dynamics import natural_modes
+    from tribodyn.study.pipeline.assembly import ORDERS, diagram_of
+    from tribodyn.study.pipeline.tooth_contact import operation_values
     from tribodyn.study.studies.case_grid import build_system
-    from tribodyn.study.studies.modes import ORDERS, diagram_of, mode_rows
-    from tribodyn.study.studies.study_axes import operation_values
+    from tribodyn.study.studies.modes import mode_rows
 
     speeds = None if ends is None else operation_values("speed", ends, case)
     system, mesh_frequency = build_system(case, progress=progress)

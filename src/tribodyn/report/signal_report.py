@@ -393,9 +393,9 @@ def recorded_motion(
 ) -> tuple[Recording, dict[str, Any]]:
     """Record the motion of a case; return the recording and its operation and faults in SI."""
     from tribodyn.cases.load import run
-    from tribodyn.study.faults.sensors import check_sensors
+    from tribodyn.study.faults.sensors import check_sensors, sensors_of
 
-    check_sensors(case._sensors, sensors)
+    check_sensors(sensors_of(case), sensors)
     recording: Recording = run(case, progress).recording(sensors, **settings)
     faults: Any = getattr(case, "faults", None) or {}
     truth = {

@@ -19,6 +19,7 @@ from tribodyn.app.workspace import Workspace
 from tribodyn.cases.load import load_case
 from tribodyn.errors import InputError
 from tribodyn.progress import SILENT
+from tribodyn.study.faults.sensors import sensors_of
 from tribodyn.study.machine.read import read_any_case
 
 MACHINE = GEARED.partition("[[load_cases]]")[0]
@@ -89,7 +90,7 @@ def test_studies_of_one_mesh_list_the_meshes_that_they_take(desk: TabSession) ->
     assert (mesh["value"], mesh["names"]) == ("first", [["first", "first"], ["second", "second"]])
     desk.choose_study("recording")
     sensor = desk.forms()["study"]["groups"][0]["fields"][0]
-    assert sensor["names"] == [[name, name] for name in desk.case._sensors.names]
+    assert sensor["names"] == [[name, name] for name in sensors_of(desk.case).names]
     desk.take(load_case("fzg-roughness"), "")
     desk.choose_study("harris")
     assert [f["key"] for f in desk.forms()["study"]["groups"][0]["fields"]] == ["torque"]

@@ -49,7 +49,6 @@ from tribodyn.study.case.write import case_toml
 
 if TYPE_CHECKING:
     from tribodyn.model import Option
-    from tribodyn.study.faults.sensors import PairSensors
 
 #: Attributes derived from the tables, which are not pickled.
 _DERIVED = {
@@ -236,12 +235,6 @@ class Case(CaseData, case=True):
         while section_at(path[:-1]) is None:
             path = path[:-1]
         return replace(unknown_key(path, None), what=f"{'.'.join(path)}: unknown key")
-
-    @property
-    def _sensors(self) -> PairSensors:
-        from tribodyn.study.faults.sensors import pair_sensors
-
-        return pair_sensors(self)
 
     def _text(self, *, comments: bool) -> str:
         return case_toml(self)

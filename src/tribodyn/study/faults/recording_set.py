@@ -22,7 +22,7 @@ from tribodyn.progress import SILENT, Progress
 from tribodyn.study.faults.machine_section import defects_of
 from tribodyn.study.faults.motion import turning_motion
 from tribodyn.study.faults.recording import Scatter, recording_of
-from tribodyn.study.faults.sensors import check_sensors
+from tribodyn.study.faults.sensors import check_sensors, sensors_of
 from tribodyn.study.studies.study_axes import Axis, read_axes
 
 if TYPE_CHECKING:
@@ -229,7 +229,7 @@ def _recorder(
     from tribodyn.study.machine.run import run_machine
     from tribodyn.study.pipeline.run import prepare_run
 
-    check_sensors(case._sensors, sensor)
+    check_sensors(sensors_of(case), sensor)
     motion: PeriodicMotion
     if not case.lumped:
         motion = run_machine(case.replace({"load_cases": None})).turning_motion

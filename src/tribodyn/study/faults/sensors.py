@@ -18,6 +18,7 @@ from tribodyn.types import Array, ComplexArray
 if TYPE_CHECKING:
     from tribodyn.machine import Machine
     from tribodyn.study.case.case import Case
+    from tribodyn.study.machine.case import MachineCase
 
 _AXES = {"x": (1.0, 0.0, 0.0), "y": (0.0, 1.0, 0.0), "z": (0.0, 0.0, 1.0)}
 #: Signals of a mesh.
@@ -201,8 +202,10 @@ def seat_accelerance(data: Any) -> Callable[[Array], ComplexArray] | None:
     return accelerance
 
 
-def pair_sensors(case: Case) -> PairSensors:
-    """Sensors of a pair, by the coordinates of its structure."""
+def sensors_of(case: Case | MachineCase) -> Sensors:
+    """Sensors of the parts of a case, or of the coordinates of its lumped structure."""
+    if not case.lumped:
+        return MachineSensors(case.machine(), seat_accelerance(case.motion))
     from tribodyn.errors import collected
     from tribodyn.study.case.to_models import locate_errors
     from tribodyn.study.pipeline.assembly import whole_system

@@ -29,7 +29,6 @@ from tribodyn.study.case.sections import LubricantData
 from tribodyn.study.case.user_input import Source, unsound
 from tribodyn.study.case.values import KeyedProblems
 from tribodyn.study.faults.machine_section import impossible_faults, machine_fault_problems
-from tribodyn.study.faults.sensors import MachineSensors, seat_accelerance
 from tribodyn.study.machine.housing_files import read_housing
 from tribodyn.study.machine.load_cases import LoadCase, read_loads
 from tribodyn.study.machine.pair_cases import (
@@ -321,10 +320,6 @@ class MachineCase(PartsBase):
             With the keys of the table as attributes, in SI.
         """
         return self._mesh_tables[mesh]
-
-    @property
-    def _sensors(self) -> MachineSensors:
-        return MachineSensors(self.machine(), seat_accelerance(self.motion))
 
     def machine(self, load: LoadCase | None = None, **meshes: Mapping[str, Any]) -> Machine:
         """Machine at its operating point or under a load case.

@@ -14,6 +14,7 @@ from tribodyn.errors import Argument, InputError
 from tribodyn.gear import Misalignment, MisalignmentStudy, misalignment_study
 from tribodyn.machine.static.clearance import clearance_supports, without_clearance_supports
 from tribodyn.record import Parts
+from tribodyn.study.faults.sensors import sensors_of
 from tribodyn.study.machine.housing_files import HOUSING, copy_housing
 from tribodyn.study.machine.modes import MeshOrder, mesh_orders
 from tribodyn.study.machine.motion import MachineMotion, machine_motion
@@ -278,7 +279,7 @@ class MachineResult(ResultOfCase):
 
     @property
     def _sensors(self) -> Sensors:
-        return self.case._sensors
+        return sensors_of(self.case)
 
     @property
     def loads(self) -> Mapping[str, LoadResult]:

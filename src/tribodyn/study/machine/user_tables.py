@@ -128,56 +128,19 @@ class PartsBase(BaseCase):
 
     @abstractmethod
     def mesh_pairs(self) -> Iterator[tuple[str, Case, tuple[str, str]]]:
-        """Iterate over the meshes with computed teeth.
-
-        Yields
-        ------
-        tuple of str, Case and (str, str)
-            Key of the table of the mesh, its pair of gears as a case, and names of both gears.
-        """
+        """Iterate over key, pair and names of both gears of the meshes with computed teeth."""
 
     def values(self) -> Iterator[tuple[str, Any]]:
-        """Iterate over the values of the case file.
-
-        Yields
-        ------
-        tuple of str and object
-            Dotted key and value in SI; texts as they are, of files their names.
-        """
+        """Iterate over dotted keys and their values in SI; of files their names."""
         files = {key: path.name for key, path in self._named_files().items()}
         return ((key, files.get(key, self._effective.get(key))) for key in self._typed)
 
     def option_of(self, key: str) -> Option | None:
-        """Unit and range of a key.
-
-        Parameters
-        ----------
-        key : str
-            Dotted, such as ``"bearings.A.radial_stiffness"``, or ``"planets.low.pin_errors.2"`` of
-            the second value of a list.
-
-        Returns
-        -------
-        Option or None
-            None where the case has no such key.
-        """
+        """Unit and range of a dotted key; of the second value of a list it ends with ``.2``."""
         return option_at(self, tuple(key.split(".")))
 
     def replace(self, changes: Mapping[str, Any], *, by: str = "") -> Self:
-        """Return a new case with some values changed; it is checked as a whole.
-
-        Parameters
-        ----------
-        changes : mapping
-            Dotted key, such as ``"meshes.first.angle"``, to value: a float in SI, or text.
-        by : str
-            Source of the change, for messages; then a bare number for a dimension is refused.
-
-        Raises
-        ------
-        InputError
-            As for a case file.
-        """
+        """Return a case with values changed by dotted key, as that of a pair does."""
         source = self._source.with_replaced(changes, by or "replace:")
         tables = with_spreads(self.data, self._spread)
         changed: Self = type(self)(source, **changed_tables(tables, changes, by=by))

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass, replace
 from functools import lru_cache
 from typing import TYPE_CHECKING, Any
 
@@ -18,7 +18,7 @@ from tribodyn.study.pipeline.tooth_contact import load_friction_of
 from tribodyn.types import Array
 
 if TYPE_CHECKING:
-    from tribodyn.dynamics import Contact, MeshForce, System
+    from tribodyn.dynamics import Campbell, Contact, MeshForce, System
     from tribodyn.gear import HypoidFlanks, SpurGear, SpurPair
     from tribodyn.mesh import MeshFriction, MeshFunctions, MeshTable
     from tribodyn.mesh.table_file import TableFile
@@ -52,6 +52,10 @@ _OF_HELIX = (
     "mean_contact_line_length",
     "greatest_contact_line_length",
 )
+#: Mesh harmonics whose critical speeds are reported.
+ORDERS = (1, 2, 3, 4, 5)
+#: Number of speeds of a diagram, and its top speed over the operating speed or last resonance.
+_SPEEDS, _BEYOND = 201, 1.15
 
 
 def geometry(case: Case) -> dict[str, float]:
@@ -337,3 +341,27 @@ def shaft_coordinates(case: Case, system: System) -> dict[str, int]:
         ends = [name for name, of in turns_with.items() if of == gear and force[names.index(name)]]
         places[gear] = names.index((ends or [f"{gear}_theta"])[0])
     return places
+
+
+def diagram_of(
+    system: System,
+    case: Case,
+    mesh_frequency: float,
+    ends: Sequence[float] | None = None,
+    orders: Iterable[int] = ORDERS,
+) -> Campbell:
+    """Campbell diagram of the structure of a case, with its operating speed marked."""
+    from tribodyn.dynamics import campbell as compute
+    from tribodyn.dynamics import natural_modes as modes_of
+
+    now = case.operation.speed
+    if ends is None:
+        modes = modes_of(system)
+        mesh_mode = modes.frequency[int(np.argmax(modes.contact_share))] if modes.contacts else 0.0
+        top = _BEYOND * max(now, now * float(mesh_mode) / mesh_frequency)
+        ends = [top / _SPEEDS, top]
+    gear = getattr(case.gears, case.operation.speed_of)
+    diagram = compute(
+        system, np.linspace(ends[0], ends[1], _SPEEDS), teeth=gear.teeth, orders=orders
+    )
+    return replace(diagram, operating_speed=now)

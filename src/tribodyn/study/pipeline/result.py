@@ -177,7 +177,7 @@ class Result(ResultOfCase, Record):
     @cached_property
     def campbell(self) -> Campbell:
         """Natural frequencies and mesh harmonics over the speed, with the stiffness of this one."""
-        from tribodyn.study.studies.modes import diagram_of
+        from tribodyn.study.pipeline.assembly import diagram_of
 
         return diagram_of(self.system, self.case, self.mesh.mesh_frequency)
 

@@ -12,7 +12,9 @@ import numpy as np
 
 from tribodyn.errors import ComputationError, InputError, ModelWarning, collected, warn
 from tribodyn.progress import SILENT, Progress
+from tribodyn.study.case.sections import Operation
 from tribodyn.study.case.to_models import locate_errors
+from tribodyn.study.case.values import FaultError, Plain, read_value
 from tribodyn.study.mesh_inputs import (
     HypoidTeeth,
     MeshInputs,
@@ -20,7 +22,6 @@ from tribodyn.study.mesh_inputs import (
     mesh_inputs,
     model_settings,
 )
-from tribodyn.study.studies.study_axes import read_torques
 
 if TYPE_CHECKING:
     from tribodyn.mesh import HypoidFriction, HypoidLoadedContact, MeshFriction, MeshTable
@@ -275,3 +276,28 @@ def loaded_contact(
         return compute(
             case.gear_pair, values[0] if single else values, phases=phases, **loaded_settings(case)
         )
+
+
+def operation_values(name: str, values: Any, case: Case) -> list[float]:
+    """Read torques or speeds, each checked like the key of the case."""
+    if values is None:
+        return [getattr(case.operation, name)]
+    several = isinstance(values, Iterable) and not isinstance(values, str)
+    if isinstance(values, np.ndarray) and not values.ndim:
+        values, several = float(values), False
+    spec = dict(Operation.specs())[name]
+    try:
+        return [read_value(spec, name, Plain(item)) for item in (values if several else [values])]
+    except FaultError as fault:
+        problem = replace(fault.problem, where=f"argument {name}")
+        raise InputError(problem) from None
+
+
+def read_torques(case: Case, values: Any) -> list[float]:
+    """Read torques on the gear named by ``operation.speed_of`` as those of the first gear."""
+    return [value / case.speed_ratio for value in operation_values("torque", values, case)]
+
+
+def read_speeds(case: Case, values: Any) -> list[float]:
+    """Read speeds of the gear named by ``operation.speed_of`` as those of the first gear."""
+    return [value * case.speed_ratio for value in operation_values("speed", values, case)]

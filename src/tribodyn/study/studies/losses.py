@@ -11,9 +11,8 @@ from tribodyn.errors import ModelWarning, collected, warn
 from tribodyn.progress import SILENT, Progress
 from tribodyn.study.case.to_models import locate_errors
 from tribodyn.study.pipeline.preview import gearbox_losses_of
-from tribodyn.study.pipeline.tooth_contact import mesh_of
+from tribodyn.study.pipeline.tooth_contact import mesh_of, read_speeds, read_torques
 from tribodyn.study.studies.needs import mesh_pair, require
-from tribodyn.study.studies.study_axes import read_speeds, read_torques
 
 if TYPE_CHECKING:
     from tribodyn.losses import GearboxLosses, RigPowerFlow

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
@@ -16,21 +16,19 @@ from tribodyn.study.machine.modes import (
     mesh_orders,
 )
 from tribodyn.study.machine.run import structure_at_rest
+from tribodyn.study.pipeline.assembly import ORDERS, diagram_of
+from tribodyn.study.pipeline.tooth_contact import operation_values
 from tribodyn.study.studies.case_grid import build_system
-from tribodyn.study.studies.study_axes import ends_of, operation_values
+from tribodyn.study.studies.study_axes import ends_of
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Sequence
+    from collections.abc import Iterable
 
-    from tribodyn.dynamics import Campbell, NaturalModes, System
+    from tribodyn.dynamics import Campbell, NaturalModes
     from tribodyn.study.case.case import Case
     from tribodyn.study.machine.case import MachineCase
     from tribodyn.types import Array
 
-#: Mesh harmonics whose critical speeds are reported.
-ORDERS = (1, 2, 3, 4, 5)
-#: Number of speeds of a diagram, and its top speed over the operating speed or last resonance.
-_SPEEDS, _BEYOND = 201, 1.15
 _SPEED = "operation.speed"
 #: Smallest share of the energy that is reported.
 _LEAST = 0.05
@@ -131,30 +129,6 @@ def campbell(
     system, mesh_frequency = build_system(case, progress=progress)
     ends = None if between is None else operation_values("speed", between, case)
     return diagram_of(system, case, mesh_frequency, ends, orders)
-
-
-def diagram_of(
-    system: System,
-    case: Case,
-    mesh_frequency: float,
-    ends: Sequence[float] | None = None,
-    orders: Iterable[int] = ORDERS,
-) -> Campbell:
-    """Campbell diagram of the structure of a case, with its operating speed marked."""
-    from tribodyn.dynamics import campbell as compute
-    from tribodyn.dynamics import natural_modes as modes_of
-
-    now = case.operation.speed
-    if ends is None:
-        modes = modes_of(system)
-        mesh_mode = modes.frequency[int(np.argmax(modes.contact_share))] if modes.contacts else 0.0
-        top = _BEYOND * max(now, now * float(mesh_mode) / mesh_frequency)
-        ends = [top / _SPEEDS, top]
-    gear = getattr(case.gears, case.operation.speed_of)
-    diagram = compute(
-        system, np.linspace(ends[0], ends[1], _SPEEDS), teeth=gear.teeth, orders=orders
-    )
-    return replace(diagram, operating_speed=now)
 
 
 def mode_rows(modes: NaturalModes, case: Case, mesh_frequency: float) -> list[Mode]:

@@ -17,9 +17,13 @@ from tribodyn.study.case.gears import Modification
 from tribodyn.study.case.to_models import locate_errors
 from tribodyn.study.case.values import FaultError, Plain, read_value
 from tribodyn.study.mesh_inputs import mesh_inputs, model_settings
-from tribodyn.study.pipeline.tooth_contact import hypoid_loaded_contact_of, loaded_settings
+from tribodyn.study.pipeline.tooth_contact import (
+    hypoid_loaded_contact_of,
+    loaded_settings,
+    read_speeds,
+    read_torques,
+)
 from tribodyn.study.studies.needs import mesh_pair
-from tribodyn.study.studies.study_axes import read_speeds, read_torques
 from tribodyn.units import format_quantity
 
 if TYPE_CHECKING:

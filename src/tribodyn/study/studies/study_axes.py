@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
@@ -12,7 +12,6 @@ from numpy.typing import NDArray
 
 from tribodyn.aliases import with_old_names
 from tribodyn.errors import InputError
-from tribodyn.study.case.sections import Operation
 from tribodyn.study.case.values import FaultError, Plain, read_value
 
 if TYPE_CHECKING:
@@ -167,28 +166,3 @@ def points_of(case: Case | MachineCase, key: str, values: Any, *, by: str) -> li
     if isinstance(values, list) and len(values) == 1:
         return list(ends_of(case, key, values, by=by))
     return list(read_axes(case, {key: values}, by=by)[0].values)
-
-
-def operation_values(name: str, values: Any, case: Case) -> list[float]:
-    """Read torques or speeds, each checked like the key of the case."""
-    if values is None:
-        return [getattr(case.operation, name)]
-    several = isinstance(values, Iterable) and not isinstance(values, str)
-    if isinstance(values, np.ndarray) and not values.ndim:
-        values, several = float(values), False
-    spec = dict(Operation.specs())[name]
-    try:
-        return [read_value(spec, name, Plain(item)) for item in (values if several else [values])]
-    except FaultError as fault:
-        problem = replace(fault.problem, where=f"argument {name}")
-        raise InputError(problem) from None
-
-
-def read_torques(case: Case, values: Any) -> list[float]:
-    """Read torques on the gear named by ``operation.speed_of`` as those of the first gear."""
-    return [value / case.speed_ratio for value in operation_values("torque", values, case)]
-
-
-def read_speeds(case: Case, values: Any) -> list[float]:
-    """Read speeds of the gear named by ``operation.speed_of`` as those of the first gear."""
-    return [value * case.speed_ratio for value in operation_values("speed", values, case)]
