@@ -13,6 +13,7 @@ from tribodyn.dynamics import STRUCTURES
 from tribodyn.ehl import FILM_MODELS
 from tribodyn.friction import LAWS
 from tribodyn.friction.benedict_kelly import VARIANTS
+from tribodyn.machine import COUPLINGS
 from tribodyn.stiffness import MODELS
 from tribodyn.study import SUMMARY
 from tribodyn.study.pipeline.summary import MEASURES
@@ -23,7 +24,16 @@ __all__ = ["as_before"]
 @contextmanager
 def as_before() -> Iterator[None]:
     """Bring the registries back to what they held."""
-    registries: list[Any] = [FIGURES, STRUCTURES, FILM_MODELS, LAWS, VARIANTS, MODELS, MEASURES]
+    registries: list[Any] = [
+        COUPLINGS,
+        FIGURES,
+        STRUCTURES,
+        FILM_MODELS,
+        LAWS,
+        VARIANTS,
+        MODELS,
+        MEASURES,
+    ]
     before = [dict(registry.all()) for registry in registries]
     figures = dict(SUMMARY)
     try:

@@ -117,6 +117,6 @@ def test_commands_of_the_readme_exist(command: str) -> None:
 def test_the_page_on_extending_shows_the_files_that_are_tested() -> None:
     page = (ROOT / "docs" / "extending.md").read_text("utf-8")
     files = sorted((ROOT / "docs" / "extending").glob("*.py"))
-    assert len(files) == 6
+    assert len(files) == 7
     for file in files:
         assert file.read_text("utf-8") in blocks(page, "python")

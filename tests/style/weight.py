@@ -29,7 +29,8 @@ __all__ = ["ANY", "FILES", "LINES", "import_circles", "lines_of_code", "measures
 #: analysis, cli, plot, study: kinematic frequencies of every case.
 #: study: heat balance of machines.
 #: study: film, friction and load agree in machines.
-#: 
+#:
+#: machine, study: models of couplings, one file each.
 LINES: dict[str, int] = {
     "__init__": 100,
     "__main__": 3,
@@ -57,7 +58,7 @@ LINES: dict[str, int] = {
     "interrupt": 215,
     "losses": 929,
     "lubricant": 554,
-    "machine": 5587,
+    "machine": 5616,
     "measurement": 3257,
     "members": 3,
     "mesh": 5698,
@@ -71,7 +72,7 @@ LINES: dict[str, int] = {
     "report": 1790,
     "signals": 1754,
     "stiffness": 5084,
-    "study": 16735,
+    "study": 16753,
     "surrogate": 777,
     "types": 7,
     "uncertainty": 290,
@@ -80,7 +81,7 @@ LINES: dict[str, int] = {
     "variants": 1073,
 }
 #: Modules of the package, and its annotations without a type.
-FILES, ANY = 765, 2607
+FILES, ANY = 765, 2610
 
 _NO_CODE = {
     tokenize.COMMENT, tokenize.NL, tokenize.NEWLINE, tokenize.INDENT, tokenize.DEDENT,

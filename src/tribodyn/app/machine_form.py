@@ -15,7 +15,7 @@ from tribodyn.study.case.section import Section, Table
 from tribodyn.study.case.values import Plain
 from tribodyn.study.machine.case import MachineCase
 from tribodyn.study.machine.pair_cases import SHARED
-from tribodyn.study.machine.tables import TABLES, MeshDynamics, mesh_table_kind
+from tribodyn.study.machine.tables import TABLES, MeshDynamics, part_table
 from tribodyn.study.machine.user_tables import flat_keys
 
 #: Groups of the form, those of parts with a table for each of them.
@@ -90,7 +90,7 @@ class MachineForm:
     def _of_part(self, name: str, part: str) -> dict[str, Option]:
         """Options of the table of a part, and those of what it gives besides."""
         prefix, body = f"{name}.{part}", self.case.data[name][part]
-        table = mesh_table_kind(body) if name == "meshes" else TABLES[name]
+        table = part_table(name, body)
         stage = name == "gears" and "planets" in self.case.data
         skipped = ("shaft", "position") if stage else ()
         options = {f"{prefix}.{k}": o for k, o in _options(table) if k not in skipped}

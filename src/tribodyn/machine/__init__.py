@@ -50,7 +50,7 @@ from tribodyn.machine.rolling.bearing_types import ROLLING_BEARINGS
 from tribodyn.machine.rolling.element_ring import BearingState, RollingElementBearing
 from tribodyn.machine.rolling.roller_bearing import CylindricalRollerBearing, TaperedRollerBearing
 from tribodyn.machine.section import STEEL, Section
-from tribodyn.machine.shaft import Coupling, Shaft
+from tribodyn.machine.shaft import COUPLINGS, Coupling, CouplingModel, Shaft
 from tribodyn.machine.shaft_matrices import ShaftMatrices
 from tribodyn.machine.static.balance import (
     BearingBalance,
@@ -63,6 +63,7 @@ from tribodyn.machine.static.face_law import FaceLaw, face_laws
 from tribodyn.machine.structure import MachineStructure, Reduction
 
 __all__ = [
+    "COUPLINGS",
     "ROLLING_BEARINGS",
     "STEEL",
     "AngularContactBallBearing",
@@ -71,6 +72,7 @@ __all__ = [
     "BearingState",
     "Clock",
     "Coupling",
+    "CouplingModel",
     "CrossedAxes",
     "CylindricalRollerBearing",
     "DeepGrooveBallBearing",

@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import Any
 
 from tribodyn.errors import Argument, InputError
 from tribodyn.gear import Material
 from tribodyn.machine.fields import check_number, quoted
 from tribodyn.machine.section import STEEL, Section
+from tribodyn.model import REQUIRED, Model, Option, Registry, number
 
 #: Positions on a shaft closer than this are one, and overlaps below it are rounding [m].
 SAME_PLACE = 1e-9
@@ -122,3 +124,58 @@ class Coupling:
         object.__setattr__(self, "shafts", names)
         check_number(self, "torsional_stiffness", "N*m/rad", 0.0, above=True)
         check_number(self, "torsional_damping", "N*m*s/rad", 0.0)
+
+
+@dataclass(frozen=True)
+class CouplingModel(Model):
+    """A kind of coupling: how its data become stiffness and damping.
+
+    Parameters
+    ----------
+    name : str
+        As ``model`` of ``[couplings.NAME]`` names it.
+    function : callable
+        Called with the names of both shafts and the options; returns a :class:`Coupling`.
+    source, meaning : str
+        Publication, and one line.
+    papers : tuple of str
+        Keys of the bibliography.
+    options : mapping
+        Data of the coupling, as :func:`tribodyn.model.number` and its like declare them.
+
+    Examples
+    --------
+    >>> COUPLINGS["linear"].function(("engine", "input"), torsional_stiffness=1e5)
+    Coupling(shafts=('engine', 'input'), torsional_stiffness=100000.0, torsional_damping=0.0)
+    """
+
+    name: str
+    function: Callable[..., Coupling]
+    source: str = ""
+    meaning: str = ""
+    papers: tuple[str, ...] = ()
+    options: Mapping[str, Any] = field(default_factory=dict)
+
+
+COUPLINGS: Registry[CouplingModel] = Registry("coupling", "tribodyn.coupling", CouplingModel)
+
+
+def _torsional(default: object, unit: str, meaning: str) -> Option:
+    limits = (0.0, 1e14, "guards against a wrong unit")
+    option: Option = number(default, *limits, unit=unit, meaning=meaning, example=f'"4e8 {unit}"')
+    return option
+
+
+@COUPLINGS.define(
+    "linear",
+    meaning="a torsional spring with a damper",
+    options={
+        "torsional_stiffness": _torsional(REQUIRED, "N*m/rad", "stiffness against twist"),
+        "torsional_damping": _torsional(0.0, "N*m*s/rad", "damping of the twist"),
+    },
+)
+def _linear(
+    shafts: tuple[str, str], *, torsional_stiffness: float, torsional_damping: float = 0.0
+) -> Coupling:
+    """Coupling of given stiffness and damping."""
+    return Coupling(shafts, torsional_stiffness, torsional_damping)

@@ -162,10 +162,8 @@ def sections_of(case: Any) -> tuple[str, ...]:
 
 
 def figure_blocks(result: Any) -> list[Block]:
-    """Draw every figure of the report of any kind of case.
-
-    Figures of a pair that are missing are merged by reason; parts have those that they need.
-    """
+    """Draw every figure of the report of any kind of case."""
+    # Missing figures of a pair are merged by reason; parts have the figures that they need.
     if kind_of(result.case) in PAIRS:
         return _joined(place.block() for place in _of_pair(result))
     return [block for place in _of_parts(result) if not (block := place.block()).missing]

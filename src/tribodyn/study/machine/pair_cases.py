@@ -29,7 +29,13 @@ from tribodyn.study.case.values import (
     unmarked,
 )
 from tribodyn.study.machine.read_parts import rolling_options
-from tribodyn.study.machine.tables import TABLES, HypoidMeshTable, MeshDynamics, mesh_table_kind
+from tribodyn.study.machine.tables import (
+    TABLES,
+    HypoidMeshTable,
+    MeshDynamics,
+    mesh_table_kind,
+    part_table,
+)
 from tribodyn.study.mesh_inputs import MeshInputs, mesh_inputs
 
 if TYPE_CHECKING:
@@ -370,7 +376,7 @@ def option_at(case: PartsBase, path: tuple[str, ...]) -> Option | None:
     if of_parts and table is None:
         return None
     if part is not None and (len(names) == of_parts or group == "load_cases"):
-        part = mesh_table_kind(table or {}) if group == "meshes" else part
+        part = part_table(group, table or {})
         option = part.spec(name) or (MeshDynamics.spec(name) if group == "meshes" else None)
         if option is not None:
             return option

@@ -10,7 +10,7 @@ from typing import Any
 
 from tribodyn.errors import Argument, InputError, Problem, did_you_mean
 from tribodyn.gear import Material
-from tribodyn.machine import ROLLING_BEARINGS, Bearing, Coupling, Gear, Section, Shaft
+from tribodyn.machine import COUPLINGS, ROLLING_BEARINGS, Bearing, Coupling, Gear, Section, Shaft
 from tribodyn.model import REQUIRED, Option, flag, integer, number, text
 from tribodyn.study.case.section import Section as Table
 from tribodyn.study.case.sections import LubricantData, MaterialData, heat_problems
@@ -27,10 +27,10 @@ from tribodyn.study.faults.section import PartFaultTable
 from tribodyn.study.machine.tables import (
     SOLVER_OF_PAIRS,
     BearingTable,
-    CouplingTable,
     GearTable,
     ShaftTable,
     SolverTable,
+    part_table,
 )
 
 LENGTH = number(
@@ -193,11 +193,13 @@ def read_coupling(name: str, body: dict[str, Any], problems: KeyedProblems) -> C
     key, count = f"couplings.{name}", len(problems)
     shafts: Any = body.pop("shafts", ())
     shafts = shafts if isinstance(shafts, list | tuple) else written(shafts)
-    table = read_table(CouplingTable, body, key, {}, problems)
+    kind = part_table("couplings", body)
+    table: Any = read_table(kind, body, key, {}, problems)
     if len(problems) > count:
         return None
-    values = {k: getattr(table, k) for k in CouplingTable.fields}
-    part: Coupling | None = built(key, lambda: Coupling(shafts, **values), problems)
+    values = {k: getattr(table, k) for k in kind.fields if k != "model"}
+    model = COUPLINGS[table.model]
+    part: Coupling | None = built(key, lambda: model.function(shafts, **values), problems)
     return part
 
 

@@ -6,7 +6,7 @@ import math
 from collections.abc import Mapping
 from typing import Any
 
-from tribodyn.machine import ROLLING_BEARINGS, STEEL
+from tribodyn.machine import COUPLINGS, ROLLING_BEARINGS, STEEL
 from tribodyn.model import REQUIRED, choice, file_path, flag, integer, number, numbers, text
 from tribodyn.study.case import gears
 from tribodyn.study.case.section import Section
@@ -235,11 +235,17 @@ def mesh_table_kind(body: Mapping[str, Any]) -> type[Section]:
     return HypoidMeshTable if crossed else MeshTable
 
 
-class CouplingTable(Section):
-    """A ``[couplings.NAME]`` table; its shafts are read apart."""
+def _coupling_table(name: str) -> type[Section]:
+    """Table of a coupling of a model, whose options are its keys; its shafts are read apart."""
+    model = COUPLINGS.all().get(name, COUPLINGS["linear"])
+    kind = choice("linear", COUPLINGS.names, meaning="kind of coupling")
+    fields = {"model": kind, **model.case_options}
+    table: type[Section] = type("CouplingTable", (Section,), {"fields": fields})
+    return table
 
-    torsional_stiffness: float = _stiffness("stiffness against twist", "N*m/rad", default=REQUIRED)
-    torsional_damping: float = _stiffness("damping of the twist", "N*m*s/rad", default=0.0)
+
+#: The ``[couplings.NAME]`` table of a linear coupling.
+CouplingTable = _coupling_table("linear")
 
 
 class MeshDynamics(Section):
@@ -463,6 +469,16 @@ TABLES: dict[str, type[Section]] = {
     "solver": SolverTable,
     "faults": PartFaultTable,
 }
+
+
+def part_table(group: str, body: Mapping[str, Any]) -> type[Section]:
+    """Table of a part by its body: of a mesh by its kind, of a coupling by its model."""
+    if group == "meshes":
+        return mesh_table_kind(body)
+    if group == "couplings":
+        return _coupling_table(str(body.get("model", "linear")))
+    return TABLES[group]
+
 
 #: Keys that are read apart from the table of their group.
 APART: dict[str, dict[str, Any]] = {
