@@ -12,6 +12,8 @@ import numpy as np
 import pytest
 
 import tribodyn as td
+from tribodyn.study import MachineCase
+from tribodyn.study.machine.run import balanced_machine
 
 pytestmark = pytest.mark.filterwarnings("ignore::tribodyn.errors.ModelWarning")
 
@@ -220,3 +222,112 @@ def test_a_pair_and_a_machine_of_two_gears_have_one_mesh(
         assert joined[f"meshes.m.{name}"] == pytest.approx(
             alone[name], abs=3e-3 * alone["mean_mesh_force"]
         )
+
+
+def with_idle_shaft(tables: Tables) -> Tables:
+    """The same with a shaft whose gear meshes with one of the middle shaft and carries nothing."""
+    change, mesh = copy.deepcopy(tables), tables["meshes"]["second"]
+    change["shafts"]["idle"] = {"sections": [["120 mm", "25 mm"]]}
+    for end, place in (("left", 10), ("right", 110)):
+        change["bearings"][f"idle_{end}"] = {
+            "shaft": "idle", "position": f"{place} mm", "radial_stiffness": "200 N/um",
+            "axial_stiffness": "100 N/um",
+        }  # fmt: skip
+    teeth = tables["gears"]["c"]["teeth"] + 3
+    place = {"shaft": "idle", "position": "60 mm", "face_width": "20 mm"}
+    change["gears"]["e"] = {**place, "teeth": teeth}
+    change["meshes"]["idle"] = {
+        "gears": ["c", "e"], "normal_module": mesh["normal_module"], "angle": "130 deg",
+        "stiffness": "2e8 N/m",
+    }  # fmt: skip
+    return change
+
+
+def at_rest(case: Any) -> tuple[Tables, Any]:
+    """Figures of all parts at rest, and the tooth contact."""
+    rest = balanced_machine(case, case.operating_point)
+    static, values = rest.static, {}
+    for name, mesh in static.meshes.items():
+        values[f"meshes.{name}"] = [mesh.force, mesh.compression, mesh.misalignment]
+    values |= {f"bearings.{n}": [*b.load, *b.displacement] for n, b in static.bearings.items()}
+    values |= {f"gears.{n}": moved for n, moved in static.gears.items()}
+    return values, rest.tables
+
+
+def assert_same_at_rest(first: Any, second: Any) -> None:
+    """Statics of the parts of the first case, which the second has too."""
+    (values, tables), (others, other_tables) = at_rest(first), at_rest(second)
+    for name, each in values.items():
+        if name in others:
+            np.testing.assert_allclose(
+                others[name], each, rtol=1e-9, atol=1e-9 * np.abs(each).max()
+            )
+    for name, table in tables.items():
+        for column in ("stiffness", "friction_coefficient", "load_share", "hertz_pressure"):
+            value = getattr(table, column)
+            np.testing.assert_allclose(
+                getattr(other_tables[name], column), value, rtol=1e-9, atol=1e-12
+            )
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_a_shaft_that_carries_nothing_changes_nothing_at_rest(seed: int) -> None:
+    tables = drawn(seed)
+    assert_same_at_rest(MachineCase(**tables), MachineCase(**with_idle_shaft(tables)))
+
+
+@pytest.mark.slow
+def test_a_shaft_that_carries_nothing_changes_the_motion_by_its_modes_alone(tmp_path: Path) -> None:
+    """Means are those of the torques; modal damping, and so peaks, know the idle shaft a little."""
+    alone, joined = (figures(each, tmp_path) for each in (drawn(1), with_idle_shaft(drawn(1))))
+    assert joined["meshes.idle.mean_mesh_force"] == 0.0
+    assert joined["meshes.idle.contact_loss_share"] == pytest.approx(1.0)
+    for mesh in ("first", "second"):
+        key = f"meshes.{mesh}."
+        mean = alone[f"{key}mean_mesh_force"]
+        assert joined[f"{key}mean_mesh_force"] == pytest.approx(mean, rel=1e-4)
+        for name in ("peak_mesh_force", "minimum_mesh_force", "alternating_rms_mesh_force"):
+            assert joined[key + name] == pytest.approx(alone[key + name], abs=2e-3 * mean), name
+        assert joined[f"{key}static_mesh_force"] == pytest.approx(
+            alone[f"{key}static_mesh_force"], rel=1e-9
+        )
+
+
+def in_a_machine(stage: Any) -> MachineCase:
+    """A stage by itself with a pair of gears behind its carrier, of the same mesh frequency."""
+    kept = {k: copy.deepcopy(v) for k, v in stage.data.items() if k not in ("based_on", "assumed")}
+    stiff = {"radial_stiffness": "1e9 N/m", "tilting_stiffness": "1e7 N*m/rad"}
+    kept["gears"] |= {
+        "x": {"shaft": "carrier", "teeth": 61, "face_width": "40 mm"},
+        "y": {"shaft": "out", "teeth": 83, "face_width": "40 mm"},
+    }
+    kept["meshes"] = {
+        "last": {"gears": ["x", "y"], "normal_module": "5 mm", "stiffness": "5e8 N/m"}
+    }
+    kept["bearings"] = {
+        name: {"shaft": name, "position": "0 mm", "axial_stiffness": "1e9 N/m", **stiff}
+        for name in ("carrier", "out")
+    }
+    kept["operation"] = {**kept["operation"], "output": "out"}
+    return MachineCase(**kept)
+
+
+def test_a_stage_in_a_machine_is_that_stage() -> None:
+    """At rest; in motion its carrier turns in space where the stage alone turns with it."""
+    stage = td.load_case("planetary-stage").replace(
+        {"load_cases": None, "stiffness.model": "iso6336"}
+    )
+    machine = in_a_machine(stage)
+    (values, tables), (others, other_tables) = at_rest(stage), at_rest(machine)
+    for name in stage.meshes:
+        assert others[f"meshes.{name}"][0] == pytest.approx(values[f"meshes.{name}"][0], rel=1e-9)
+        for column in ("stiffness", "friction_coefficient", "load_share", "central_film"):
+            np.testing.assert_allclose(
+                getattr(other_tables[name], column),
+                getattr(tables[name], column), rtol=1e-9, atol=1e-18,
+            )  # fmt: skip
+    alone, joined = (td.run(case).operation for case in (stage, machine))
+    for name in stage.meshes:
+        mean = joined.figures[f"meshes.{name}.mean_mesh_force"]
+        assert mean == pytest.approx(alone.figures[f"meshes.{name}.mean_mesh_force"], rel=5e-3)
+    assert joined.stage("low").shares.load_factor == pytest.approx(1.0, abs=1e-9)
