@@ -292,7 +292,10 @@ def checked(function: Callable[..., Any], owner: type | None = None) -> Callable
 
     @functools.wraps(function)
     def reading_arguments(*args: Any, **named: Any) -> Any:
-        if sys._getframe(1).f_globals.get("__name__", "").startswith(_INSIDE):
+        caller = sys._getframe(1)
+        while caller.f_globals.get("__name__") == "dataclasses" and caller.f_back:
+            caller = caller.f_back  # who calls dataclasses.replace
+        if caller.f_globals.get("__name__", "").startswith(_INSIDE):
             return function(*args, **named)
         if not readers:
             readers.append(_Reader(function, owner))

@@ -21,7 +21,7 @@ from tribodyn.machine.graph.clock import Clock, Phases, clock_of, phases_of
 from tribodyn.machine.graph.directions import MeshDirection, mesh_direction
 from tribodyn.machine.graph.kinematics import PowerFlow, kinematics, ratio_problems
 from tribodyn.machine.graph.mesh_checks import mesh_problems
-from tribodyn.machine.graph.mobility import Drive
+from tribodyn.machine.graph.mobility import Drive, Mobility
 from tribodyn.machine.graph.placement import (
     Placement,
     carrier_axes,
@@ -166,13 +166,19 @@ class Machine:
         parts = [f"{n} {k if n == 1 else plural.get(k, k + 's')}" for k, n in counts.items()]
         return f"Machine({', '.join(parts)})"
 
-    def _with(self, **groups: Mapping[str, Any]) -> Machine:
-        """Copy with other meshes or bearings in the same places, which need no check again."""
+    def _with(self, operation: Operation | None = None, **groups: Mapping[str, Any]) -> Machine:
+        """Copy with other meshes or bearings in the same places, which need no check again.
+
+        Nor needs it another operation that presses the same flanks in the same sense.
+        """
         other = copy(self)
         for name in _OF_LOADS:
             vars(other).pop(name, None)
         for group, parts in groups.items():
             vars(other)[group] = MappingProxyType({**getattr(self, group), **parts})
+        vars(other)["operation"] = operation or self.operation
+        for name in groups.get("planets", ()):
+            other._set_offsets(name)
         return other
 
     @cached_property
@@ -185,6 +191,10 @@ class Machine:
         edges |= {name: coupling.shafts for name, coupling in self.couplings.items()}
         edges |= {name: (first, carrier) for name, (first, carrier, _) in self._carriers.items()}
         return ShaftGraph(edges, self.operation.input)
+
+    @cached_property
+    def _mobility(self) -> Mobility:
+        return Mobility(self.graph, self.gears, self.meshes, self._drive)
 
     @cached_property
     def kinematics(self) -> PowerFlow:
@@ -206,7 +216,7 @@ class Machine:
             The torque of the input is that of the machine, the output has what the losses leave;
             the power of a mesh is that of its driving gear.
         """
-        loads = kinematics(self.graph, self.gears, self.meshes, self._drive, efficiency)
+        loads = kinematics(self._mobility, self.meshes, self._drive, efficiency)
         return replace(loads, shafts={name: loads.shafts[name] for name in self.shafts})
 
     @cached_property
@@ -229,8 +239,11 @@ class Machine:
     @cached_property
     def directions(self) -> Mapping[str, MeshDirection]:
         """Directions of each mesh in space."""
-        forward = replace(self._drive, speed=1.0) if self.operation.speed == 0.0 else self._drive
-        turning = kinematics(self.graph, self.gears, self.meshes, forward).meshes
+        turning = self.kinematics.meshes
+        if self.operation.speed == 0.0:
+            turning = kinematics(
+                self._mobility, self.meshes, replace(self._drive, speed=1.0)
+            ).meshes
         directions = {}
         for name, mesh in self.meshes.items():
             first, second = (self.gears[gear] for gear in mesh.gears)
@@ -328,7 +341,7 @@ class Machine:
 
     def _place_problems(self) -> Iterable[Problem]:
         """Loops that do not close, and parts that are in a wrong place or not held."""
-        problems = ratio_problems(self.graph, self.gears, self.meshes, self._drive)
+        problems = ratio_problems(self._mobility, self.meshes, self.operation.speed)
         lengths = self._coupled_lengths
         problems += placement_problems(self.graph, self.gears, self.meshes, lengths)
         problems += place_problems(self.shafts, self.gears, self.bearings)

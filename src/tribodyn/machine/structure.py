@@ -280,7 +280,15 @@ class MachineStructure:
         (6, n) array
             Rows ``x, y, z, theta_x, theta_y, theta_z`` [SI].
         """
-        return np.asarray(self.shafts[shaft].at(position) @ self.basis[self._rows(shaft)])
+        if (place := (shaft, position)) not in self._motions:
+            rows = self.shafts[shaft].at(position) @ self.basis[self._rows(shaft)]
+            rows.flags.writeable = False
+            self._motions[place] = rows
+        return self._motions[place]
+
+    @cached_property
+    def _motions(self) -> dict[tuple[str, float], Array]:
+        return {}
 
     def gear(self, name: str) -> Array:
         """Displacement of the middle of a gear per coordinate.

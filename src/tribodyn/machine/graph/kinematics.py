@@ -100,15 +100,9 @@ class PowerFlow:
     couplings: Mapping[str, float] = field(default_factory=dict)
 
 
-def ratio_problems(
-    graph: ShaftGraph,
-    gears: Mapping[str, Gear],
-    meshes: Mapping[str, Mesh],
-    drive: Drive,
-) -> list[Problem]:
+def ratio_problems(mobility: Mobility, meshes: Mapping[str, Mesh], speed: float) -> list[Problem]:
     """Loops of meshes whose ratios contradict each other, and speeds that nothing determines."""
-    mobility = Mobility(graph, gears, meshes, drive)
-    ratios, speed, problems = mobility.ratios, drive.speed, []
+    graph, gears, ratios, problems = mobility.graph, mobility.gears, mobility.ratios, []
     for mesh in mobility.contradictions:
         pair = meshes[mesh].gears if mesh in meshes else ()
         where = f"meshes.{mesh}.gears" if pair else f"couplings.{mesh}"
@@ -143,15 +137,14 @@ def ratio_problems(
 
 
 def kinematics(
-    graph: ShaftGraph,
-    gears: Mapping[str, Gear],
+    mobility: Mobility,
     meshes: Mapping[str, Mesh],
     drive: Drive,
     efficiency: Mapping[str, float] | None = None,
 ) -> PowerFlow:
     """Speeds and torques at speed and torque of the input, with the efficiency of some meshes."""
-    mobility = Mobility(graph, gears, meshes, drive)
-    ratios, speed, torque = mobility.ratios, drive.speed, drive.torque
+    graph, gears, ratios = mobility.graph, mobility.gears, mobility.ratios
+    speed, torque = drive.speed, drive.torque
     sense = -1.0 if speed < 0.0 else 1.0
     weight = {}
     for name, mesh in meshes.items():

@@ -4,10 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from copy import copy
-from dataclasses import replace
 from functools import cached_property
 from pathlib import Path
 from typing import Any, ClassVar, Literal
+
+import numpy as np
 
 from tribodyn.aliases import with_old_names
 from tribodyn.errors import InputError, Problem, TribodynError
@@ -348,7 +349,10 @@ class MachineCase(PartsBase):
         """Machine under a load, without force laws of teeth that are computed."""
         key = load.speed, load.torque
         if key not in self._machines:
-            self._machines[key] = self._checked_machine(load)
+            alike = (m for k, m in self._machines.items() if min(np.multiply(k, key)) > 0.0)
+            if (machine := next(alike, None)) is None:
+                machine = self._checked_machine(load)
+            self._machines[key] = machine._with(Operation(*self.ends, *key))
         return self._machines[key]
 
     def _checked_machine(self, load: LoadCase) -> Machine:
@@ -361,7 +365,7 @@ class MachineCase(PartsBase):
             return machine
         flow = machine.kinematics.meshes
         planets = {n: stage.stage(flow[f"{n}_sun1"]) for n, stage in self.stages.items()}
-        return replace(machine, planets=planets)
+        return machine._with(planets=planets)
 
     def _mesh(self, name: str, fields: Mapping[str, Any]) -> Mesh:
         table = self._mesh_tables[name]
