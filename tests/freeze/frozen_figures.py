@@ -55,21 +55,14 @@ def differences(
     for name, old in frozen.items():
         if name not in current:
             changes.append(f"{case}: {name} is gone")
-        elif not _same(case, name, old, current[name], tolerance, _size(name, frozen)):
+        elif not _same(case, name, old, current[name], tolerance):
             change = abs(current[name] / old - 1.0) if old else abs(current[name])
             changes.append(f"{case}: {name} was {old!r}, is {current[name]!r} ({change:.1e})")
     return changes
 
 
-def _size(name: str, figures: Mapping[str, float]) -> float:
-    """Largest figure of the same kind of a case with parts: forces of balance hold its rounding."""
-    kind = name.rpartition("_")[2]
-    alike = (abs(value) for key, value in figures.items() if key.endswith(kind))
-    return max(alike, default=0.0) if "." in name else 0.0
-
-
-def _same(case: str, name: str, old: float, new: float, tolerance: float, size: float) -> bool:
+def _same(case: str, name: str, old: float, new: float, tolerance: float) -> bool:
     if name in _LEFT_OVER:
         return 0.0 <= new <= _LEFT_OVER[name]
-    floor = max(_FLOORS.get((case, name), _APART.get(name, _ZERO)), 1e-9 * size)
+    floor = _FLOORS.get((case, name), _APART.get(name, _ZERO))
     return abs(new - old) <= max(tolerance * abs(old), floor)

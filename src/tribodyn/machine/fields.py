@@ -33,8 +33,10 @@ def check_number(
     why: str = "",
 ) -> None:
     """Make a field of a part a float within its limits; ``above`` excludes the lower one."""
+    if type(plain := getattr(part, name)) is float and low < plain < high:
+        return
     where = Argument(f"{type(part).__name__}.{name}")
-    value = real_numbers(where, getattr(part, name), f"a number [{unit or 1}]")
+    value = real_numbers(where, plain, f"a number [{unit or 1}]")
     if value.ndim:
         what, remedy = f"{name} has the shape {value.shape}", "Give one number"
         raise InputError(what, where, "Wanted: one number in SI units", remedy)

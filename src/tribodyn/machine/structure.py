@@ -210,7 +210,7 @@ class MachineStructure:
         elements = {}
         for name, shaft in self.shafts.items():
             if shaft.shaft.sections:
-                rows = self.basis[self._rows(name)]
+                rows = self.basis[self._rows[name]]
                 elements[f"shafts.{name}"] = rows.T @ shaft.stiffness @ rows
         for name, coupling in self.machine.couplings.items():
             twist = self.twist(name)
@@ -219,14 +219,14 @@ class MachineStructure:
             motion = self.bearing(name)
             elements[f"bearings.{name}"] = motion.T @ bearing.stiffness_matrix @ motion
         if self.machine.housing is not None:
-            rows = self.basis[self._rows()]
+            rows = self.basis[self._rows[""]]
             elements["housing"] = rows.T @ self._housing("stiffness") @ rows
         return elements
 
     @cached_property
     def damping(self) -> Array:
         """Damping matrix, (n, n) [N*s/m, N*s, N*m*s]."""
-        rows = self.basis[self._rows()]
+        rows = self.basis[self._rows[""]]
         total = rows.T @ self._housing("damping") @ rows
         for name, bearing in self.machine.bearings.items():
             motion = self.bearing(name)
@@ -280,15 +280,24 @@ class MachineStructure:
         (6, n) array
             Rows ``x, y, z, theta_x, theta_y, theta_z`` [SI].
         """
-        if (place := (shaft, position)) not in self._motions:
-            rows = self.shafts[shaft].at(position) @ self.basis[self._rows(shaft)]
-            rows.flags.writeable = False
-            self._motions[place] = rows
-        return self._motions[place]
+        return np.asarray(self.shafts[shaft].at(position) @ self.basis[self._rows[shaft]])
 
-    @cached_property
-    def _motions(self) -> dict[tuple[str, float], Array]:
-        return {}
+    def nodes(self, shaft: str, displacement: Array) -> Array:
+        """Displacement of the nodes of a shaft.
+
+        Parameters
+        ----------
+        shaft : str
+            Name of the shaft.
+        displacement : (n,) array
+            Of the coordinates [SI].
+
+        Returns
+        -------
+        (6 nodes,) array
+            [SI].
+        """
+        return np.asarray(self.basis[self._rows[shaft]] @ displacement)
 
     def gear(self, name: str) -> Array:
         """Displacement of the middle of a gear per coordinate.
@@ -423,7 +432,7 @@ class MachineStructure:
         housing = self.machine.housing
         numbers = np.array(housing.nodes[name] if housing and housing.nodes else [-1] * 6)
         out = np.zeros((6, self.size))
-        out[numbers >= 0] = self.basis[self._rows()][numbers[numbers >= 0]]
+        out[numbers >= 0] = self.basis[self._rows[""]][numbers[numbers >= 0]]
         return out
 
     @cached_property
@@ -453,14 +462,13 @@ class MachineStructure:
         matrix = getattr(housing, kind, None)
         return np.zeros((size, size)) if matrix is None else np.asarray(matrix)
 
-    def _rows(self, shaft: str | None = None) -> slice:
-        """Rows of a shaft in the full coordinates; of the housing without a name."""
-        first = 0
-        for name, matrices in self.shafts.items():
-            if name == shaft:
-                return slice(first, first + matrices.size)
-            first += matrices.size
-        return slice(first, first + len(self._housing("mass")))
+    @cached_property
+    def _rows(self) -> dict[str, slice]:
+        """Rows of each shaft in the full coordinates, and of the housing under ""."""
+        sizes = [*(shaft.size for shaft in self.shafts.values()), len(self._housing("mass"))]
+        ends = np.cumsum(sizes).tolist()
+        rows = [slice(end - size, end) for size, end in zip(sizes, ends, strict=True)]
+        return dict(zip((*self.shafts, ""), rows, strict=True))
 
     @cached_property
     def _all_names(self) -> list[str]:

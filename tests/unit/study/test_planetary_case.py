@@ -1,6 +1,7 @@
 """A planetary stage from the case file to the report: faults, figures, files."""
 
 import json
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -11,6 +12,7 @@ from tribodyn.cli import main
 from tribodyn.errors import InputError
 from tribodyn.machine import load_shares, planetary_modes, planetary_plane_model
 from tribodyn.study.machine.modes import mode_rows
+from tribodyn.study.machine.result import steps_of
 from tribodyn.study.pipeline.summary_figures import is_figure
 from tribodyn.study.planetary.stage_result import turned_phases
 
@@ -67,6 +69,11 @@ def test_loads_and_friction_follow_from_the_teeth_and_the_speeds_relative_to_the
     sun, force = pairs["sun"].gear_pair.pinion, 600.0 / 3 / 31.9496e-3
     assert sun.base_radius == pytest.approx(31.9496e-3, rel=1e-5)
     assert figures["meshes.low_sun1.static_mesh_force"] == pytest.approx(force, rel=1e-5)
+    # What balances by symmetry is no figure of rounding: equal planets do not push their members.
+    for part in ("ring", "carrier"):
+        assert figures[f"bearings.low_{part}.mean_radial_force"] == 0.0
+        assert figures[f"bearings.low_{part}.rms_radial_force"] > 1.0
+        assert figures[f"shafts.{part}.largest_deflection"] == 0.0
     # Friction moves the mean force by the efficiency of the meshes only.
     assert figures["meshes.low_ring1.mean_mesh_force"] == pytest.approx(force, rel=0.02)
     assert result.operation.response.converged
@@ -179,3 +186,13 @@ def test_moving_picture_keeps_the_teeth_in_mesh(case):
         assert not inside(planets, 0.985 * sun).any()
         assert inside(planets, 1.015 * ring).all()
         assert inside(planets, 1.1 * sun).any()
+
+
+@pytest.mark.parametrize("count", [2, 3, 4, 5, 7])
+def test_all_planets_are_sampled_at_the_same_places_of_their_cycle(count):
+    structure = SimpleNamespace(
+        frame="carrier",
+        machine=SimpleNamespace(planets={"low": SimpleNamespace(count=count)}),
+    )
+    assert steps_of(structure) % (2 * count) == 0
+    assert 240 <= steps_of(structure) < 240 + 2 * count

@@ -13,7 +13,7 @@ import tribodyn as td
 from tribodyn.cli import main
 from tribodyn.study import SUMMARY
 from tribodyn.study.machine.read import read_any_case
-from tribodyn.study.machine.summary import peak_over_mean
+from tribodyn.study.machine.summary import peak_over_mean, without_rounding
 from tribodyn.study.pipeline.response_series import measured, mesh_force
 from tribodyn.study.pipeline.summary_figures import figure_of, part_figures
 from tribodyn.study.studies.sweep_result import level_keys
@@ -116,6 +116,15 @@ def test_idle_meshes_have_no_dynamic_factor() -> None:
     assert peak_over_mean(force[:, 1:2], np.zeros(1)) is None
     assert peak_over_mean(force[:, 0], 3.0) == 4.0 / 3.0
     assert peak_over_mean(force[:, 1], 0.0) is None
+
+
+def test_rounding_is_no_figure() -> None:
+    figures = {"bearings.a.mean_axial_force": 2e-9, "meshes.m.mean_mesh_force": 2e3,
+               "bearings.a.mean_radial_force": -2e-7, "meshes.m.misalignment": 1e-12,
+               "shafts.s.largest_deflection": 3e-24, "shafts.s.speed": 1e-9}  # fmt: skip
+    rounded = without_rounding(figures)
+    zeros = {"bearings.a.mean_axial_force", "shafts.s.largest_deflection"}
+    assert rounded == {key: 0.0 if key in zeros else value for key, value in figures.items()}
 
 
 def test_a_name_has_one_meaning() -> None:

@@ -47,7 +47,7 @@ def _bodies(
     spins = {n: speed * float(load.ratio) for n, load in machine.kinematics.shafts.items()}
     for name, matrices in structure.shafts.items():
         if matrices.mass.any():
-            rows = structure.basis[structure._rows(name)]
+            rows = structure.basis[structure._rows[name]]
             yield rows, rows, matrices.mass, spins[name] * matrices.gyroscopic
     pins = {b.shaft: b for b in machine.bearings.values() if b.carrier is not None}
     for shaft, body, rows in structure._bodies():

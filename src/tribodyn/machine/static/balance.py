@@ -437,8 +437,8 @@ def _balance(
     shafts = {}
     for name, shaft in model.structure.shafts.items():
         position = np.union1d(shaft.nodes, np.linspace(0.0, shaft.shaft.length, _POINTS))
-        rows = np.array([model.structure.at(name, place) for place in position])
-        shafts[name] = ShaftDeflection(position, rows @ displacement)
+        rows = np.array([shaft.at(place) for place in position])
+        shafts[name] = ShaftDeflection(position, rows @ model.structure.nodes(name, displacement))
     notes = [
         f"meshes.{name}.stiffness: 14 N/(mm um) over the face width"
         for name, mesh in model.machine.meshes.items()

@@ -45,8 +45,8 @@ if TYPE_CHECKING:
     from tribodyn.types import Array
 
 
-#: Steps per cycle of the fastest mesh, and of the only one of a stage by itself.
-STEPS, _OF_STAGE = 128, 200
+#: Steps per cycle of the fastest mesh, and at least of the only one of a stage by itself.
+STEPS, _OF_STAGE = 128, 240
 
 
 def steady_motion(
@@ -80,7 +80,11 @@ def power_with_friction(
 
 def steps_of(structure: MachineStructure) -> int:
     """Steps per cycle of the fastest mesh."""
-    return STEPS if structure.frame is None else _OF_STAGE
+    if structure.frame is None:
+        return STEPS
+    # All planets have their samples at the same places of the cycle, so that forces balance.
+    (stage,) = structure.machine.planets.values()
+    return -(-_OF_STAGE // (2 * stage.count)) * 2 * stage.count
 
 
 @dataclass(frozen=True, eq=False)

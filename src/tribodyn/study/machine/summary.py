@@ -10,13 +10,16 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from tribodyn.machine.plane_law import mean_in_space
-from tribodyn.study.pipeline.summary_figures import Figures
+from tribodyn.study.pipeline.summary_figures import Figures, figure_of
 from tribodyn.study.planetary.machine_stages import stage_figures
 
 if TYPE_CHECKING:
     from tribodyn.machine import Machine, MeshBalance
     from tribodyn.mesh import MeshTable
     from tribodyn.study.machine.result import LoadResult
+
+#: Figure over the largest one of its unit that is rounding.
+_ROUNDING = 1e-11
 
 
 def summary_of(result: LoadResult) -> Figures:
@@ -33,7 +36,17 @@ def summary_of(result: LoadResult) -> Figures:
         for name, figures in parts.items():
             prefix = f"{group}.{name}" if name else group
             values |= {f"{prefix}.{key}": value for key, value in figures.items()}
-    return Figures({key: float(v) for key, v in values.items() if v is not None and np.isfinite(v)})
+    known = {key: float(v) for key, v in values.items() if v is not None and np.isfinite(v)}
+    return Figures(without_rounding(known))
+
+
+def without_rounding(figures: Mapping[str, float]) -> dict[str, float]:
+    """Figures with an exact zero for those that are rounding of the largest one of their unit."""
+    units = {key: figure_of(key).unit for key in figures}
+    size: dict[str, float] = {}
+    for key, value in figures.items():
+        size[units[key]] = max(size.get(units[key], 0.0), abs(value))
+    return {k: v if abs(v) > _ROUNDING * size[units[k]] else 0.0 for k, v in figures.items()}
 
 
 def _of_machine(result: LoadResult) -> Mapping[str, float | None]:
