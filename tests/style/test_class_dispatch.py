@@ -14,7 +14,7 @@ _KINDS = {
     *("LoadResult", "PlanetaryLoadResult", "StageResult"),
 }
 #: Questions that are left, in all of src. Lower it with each one that goes; never raise it.
-MOST = 1
+MOST = 0
 
 
 def questions(module: Module) -> list[str]:

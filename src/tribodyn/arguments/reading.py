@@ -293,8 +293,8 @@ def checked(function: Callable[..., Any], owner: type | None = None) -> Callable
     @functools.wraps(function)
     def reading_arguments(*args: Any, **named: Any) -> Any:
         caller = sys._getframe(1)
-        while caller.f_globals.get("__name__") == "dataclasses" and caller.f_back:
-            caller = caller.f_back  # who calls dataclasses.replace
+        if caller.f_globals.get("__name__") == "dataclasses":  # replace
+            caller = caller.f_back or caller
         if caller.f_globals.get("__name__", "").startswith(_INSIDE):
             return function(*args, **named)
         if not readers:

@@ -32,12 +32,7 @@ def standard_rotation(values: Array, vectors: Any) -> Any:
     # The first row of a group gets all of the column in which the group is largest, as a positive
     # entry, the next one of what is left, and so on: whatever their basis was.
     rotation = np.zeros((len(vectors),) * 2, dtype=vectors.dtype)
-    groups = groups_of_equal(values)
-    single = [int(group[0]) for group in groups if group.size == 1]
-    if single:
-        entries = leading(vectors[single])[:, 0]
-        rotation[single, single] = entries.conj() / np.where(entries, np.abs(entries), 1.0)
-    for group in (group for group in groups if group.size > 1):
+    for group in groups_of_equal(values):
         left = vectors[group]
         for row in group:
             size = np.linalg.norm(left, axis=0)

@@ -174,9 +174,9 @@ class Machine:
         other = copy(self)
         for name in _OF_LOADS:
             vars(other).pop(name, None)
+        vars(other)["operation"] = operation or self.operation
         for group, parts in groups.items():
             vars(other)[group] = MappingProxyType({**getattr(self, group), **parts})
-        vars(other)["operation"] = operation or self.operation
         for name in groups.get("planets", ()):
             other._set_offsets(name)
         return other
@@ -239,11 +239,8 @@ class Machine:
     @cached_property
     def directions(self) -> Mapping[str, MeshDirection]:
         """Directions of each mesh in space."""
-        turning = self.kinematics.meshes
-        if self.operation.speed == 0.0:
-            turning = kinematics(
-                self._mobility, self.meshes, replace(self._drive, speed=1.0)
-            ).meshes
+        forward = replace(self._drive, speed=self.operation.speed or 1.0)
+        turning = kinematics(self._mobility, self.meshes, forward).meshes
         directions = {}
         for name, mesh in self.meshes.items():
             first, second = (self.gears[gear] for gear in mesh.gears)

@@ -282,23 +282,6 @@ class MachineStructure:
         """
         return np.asarray(self.shafts[shaft].at(position) @ self.basis[self._rows[shaft]])
 
-    def nodes(self, shaft: str, displacement: Array) -> Array:
-        """Displacement of the nodes of a shaft.
-
-        Parameters
-        ----------
-        shaft : str
-            Name of the shaft.
-        displacement : (n,) array
-            Of the coordinates [SI].
-
-        Returns
-        -------
-        (6 nodes,) array
-            [SI].
-        """
-        return np.asarray(self.basis[self._rows[shaft]] @ displacement)
-
     def gear(self, name: str) -> Array:
         """Displacement of the middle of a gear per coordinate.
 
@@ -466,9 +449,8 @@ class MachineStructure:
     def _rows(self) -> dict[str, slice]:
         """Rows of each shaft in the full coordinates, and of the housing under ""."""
         sizes = [*(shaft.size for shaft in self.shafts.values()), len(self._housing("mass"))]
-        ends = np.cumsum(sizes).tolist()
-        rows = [slice(end - size, end) for size, end in zip(sizes, ends, strict=True)]
-        return dict(zip((*self.shafts, ""), rows, strict=True))
+        ends = np.cumsum([0, *sizes])
+        return {n: slice(*ends[i : i + 2]) for i, n in enumerate((*self.shafts, ""))}
 
     @cached_property
     def _all_names(self) -> list[str]:

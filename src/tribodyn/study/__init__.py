@@ -14,22 +14,21 @@ if TYPE_CHECKING:
     from tribodyn.study.faults.recording_set import RecordingSet, record_set
     from tribodyn.study.faults.wear import Wear, wear
     from tribodyn.study.frequencies import KinematicFrequencies, kinematic_frequencies
-    from tribodyn.study.machine.case import MachineCase
+    from tribodyn.study.machine.case import MachineCase, PartsCase, PlanetaryCase
     from tribodyn.study.machine.load_cases import LoadCase
     from tribodyn.study.machine.modes import MachineCampbell
     from tribodyn.study.machine.motion import MachineMotion
-    from tribodyn.study.machine.result import LoadResult, MachineResult
+    from tribodyn.study.machine.result import (
+        LoadResult,
+        MachineResult,
+        PlanetaryLoadResult,
+        PlanetaryResult,
+    )
     from tribodyn.study.pipeline.result import Result
     from tribodyn.study.pipeline.result_of_case import ResultOfCase
     from tribodyn.study.pipeline.run import run
     from tribodyn.study.pipeline.summary import SUMMARY, summary_figure
     from tribodyn.study.pipeline.tooth_contact import loaded_contact
-    from tribodyn.study.planetary.names import (
-        PartsCase,
-        PlanetaryCase,
-        PlanetaryLoadResult,
-        PlanetaryResult,
-    )
     from tribodyn.study.planetary.stage_result import PlanetaryMotion, StageResult
     from tribodyn.study.planetary.tolerances import LoadShareStatistics, load_share_statistics
     from tribodyn.study.result_comparison import ResultComparison, compare_results
@@ -123,14 +122,14 @@ __all__ = [
 _NAMES = {
     "case.case": "Case",
     "case.read": "read_case",
-    "machine.case": "MachineCase",
+    "machine.case": "MachineCase PartsCase PlanetaryCase",
     "machine.load_cases": "LoadCase",
     "faults.clock": "TurningClock turning_clock",
     "faults.recording_set": "RecordingSet record_set",
     "faults.wear": "Wear wear",
     "machine.modes": "MachineCampbell",
     "machine.motion": "MachineMotion",
-    "machine.result": "LoadResult MachineResult",
+    "machine.result": "LoadResult MachineResult PlanetaryLoadResult PlanetaryResult",
     "uncertain.machine_ensemble": "MachineEnsemble",
     "studies.levels": "MachineLevels",
     "pipeline.result_of_case": "ResultOfCase",
@@ -138,7 +137,6 @@ _NAMES = {
     "pipeline.run": "run",
     "pipeline.summary": "SUMMARY summary_figure",
     "pipeline.tooth_contact": "loaded_contact",
-    "planetary.names": "PartsCase PlanetaryCase PlanetaryLoadResult PlanetaryResult",
     "planetary.stage_result": "PlanetaryMotion StageResult",
     "planetary.tolerances": "LoadShareStatistics load_share_statistics",
     "result_comparison": "ResultComparison compare_results",

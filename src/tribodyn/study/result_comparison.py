@@ -11,12 +11,9 @@ import numpy as np
 from tribodyn.drawing import draw
 from tribodyn.errors import Argument, InputError, shortened
 from tribodyn.record import Parts, Record, html_table, record
-from tribodyn.study.machine.result import MachineResult
-from tribodyn.study.pipeline.result import Result
 from tribodyn.study.pipeline.result_of_case import ResultOfCase
 from tribodyn.study.pipeline.summary_figures import by_topic, figure_of
 
-AnyResult = Result | MachineResult
 #: Relative difference below which figures count as equal.
 _TOLERANCE = 1e-9
 
@@ -83,7 +80,7 @@ class ResultComparison(Record):
     names: tuple[str, ...]
     values: dict[str, tuple[Any, ...]]
     figures: dict[str, tuple[float | None, ...]]
-    results: tuple[AnyResult, ...] = field(repr=False)
+    results: tuple[ResultOfCase, ...] = field(repr=False)
 
     def plot(self, *arguments: Any, **options: Any) -> Any:
         """Draw the motions of pairs overlaid, or the levels of the parts of machines.
@@ -121,7 +118,7 @@ class ResultComparison(Record):
         return html_table(repr(self), head, difference_rows(self.values, self.figures))
 
 
-def compare_results(*results: AnyResult, names: Sequence[str] | None = None) -> ResultComparison:
+def compare_results(*results: ResultOfCase, names: Sequence[str] | None = None) -> ResultComparison:
     """Compare results: a table of differing values and figures, and overlaid curves.
 
     Parameters
@@ -150,14 +147,9 @@ def compare_results(*results: AnyResult, names: Sequence[str] | None = None) -> 
     >>> compare_results(base, reduced, names=("as printed", "60 N m")).values
     {'operation.torque': (10.6, 60.0)}
     """
-    kinds = {each._COMPARISON for each in results[:1] if isinstance(each, ResultOfCase)} or {
-        Result._COMPARISON
-    }
-    invalid = [
-        each
-        for each in results
-        if not isinstance(each, ResultOfCase) or each._COMPARISON not in kinds
-    ]
+    invalid: list[object] = [each for each in results if not isinstance(each, ResultOfCase)]
+    if not invalid:
+        invalid += [each for each in results if each._COMPARISON != results[0]._COMPARISON]
     if invalid:
         what = f"results holds {shortened(repr(invalid[0]))}"
         why = "Expected: results of tribodyn.run, of pairs or of machines"
@@ -181,7 +173,7 @@ def compare_results(*results: AnyResult, names: Sequence[str] | None = None) -> 
     )
 
 
-def _titles(results: Sequence[AnyResult]) -> tuple[str, ...]:
+def _titles(results: Sequence[ResultOfCase]) -> tuple[str, ...]:
     titles = [result.case.title for result in results]
     if len(set(titles)) == len(titles):
         return tuple(titles)

@@ -282,21 +282,15 @@ class _Forces:
     def __init__(
         self, model: StaticModel, laws: Mapping[str, MeshLaw], displacement: Array
     ) -> None:
-        self.total, self.tangent = model.rest @ displacement, model.stiffness.copy()
+        self.total, self.tangent = model.stiffness @ displacement, model.stiffness.copy()
         self.meshes: dict[str, tuple[Array, Array]] = {}
-        loads = model.spring_loads(displacement)
-        self.total += np.einsum("ni,nij->j", loads, model.held)
-        springs = dict(zip(model.linear, zip(loads, model.springs, strict=True), strict=True))
+        self.bearings: dict[str, tuple[Array, Array]] = {}
         for name, rows in model.meshes.items():
             force, moment, stiffness = laws[name](*(rows @ displacement).tolist())
             self.meshes[name] = np.array([force, moment]), np.asarray(stiffness, dtype=float)
-        others = {
-            name: model.bearing(name, rows @ displacement)
-            for name, rows in model.bearings.items()
-            if name not in springs
-        }
-        self.bearings = {name: (springs | others)[name] for name in model.bearings}
-        for group, kind in ((self.meshes, model.meshes), (others, model.bearings)):
+        for name, rows in model.bearings.items():
+            self.bearings[name] = model.bearing(name, rows @ displacement)
+        for group, kind in ((self.meshes, model.meshes), (self.bearings, model.bearings)):
             for name, (load, stiffness) in group.items():
                 self.total += load @ kind[name]
                 self.tangent += kind[name].T @ stiffness @ kind[name]
@@ -437,8 +431,9 @@ def _balance(
     shafts = {}
     for name, shaft in model.structure.shafts.items():
         position = np.union1d(shaft.nodes, np.linspace(0.0, shaft.shaft.length, _POINTS))
+        moved = model.structure.basis[model.structure._rows[name]] @ displacement
         rows = np.array([shaft.at(place) for place in position])
-        shafts[name] = ShaftDeflection(position, rows @ model.structure.nodes(name, displacement))
+        shafts[name] = ShaftDeflection(position, rows @ moved)
     notes = [
         f"meshes.{name}.stiffness: 14 N/(mm um) over the face width"
         for name, mesh in model.machine.meshes.items()

@@ -39,20 +39,13 @@ class StaticModel:
         springs = {name: _as_spring(bearing) for name, bearing in machine.bearings.items()}
         self.structure = MachineStructure(machine._with(bearings=springs), 0.0, longest)
         self.size = self.structure.size
+        parts = self.structure.elements.items()
+        matrices = [matrix for name, matrix in parts if not name.startswith("bearings.")]
+        self.stiffness = sum(matrices, np.zeros((self.size, self.size)))
         turns = ["_theta_" in name for name in self.structure.names]
         self.scale = np.where(turns, 1.0 / _LEVER, 1.0)
         self.gears = {name: self.structure.gear(name) for name in machine.gears}
         self.bearings = {name: self.structure.bearing(name) for name in machine.bearings}
-        self.linear = [name for name, part in machine.bearings.items() if not part.nonlinear]
-        linear = [machine.bearings[name] for name in self.linear]
-        self.springs = np.reshape([part.stiffness_matrix for part in linear], (-1, 6, 6))
-        self.offsets = np.reshape([part.offset for part in linear], (-1, 6))
-        self.held = np.reshape([self.bearings[name] for name in self.linear], (-1, 6, self.size))
-        parts = self.structure.elements.items()
-        matrices = [matrix for name, matrix in parts if not name.startswith("bearings.")]
-        self.rest = sum(matrices, np.zeros((self.size, self.size)))
-        along = self.springs @ self.held
-        self.stiffness = self.rest + np.einsum("nij,nik->jk", self.held, along)
 
     def nodes(self, shaft: str) -> Array:
         """Displacement of all nodes of a shaft per coordinate, (nodes, 6, size)."""
@@ -111,17 +104,15 @@ class StaticModel:
         """Common face width of a mesh."""
         return min(self.machine.gears[gear].face_width for gear in self.machine.meshes[name].gears)
 
-    def spring_loads(self, displacement: Array) -> Array:
-        """Loads of the linear bearings (n, 6) at a displacement of all coordinates."""
-        moved = self.held @ displacement - self.offsets
-        return np.asarray((self.springs @ moved[:, :, None])[:, :, 0])
-
     def bearing(self, name: str, displacement: Array) -> tuple[Array, Array]:
-        """Load and stiffness of a bearing that is not linear."""
+        """Load and stiffness of a bearing."""
         part = self.machine.bearings[name]
         displacement = displacement - np.asarray(part.offset)
-        if part.rolling is None:
+        if part.clearance:
             return clearance_load(part, displacement)
+        if part.rolling is None:
+            matrix = part.stiffness_matrix
+            return matrix @ displacement, matrix
         load, matrix = np.zeros(6), np.zeros((6, 6))
         ring, moved = part.rolling, displacement[list(HELD)]
         response = floating_response(ring, moved) if part.floating else ring.response(moved)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, cast
 
 import numpy as np
 from numpy.typing import NDArray
@@ -158,9 +158,8 @@ _DASHES = ("solid", "dash", "dot")
 
 
 def _motions(comparison: ResultComparison) -> list[Motion]:
-    from tribodyn.study.pipeline.result import Result
-
-    return [Motion(each) for each in comparison.results if isinstance(each, Result)]
+    pairs = [each for each in comparison.results if each._COMPARISON == "result_comparison"]
+    return [Motion(cast("Result", each)) for each in pairs]
 
 
 def _axis_mismatch(comparison: ResultComparison) -> str:

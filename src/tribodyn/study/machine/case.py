@@ -482,3 +482,7 @@ class MachineCase(PartsBase):
         other.data = {**self.data, "housing": housing} if housing else self.data
         vars(other).pop("_typed", None)
         return other
+
+
+#: Names of an earlier version: a planetary stage is a machine, the one case of named parts.
+PlanetaryCase = PartsCase = MachineCase

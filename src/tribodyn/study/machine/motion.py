@@ -20,8 +20,44 @@ if TYPE_CHECKING:
 DIRECTIONS = ("x", "y", "z", "theta_x", "theta_y", "theta_z")
 
 
+class PeriodicSamples(Record):
+    """Signals over a period, on samples with weights."""
+
+    weight: Array
+
+    def mean(self, signal: Array) -> Array:
+        """Mean over the period.
+
+        Parameters
+        ----------
+        signal : (s, ...) array
+            On the samples.
+
+        Returns
+        -------
+        (...) array
+            In the unit of the signal.
+        """
+        return np.asarray(np.tensordot(self.weight, signal, axes=1))
+
+    def rms(self, signal: Array) -> Array:
+        """Root mean square about the mean.
+
+        Parameters
+        ----------
+        signal : (s, ...) array
+            On the samples.
+
+        Returns
+        -------
+        (...) array
+            In the unit of the signal.
+        """
+        return np.asarray(np.sqrt(np.maximum(self.mean((signal - self.mean(signal)) ** 2), 0.0)))
+
+
 @record
-class MachineMotion(Record):
+class MachineMotion(PeriodicSamples):
     """Periodic motion of a machine over one period of its clock.
 
     Parameters
@@ -67,36 +103,6 @@ class MachineMotion(Record):
     acceleration: Array = quantity("clock", "node", "axis", unit="m/s^2")
     cycles: Array = quantity("mesh", unit="1")
     frequency: float = fact()
-
-    def mean(self, signal: Array) -> Array:
-        """Mean over the period.
-
-        Parameters
-        ----------
-        signal : (s, ...) array
-            On the samples.
-
-        Returns
-        -------
-        (...) array
-            In the unit of the signal.
-        """
-        return np.asarray(np.tensordot(self.weight, signal, axes=1))
-
-    def rms(self, signal: Array) -> Array:
-        """Root mean square about the mean.
-
-        Parameters
-        ----------
-        signal : (s, ...) array
-            On the samples.
-
-        Returns
-        -------
-        (...) array
-            In the unit of the signal.
-        """
-        return np.asarray(np.sqrt(np.maximum(self.mean((signal - self.mean(signal)) ** 2), 0.0)))
 
     def harmonics(self, signal: Array, orders: Array) -> ComplexArray:
         """Complex amplitudes at orders of the clock.

@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from dataclasses import asdict, dataclass
-from functools import cached_property
+from functools import cached_property, wraps
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -42,7 +42,6 @@ if TYPE_CHECKING:
     from tribodyn.study.machine.case import MachineCase
     from tribodyn.study.machine.load_cases import LoadCase
     from tribodyn.study.machine.modes import MachineCampbell
-    from tribodyn.types import Array
 
 
 #: Steps per cycle of the fastest mesh, and at least of the only one of a stage by itself.
@@ -190,33 +189,10 @@ class LoadResult:
             raise InputError(f'there is no stage "{chosen}"', Argument("name"), why, "Name one")
         return StageResult(self, chosen)
 
-    def ring_sensor(
-        self,
-        sensor_angle: float = 0.0,
-        window: float | Callable[[Array], Array] | None = None,
-        steps: int = 256,
-    ) -> RingSensorSignal:
-        """Signal of a sensor on the ring of the first stage, which the planets pass.
-
-        Parameters
-        ----------
-        sensor_angle : float
-            Angle of the sensor from y towards z [rad].
-        window : float or function, optional
-            As for :func:`tribodyn.machine.ring_sensor_signal`.
-        steps : int
-            Samples of a mesh cycle.
-
-        Returns
-        -------
-        RingSensorSignal
-
-        Raises
-        ------
-        InputError
-            If there is no stage, or an argument is out of range.
-        """
-        return self.stage().ring_sensor(sensor_angle, window, steps)
+    @wraps(StageResult.ring_sensor)
+    def ring_sensor(self, *arguments: Any, **options: Any) -> RingSensorSignal:
+        """Signal of a sensor on the ring of the first stage, as of :class:`StageResult`."""
+        return self.stage().ring_sensor(*arguments, **options)
 
     @property
     def mesh_orders(self) -> tuple[MeshOrder, ...]:
@@ -465,3 +441,7 @@ class MachineResult(ResultOfCase):
         count = len(self.load_cases)
         loads = f", {count} load case{'s' * (count != 1)}" if count else ""
         return f"peak mesh forces {peaks}{loads}"
+
+
+#: Names of an earlier version: a planetary stage is a machine.
+PlanetaryResult, PlanetaryLoadResult = MachineResult, LoadResult

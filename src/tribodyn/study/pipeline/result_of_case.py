@@ -16,6 +16,8 @@ from tribodyn.study.pipeline.summary_figures import Figures, summary_rows
 from tribodyn.study.pipeline.summary_labels import in_words
 
 if TYPE_CHECKING:
+    import xarray
+
     from tribodyn.errors import ModelWarning
     from tribodyn.measurement import Recording
     from tribodyn.study.faults.sensors import Sensors
@@ -81,7 +83,7 @@ class ResultOfCase(ABC):
         """
         return Figures(self._summary)
 
-    def to_xarray(self) -> Any:
+    def to_xarray(self) -> xarray.Dataset:
         """Return the motion at the operating point as labelled arrays with units.
 
         Returns
@@ -94,7 +96,7 @@ class ResultOfCase(ABC):
         return xarray.Dataset(*self._parts())
 
     @property
-    def signals(self) -> Any:
+    def signals(self) -> xarray.Dataset:
         """Signals at the operating point with units, as :meth:`to_xarray`."""
         return self.to_xarray()
 

@@ -12,7 +12,8 @@ import numpy as np
 from tribodyn.machine import LoadShares, RingSensorSignal, ring_sensor_signal
 from tribodyn.machine.planetary.modes import plane_rows
 from tribodyn.machine.planetary.positions import read_angles
-from tribodyn.record import Record, fact, quantity, record
+from tribodyn.record import fact, quantity, record
+from tribodyn.study.machine.motion import PeriodicSamples
 from tribodyn.types import Array
 
 if TYPE_CHECKING:
@@ -30,7 +31,7 @@ _HARMONICS = 12
 
 
 @record
-class PlanetaryMotion(Record):
+class PlanetaryMotion(PeriodicSamples):
     """Periodic motion of a planetary stage in the frame of its carrier.
 
     Parameters
@@ -66,36 +67,6 @@ class PlanetaryMotion(Record):
     pin_force: Array = quantity("phase", "planet", "direction", unit="N")
     displacement: Array = quantity("phase", "member", "axis", unit="m")
     mesh_frequency: float = fact()
-
-    def mean(self, signal: Array) -> Array:
-        """Mean over the mesh cycle.
-
-        Parameters
-        ----------
-        signal : (s, ...) array
-            On the samples.
-
-        Returns
-        -------
-        (...) array
-            In the unit of the signal.
-        """
-        return np.asarray(np.tensordot(self.weight, signal, axes=1))
-
-    def rms(self, signal: Array) -> Array:
-        """Root mean square about the mean.
-
-        Parameters
-        ----------
-        signal : (s, ...) array
-            On the samples.
-
-        Returns
-        -------
-        (...) array
-            In the unit of the signal.
-        """
-        return np.asarray(np.sqrt(np.maximum(self.mean((signal - self.mean(signal)) ** 2), 0.0)))
 
     @property
     def load_factor(self) -> float:
