@@ -31,13 +31,14 @@ __all__ = ["ANY", "FILES", "LINES", "import_circles", "lines_of_code", "measures
 #: study: film, friction and load agree in machines.
 #:
 #: machine, study: models of couplings, one file each.
+#: arguments: copies that the package makes of its own objects are not checked again.
 LINES: dict[str, int] = {
     "__init__": 100,
     "__main__": 3,
     "aliases": 93,
     "analysis": 186,
     "app": 2125,
-    "arguments": 540,
+    "arguments": 543,
     "arrays": 174,
     "cases": 908,
     "checkpoints": 142,
@@ -72,7 +73,7 @@ LINES: dict[str, int] = {
     "report": 1790,
     "signals": 1754,
     "stiffness": 5084,
-    "study": 16753,
+    "study": 16749,
     "surrogate": 777,
     "types": 7,
     "uncertainty": 290,
@@ -81,7 +82,7 @@ LINES: dict[str, int] = {
     "variants": 1073,
 }
 #: Modules of the package, and its annotations without a type.
-FILES, ANY = 765, 2610
+FILES, ANY = 764, 2610
 
 _NO_CODE = {
     tokenize.COMMENT, tokenize.NL, tokenize.NEWLINE, tokenize.INDENT, tokenize.DEDENT,
