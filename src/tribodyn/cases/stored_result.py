@@ -38,7 +38,7 @@ def load_result(directory: str | os.PathLike[str]) -> Any:
     Traceback (most recent call last):
         ...
     tribodyn.errors.InputError: no-such-result: this is no result. There is no such directory. \
-Give the directory that tribodyn run or Result.save wrote.
+Give the directory that tribodyn run or the save method of a result wrote.
     """
     from tribodyn.study.machine.run import restored as restored_machine
     from tribodyn.study.pipeline.run import restored

@@ -108,7 +108,7 @@ def kinematic_frequencies(case: Case | MachineCase, *, sidebands: int = 1) -> Ki
     --------
     >>> import tribodyn as td
     >>> lines = td.kinematic_frequencies(td.load_case("fzg-roughness"))
-    >>> round(lines.frequency[lines.symbol.index("GMF")], 3)
+    >>> float(lines.frequency[lines.symbol.index("GMF")].round(3))
     240.0
     """
     count = require_whole("sidebands", sidebands, 0)
