@@ -22,11 +22,12 @@ _CASES = tuple(tribodyn.cases(machines=True))
 #: Commands that are tried apart: a server, and processes that compile.
 _APART = {"app", "warm-up"}
 #: Commands that compute no motion, or one that another test has computed.
-_LIGHT = {"check", "export", "friction-from-loss", "new", "signal"}
+_LIGHT = {"check", "export", "friction-from-loss", "new", "rate", "signal"}
 #: Reasons for which a command for all kinds may refuse a reduced case: a gear whose mate turns with
 #: a carrier, and machines whose constant teeth excite nothing.
 _EXCUSES = {
     "paper": "there are no printed tables",
+    "rate": "the case has no table [rating]",
     "surrogate": "no level of the parts varies",
     "signal": "turns with a carrier",
     "sobol": "the output does not vary",
@@ -132,6 +133,7 @@ _ARGUMENTS: dict[str, Callable[[_Place, str], list[str]]] = {
         p.file(n), "--size", "2", *_spread(n), "--set", f"operation.speed={_speed(n)} rpm +- 1 %"
     ],
     "study": lambda p, n: [p.study(n)],
+    "rate": lambda p, n: [p.file(n)],
     "frequencies": lambda p, n: [p.file(n)],
     "modes": lambda p, n: [p.file(n)],
     "run-up": lambda p, n: [p.file(n), _range(n), "--duration", "0.3"],

@@ -84,6 +84,12 @@ COMMANDS = (
         "study.toml",
     ),
     Command(
+        "rate",
+        "rate_command:rate",
+        "Rate the gears of a case by ISO 6336: pitting, bending, scuffing, micropitting.",
+        "rated.toml",
+    ),
+    Command(
         "frequencies",
         "frequencies_command:frequencies",
         "List the frequencies of shafts, meshes, bearings and planets.",

@@ -19,6 +19,7 @@ from tribodyn.study.case.provenance import (
     default_of,
     derived_values,
 )
+from tribodyn.study.case.rating_tables import Materials, RatingTable
 from tribodyn.study.case.section import CaseTables, flat, table
 from tribodyn.study.case.sections import (
     Dynamics,
@@ -57,6 +58,8 @@ class CaseData(BaseCase, CaseTables):
     dynamics: Dynamics = table(Dynamics, "the vibrating structure", "empty")
     losses: Losses | None = table(Losses, "power losses other than those of the teeth", "none")
     solver: Solver = table(Solver, "how the motion is computed", "empty")
+    materials: Materials | None = table(Materials, "strength of the gears, by name", "none")
+    rating: RatingTable | None = table(RatingTable, "load capacity of the gears", "none")
     faults: Faults | None = table(Faults, "faults that repeat with a shaft, by name", "none")
 
     _default_of, _derived_values = default_of, derived_values
@@ -169,6 +172,11 @@ class CaseData(BaseCase, CaseTables):
         if pinion is not None and wheel is not None:
             return math.hypot(pinion, wheel)
         return self.gears.composite_roughness
+
+    @property
+    def is_rated(self) -> bool:
+        """Whether the case asks for the load capacity of its gears."""
+        return self.rating is not None
 
     @property
     def speed_ratio(self) -> float:

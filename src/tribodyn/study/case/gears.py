@@ -10,7 +10,7 @@ from typing import Any
 from tribodyn.errors import Problem
 from tribodyn.gear.hypoid.blank import GENERATIONS, HANDS, PROCESSES, RANGES, hypoid_blank
 from tribodyn.gear.hypoid.kinematics import ENTRAINMENTS
-from tribodyn.model import REQUIRED, Option, choice, file_path, flag, integer, number, numbers
+from tribodyn.model import REQUIRED, Option, choice, file_path, flag, integer, number, numbers, text
 from tribodyn.study.case.section import Section, Table
 from tribodyn.study.case.section import table as inner_table
 from tribodyn.study.case.user_input import UserInput, conflicting_keys
@@ -122,6 +122,9 @@ class Gear(Section):
         basis="the standard addendum less the tip shortening",
     )
     bore_diameter: float = number(0.0, 0.0, 20.0, _GUARD, of="bore_diameter")
+    material: str | None = text(
+        None, meaning="name of its strength in [materials]", example='"18CrNiMo7-6"'
+    )
     rim_diameter: float | None = number(
         None, 1e-4, 40.0, _GUARD, of="rim_diameter", basis="a rim of 3.5 modules"
     )
@@ -136,22 +139,13 @@ class Gear(Section):
         None, 0.0, 16e-6, "ground to milled flanks; " + _GUARD, of="roughness_ra"
     )
     density: float | None = number(
-        None,
-        500.0,
-        25000.0,
-        "from polymers to tungsten",
-        of="density",
+        None, 500.0, 25000.0, "from polymers to tungsten", of="density",
         meaning="density of this gear, if not that of [material]",
-    )
+    )  # fmt: skip
     thermal_conductivity: float | None = number(
-        None,
-        0.05,
-        1000.0,
-        "polymers have 0.2, copper 400 W/m/K",
-        of="thermal_conductivity",
-        meaning="thermal conductivity of the gear; steel if not given",
-        example='"47 W/m/K"',
-    )
+        None, 0.05, 1000.0, "polymers have 0.2, copper 400 W/m/K", of="thermal_conductivity",
+        meaning="thermal conductivity of the gear; steel if not given", example='"47 W/m/K"',
+    )  # fmt: skip
     specific_heat: float | None = number(
         None, 100.0, 5000.0, _GUARD, of="specific_heat", example='"460 J/kg/K"'
     )
@@ -409,7 +403,10 @@ Gears.fields |= {**HYPOID_KEYS, **_gear_tables}
 _OF_ALL = ("kind", "driver", "teeth", "mass", "moment_of_inertia")
 _OF = {"table": (*_OF_ALL, "table"), "hypoid": (*_OF_ALL, *_ALSO_OF_HYPOID)}
 #: Tables of a case that say nothing about such a pair.
-_IDLE = {"table": ("stiffness", "material", "film"), "hypoid": ("stiffness",)}
+_IDLE = {
+    "table": ("stiffness", "material", "film", "materials", "rating"),
+    "hypoid": ("stiffness", "materials", "rating"),
+}
 _REQUIRED = {
     "spur": ("gears.normal_module", "gears.normal_pressure_angle"),
     "hypoid": tuple(f"gears.{n}" for n, o in HYPOID_KEYS.items() if getattr(o, "required", False)),

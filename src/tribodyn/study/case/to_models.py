@@ -14,6 +14,7 @@ from tribodyn.errors import Argument, InputError, ModelOption, ModelWarning, Pro
 from tribodyn.study.case.gears import Gear, Gears, Modification
 from tribodyn.study.case.hypoid import hypoid_flanks, levers
 from tribodyn.study.case.profile_map_file import read_profile_map
+from tribodyn.study.case.rating_tables import rating_problems
 from tribodyn.study.case.section import Section, options_of
 from tribodyn.study.case.sections import Dynamics, Losses, LubricantData, MaterialData
 
@@ -455,6 +456,7 @@ def case_problems(case: CaseData) -> list[tuple[str, Problem]]:
     problems += [] if problems else _faults("lubricant", lambda: case.film_lubricant)
     problems += [] if problems else _faults("losses", lambda: _gearbox_losses(case))
     problems += [] if problems else _fault_problems(case)
+    problems += [] if problems else rating_problems(case)
     return problems if case.gears.kind == "hypoid" else problems + _bores(case)
 
 

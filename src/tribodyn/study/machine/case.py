@@ -297,6 +297,11 @@ class MachineCase(PartsBase):
         return "Planetary stage" if self.lone_stage else "Machine"
 
     @property
+    def is_rated(self) -> bool:
+        """Whether the case asks for the load capacity of its gears."""
+        return self.data.get("rating") is not None
+
+    @property
     def meshes(self) -> tuple[str, ...]:
         """Names of the meshes."""
         return tuple(self._mesh_tables)

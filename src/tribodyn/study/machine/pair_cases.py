@@ -47,7 +47,9 @@ if TYPE_CHECKING:
     from tribodyn.study.machine.user_tables import PartsBase
 
 #: Tables of models that hold for all meshes, and that a mesh may have for itself.
-SHARED = ("material", "lubricant", "film", "stiffness", "friction")
+SHARED = ("material", "lubricant", "film", "stiffness", "friction", "materials", "rating")
+#: Those that meshes of hypoid gears have not.
+_OF_CYLINDRICAL = ("stiffness", "materials", "rating")
 #: Keys of ``[lubricant]`` of the heat balance, which is that of the whole machine.
 HEAT = ("heat_transfer", "gear_heat_transfer", "ambient_temperature")
 #: Keys of ``[dynamics]`` of a pair that belong to its mesh.
@@ -161,8 +163,11 @@ def pair_case(
     tables: dict[str, Any] = {
         name: _merged(name, data.get(name, {}), inner.get(name, {}))
         for name in SHARED
-        if name in inner or (name in data and not (crossed and name == "stiffness"))
+        if name in inner or (name in data and not (crossed and name in _OF_CYLINDRICAL))
     }
+    if "materials" in tables:
+        used = {data["gears"][name].get("material") for name in names}
+        tables["materials"] = {k: v for k, v in tables["materials"].items() if k in used}
     shared_dynamics = {k: v for k, v in data.get("dynamics", {}).items() if k in MESH_KEYS}
     mesh_dynamics = {k: v for k, v in body.items() if k in MESH_KEYS}
     pair = {k: v for k, v in body.items() if k in gears.Gears.fields and k not in inner}

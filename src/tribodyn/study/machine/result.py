@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import asdict, dataclass
 from functools import cached_property, wraps
 from pathlib import Path
@@ -42,6 +42,7 @@ if TYPE_CHECKING:
     from tribodyn.study.machine.case import MachineCase
     from tribodyn.study.machine.load_cases import LoadCase
     from tribodyn.study.machine.modes import MachineCampbell
+    from tribodyn.study.rating import RatedMesh
 
 
 #: Steps per cycle of the fastest mesh, and at least of the only one of a stage by itself.
@@ -260,6 +261,11 @@ class MachineResult(ResultOfCase):
     @property
     def _sensors(self) -> Sensors:
         return sensors_of(self.case)
+
+    def _rated_meshes(self) -> Iterable[RatedMesh]:
+        from tribodyn.study.machine.rated_meshes import rated_meshes
+
+        return rated_meshes(self)
 
     @property
     def loads(self) -> Mapping[str, LoadResult]:

@@ -35,6 +35,7 @@ _OF_FLANKS = (
     "hand",
     "profile_shift_coefficient",
     "tip_diameter",
+    "material",
     "roughness_rms",
     "roughness_ra",
     "thermal_conductivity",
@@ -70,6 +71,10 @@ def unused_keys(data: Mapping[str, Any]) -> KeyedProblems:
     yield from _refused("solver", data.get("solver"), SOLVER_OF_PAIRS, why, "Remove it")
     yield from _planets(data)
     yield from _constant_meshes(data)
+    named = {body.get("material") for body in _tables(data, "gears").values()}
+    unused = [name for name in data.get("materials") or () if name not in named]
+    why, remedy = "No gear names it", "Name it as material of a gear, or remove it"
+    yield from _refused("materials", data.get("materials"), unused, why, remedy)
 
 
 def _heat(data: Mapping[str, Any]) -> KeyedProblems:
@@ -131,8 +136,11 @@ def _constant_meshes(data: Mapping[str, Any]) -> KeyedProblems:
     if crossed and not plane:
         why = "The stiffness of hypoid teeth is line_stiffness or stiffness_model of their mesh"
         yield from _refused("", data, ("stiffness",), why, "Remove [stiffness]")
+        why = "Bevel and hypoid gears are not rated"
+        yield from _refused("", data, ("rating", "materials"), why, "Remove it")
     elif meshes and not (crossed or plane):
-        shared = ("lubricant", "film", "stiffness", "friction", "solver")
+        teeth = ("lubricant", "film", "stiffness", "friction", "solver")
+        shared = (*teeth, "materials", "rating")
         yield from _refused("", data, shared, why, remedy)
         keys = [name for name in _OF_TEETH if name in MESH_KEYS]
         yield from _refused("dynamics", data.get("dynamics"), keys, why, remedy)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from functools import cached_property
 from typing import TYPE_CHECKING, NoReturn
 
@@ -31,6 +31,7 @@ if TYPE_CHECKING:
     from tribodyn.study.faults.motion import TurningMotion
     from tribodyn.study.heat_balance import HeatBalance
     from tribodyn.study.pipeline.assembly import Damping
+    from tribodyn.study.rating import RatedMesh
 
 
 @record
@@ -194,6 +195,11 @@ class Result(ResultOfCase, Record):
         from tribodyn.study.faults.clock import varies_over_turns
 
         return self.turning_motion if varies_over_turns(self.case) else None
+
+    def _rated_meshes(self) -> Iterable[RatedMesh]:
+        from tribodyn.study.rating import rated_pair
+
+        return rated_pair(self)
 
     @property
     def _sensors(self) -> PairSensors:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 from abc import ABC, abstractmethod
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from functools import cached_property, partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, ClassVar
@@ -21,6 +21,7 @@ if TYPE_CHECKING:
     from tribodyn.errors import ModelWarning
     from tribodyn.measurement import Recording
     from tribodyn.study.faults.sensors import Sensors
+    from tribodyn.study.rating import CaseRating, RatedMesh
     from tribodyn.types import Array
 
 _PLOT = "plot_"
@@ -62,6 +63,17 @@ class ResultOfCase(ABC):
     @abstractmethod
     def _sensors(self) -> Sensors:
         """What there is to sense."""
+
+    @abstractmethod
+    def _rated_meshes(self) -> Iterable[RatedMesh]:
+        """Meshes under their loads whose load capacity is asked for by ``[rating]``."""
+
+    @cached_property
+    def rating(self) -> CaseRating | None:
+        """Load capacity of the gears; None without ``[rating]``."""
+        from tribodyn.study.rating import case_rating
+
+        return case_rating(self._rated_meshes())
 
     @cached_property
     def _summary(self) -> Figures:

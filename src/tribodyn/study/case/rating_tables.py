@@ -1,0 +1,161 @@
+"""The tables ``[rating]`` and ``[materials.NAME]`` of a case: load capacity of its gears."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import TYPE_CHECKING, Any
+
+from tribodyn.errors import InputError, Problem, did_you_mean
+from tribodyn.model import choice, flag, integer, number
+from tribodyn.study.case.section import NamedTables, Section, table
+
+if TYPE_CHECKING:
+    from tribodyn.rating import GearMaterial
+    from tribodyn.study.case.case_data import CaseData
+
+_STRENGTH = "strengths of metals in N/mm2; guards against a wrong unit"
+
+
+def _kinds() -> list[str]:
+    from tribodyn.rating.materials import KINDS
+
+    return list(KINDS)
+
+
+def _strength(symbol: str, meaning: str) -> Any:
+    return number(
+        None, 10e6, 5e9, _STRENGTH, unit="Pa", display_unit="MPa", symbol=symbol, meaning=meaning,
+        example='"1500 MPa"',
+    )  # fmt: skip
+
+
+class StrengthTable(Section):
+    """A ``[materials.NAME]`` table: strength of the material of a gear by ISO 6336-5."""
+
+    kind: str = choice("Eh", _kinds, meaning="type of material of ISO 6336-5")
+    grade: str = choice("MQ", ("ML", "MQ", "ME"), meaning="grade of quality")
+    hardness: float | None = number(
+        None, 50.0, 1200.0, "hardness numbers of metals", meaning="HBW of St and cast iron, HV of "
+        "the flank of the others; needed where the strength depends on it", example="720.0",
+    )  # fmt: skip
+    core_hardness: float = number(
+        25.0, 25.0, 50.0, "HRC of carburized cores", meaning="HRC of the core of Eh MQ",
+    )  # fmt: skip
+    hardenable: bool = flag(True, meaning="whether the core of Eh MQ has 28 HRC at Jominy 12 mm")
+    pitting_limit: float | None = _strength("sigma_Hlim", "allowable contact stress number")
+    bending_limit: float | None = _strength("sigma_Flim", "nominal stress number in bending")
+    yield_strength: float | None = _strength("sigma_S", "yield strength of St and V")
+    tensile_strength: float | None = _strength("sigma_B", "tensile strength of GG")
+    peened: bool = flag(False, meaning="whether the roots are shot-peened")
+
+
+class Materials(
+    NamedTables, inner=table(StrengthTable, "strength of the material of gears that name it")
+):
+    """The ``[materials]`` table: materials by the names that ``gears.*.material`` gives."""
+
+
+def _roughness(default: float, meaning: str) -> Any:
+    return number(
+        default, 0.1e-6, 200e-6, "honed to rough flanks", unit="m", display_unit="um", symbol="Rz",
+        meaning=meaning, example='"4 um"',
+    )  # fmt: skip
+
+
+class RatingTable(Section):
+    """The ``[rating]`` table: load capacity of the gears by ISO 6336."""
+
+    required_life: float | None = number(
+        None, 1.0, 1e11, "one second to 3000 years", unit="s", display_unit="h",
+        meaning="required running time; endurance limits without it", example='"20000 h"',
+    )  # fmt: skip
+    application_factor: float = number(
+        1.0, 0.1, 10.0, "ISO 6336-1 has 1 to 2.25", symbol="K_A",
+        meaning="loads from outside; 1 where load cases contain them", example="1.25",
+    )  # fmt: skip
+    mesh_load_factor: float | None = number(
+        None, 1.0, 3.0, "planets share unevenly", symbol="K_gamma",
+        meaning="greatest load of a planet over the mean", basis="the number of planets",
+    )  # fmt: skip
+    minimum_safety: float | None = number(
+        None, 0.1, 10.0, "safeties in use lie between 1 and 3", meaning="required safety of all "
+        "modes of failure", basis="1 pitting and micropitting, 1.4 bending, 1.5 scuffing",
+    )  # fmt: skip
+    edition: int = integer(
+        2019, 2006, 2019, "editions 2006 and 2019", meaning="edition of ISO 6336", example="2019"
+    )
+    accuracy_grade: int = integer(
+        6, 0, 12, "grades of ISO 1328-1:1995", meaning="accuracy grade of both gears", example="6"
+    )
+    flank_roughness: float = _roughness(4e-6, "roughness Rz of the flanks")
+    root_roughness: float = _roughness(16e-6, "roughness Rz of the roots")
+    scuffing_load_stage: int | None = integer(
+        None, 1, 14, "stages of the test A/8.3/90",
+        meaning="failure load stage of the oil in the FZG scuffing test", example="12",
+    )  # fmt: skip
+    micropitting_load_stage: int | None = integer(
+        None, 5, 10, "stages of the test C-GF/8.3",
+        meaning="failure load stage of the oil in the FZG micropitting test", example="9",
+    )  # fmt: skip
+    lubrication: str = choice(
+        "dip", ("dip", "spray", "submerged"), meaning="how the oil reaches the gears"
+    )
+
+
+def gear_material(case: CaseData, role: str) -> GearMaterial:
+    """Strength of the material of a gear; Eh MQ where it names none."""
+    from tribodyn.rating import GearMaterial
+
+    name = getattr(case.gears, role).material
+    stated = {} if name is None else vars(getattr(case.materials, name))
+    values = {key: value for key, value in stated.items() if not key.startswith("_")}
+    elastic = case.material_properties
+    return GearMaterial(
+        youngs_modulus=elastic.youngs_modulus,
+        poissons_ratio=elastic.poissons_ratio,
+        density=case.density(role),
+        **values,
+    )
+
+
+def rating_problems(case: CaseData) -> Iterator[tuple[str, Problem]]:
+    """Problems of materials and of the rating, by dotted key."""
+    names = [] if case.materials is None else [n for n in vars(case.materials) if n[0] != "_"]
+    if case.rating is None:
+        if names:
+            what, why = "materials has no effect here", "Only a rating needs strengths"
+            yield "materials", Problem(what, "", why, "Add [rating], or remove it")
+        for role in ("pinion", "wheel"):
+            if (name := getattr(case.gears, role).material) is not None:
+                what, why = f'material = "{name}" has no effect here', "Only a rating needs it"
+                yield f"gears.{role}.material", Problem(what, "", why, "Add [rating], or remove it")
+        return
+    if case.rating.edition not in (2006, 2019):
+        what, why = f"edition = {case.rating.edition}", "ISO 6336 is computed as of 2006 and 2019"
+        yield "rating.edition", Problem(what, "", why, "Choose one of these")
+    if case.lubricant is None:
+        what, why = "the table [lubricant] is missing", "Ratings need the viscosity at 40 degC"
+        yield "rating", Problem(what, "", why, "Add it with a name, or the figures of a data sheet")
+    elif case.lubricant.name is None and case.lubricant.density_at_15 is None:
+        what = "the viscosity of the oil at 40 degC is not known"
+        why = "Ratings need it, and properties at the working temperature do not give it"
+        remedy = "Give lubricant.name, or the figures of a data sheet with density_at_15"
+        yield "rating", Problem(what, "", why, remedy)
+    used = [getattr(case.gears, role).material for role in ("pinion", "wheel")]
+    for name in (name for name in names if name not in used):
+        what, remedy = f"{name} has no effect here", "Name it as material of a gear, or remove it"
+        yield f"materials.{name}", Problem(what, "", "No gear names it", remedy)
+    for role, name in (("pinion", used[0]), ("wheel", used[1])):
+        if name is not None and name not in names:
+            what, why = f'there is no material "{name}"', f"Known: {', '.join(names) or 'none'}"
+            remedy = did_you_mean(name, names, f"Add [materials.{name}]")
+            yield f"gears.{role}.material", Problem(what, "", why, remedy)
+            continue
+        if role == "wheel" and name == used[0]:
+            continue  # reported with the pinion
+        try:
+            gear_material(case, role)
+        except InputError as error:
+            for problem in error.problems:
+                key = getattr(problem.where, "name", "")
+                yield f"materials.{name}.{key}".rstrip("."), problem

@@ -1,0 +1,397 @@
+"""Load capacity of the gears of a result: by the factors of the standard, and by computed ones."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import asdict, dataclass
+from itertools import chain
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+from tribodyn.errors import collected
+from tribodyn.rating import (
+    GearOil,
+    GearRating,
+    LoadCase,
+    PairRating,
+    RatedGear,
+    RatingConditions,
+    SpectrumRating,
+    rate_pair,
+    rate_spectrum,
+)
+from tribodyn.study.case.rating_tables import gear_material
+from tribodyn.study.case.to_models import lubricant
+
+if TYPE_CHECKING:
+    from tribodyn.study.case.case import Case
+    from tribodyn.study.pipeline.result import Result
+
+#: K_gamma of planetary stages by the number of planets, without a computation.
+PLANET_FACTORS = {1: 1.0, 2: 1.0, 3: 1.10, 4: 1.25, 5: 1.35, 6: 1.44, 7: 1.47}
+#: Base oils of data sheets by their names in ratings; others count as mineral.
+_BASE_OILS = {"polyalphaolefin": "pao", "polyalkylene glycol": "polyglycol"}
+#: Where the oil of a case has no temperature, as of the viscosity that it states.
+_WITHOUT_TEMPERATURE = 353.15
+_ROLES = "pinion", "wheel"
+
+
+class Verdict(NamedTuple):
+    """Safety of one part against one mode of failure.
+
+    Parameters
+    ----------
+    mode : str
+        Mode of failure: ``pitting``, ``bending``, ``scuffing (flash)``...
+    part : str
+        Gear or mesh.
+    load : str
+        Load.
+    safety : float
+        Safety by the factors of the standard, pure number.
+    required : float
+        Required safety, pure number.
+    computed : float, optional
+        Safety by computed load factors, pure number.
+    """
+
+    mode: str
+    part: str
+    load: str
+    safety: float
+    required: float
+    computed: float | None
+
+    @property
+    def margin(self) -> float:
+        """Safety over the required one, less 1."""
+        return self.safety / self.required - 1.0
+
+
+@dataclass(frozen=True)
+class MeshRating:
+    """Rating of one mesh under one load.
+
+    Parameters
+    ----------
+    load, mesh : str
+        Names.
+    gears : tuple of str
+        Names of pinion and wheel.
+    standard : PairRating
+        By the factors of ISO 6336.
+    computed : PairRating
+        With K_v, K_Hbeta and K_Halpha of the computed motion and load distribution.
+    """
+
+    load: str
+    mesh: str
+    gears: tuple[str, str]
+    standard: PairRating
+    computed: PairRating
+
+    def verdicts(self) -> Iterator[Verdict]:
+        """Iterate over the safeties of the mesh and of its gears.
+
+        Yields
+        ------
+        Verdict
+        """
+        needed = self.standard.conditions
+        pairs = zip(
+            self.gears, self.standard.gears.values(), self.computed.gears.values(), strict=True
+        )
+        for name, gear, other in pairs:
+            for mode in ("pitting", "bending"):
+                key, required = f"{mode}_safety", getattr(needed, f"{mode}_safety")
+                values = getattr(gear, key), required, getattr(other, key)
+                yield Verdict(mode, name, self.load, *values)
+        for mode, key, required in (
+            ("scuffing (flash)", "scuffing_safety_flash", needed.scuffing_safety),
+            ("scuffing (integral)", "scuffing_safety_integral", needed.scuffing_safety),
+            ("micropitting", "micropitting_safety", needed.micropitting_safety),
+        ):
+            if (safety := getattr(self.standard, key)) is not None:
+                other = getattr(self.computed, key)
+                yield Verdict(mode, self.mesh, self.load, safety, required, other)
+
+    def to_dict(self) -> dict[str, Any]:
+        """Ratings of the mesh, as JSON has them.
+
+        Returns
+        -------
+        dict of str
+        """
+        factors = {name: float(self.computed.factors[name]) for name in self.computed.overridden}
+        return {
+            "gears": list(self.gears),
+            "load": self.load,
+            **self.standard.to_dict(),
+            "computed_factors": factors,
+            "computed": {
+                name: value
+                for name, value in self.computed.to_dict().items()
+                if name.endswith(("safety", "flash", "integral"))
+            }
+            | {
+                role: {key: getattr(gear, key) for key in ("pitting_safety", "bending_safety")}
+                for role, gear in self.computed.gears.items()
+            },
+        }
+
+
+@dataclass(frozen=True)
+class MeshSpectrum:
+    """Damage of the gears of a mesh by all load cases together.
+
+    Parameters
+    ----------
+    mesh : str
+        Name.
+    gears : tuple of str
+        Names of pinion and wheel.
+    rating : SpectrumRating
+        Safeties and damage by load case.
+    conditions : dict
+        Required safeties.
+    """
+
+    mesh: str
+    gears: tuple[str, str]
+    rating: SpectrumRating
+    conditions: dict[str, Any]
+
+    def verdicts(self) -> Iterator[Verdict]:
+        """Iterate over the safeties of the gears.
+
+        Yields
+        ------
+        Verdict
+        """
+        required = RatingConditions(**self.conditions)
+        damages = self.rating.pinion, self.rating.wheel
+        for name, damage in zip(self.gears, damages, strict=True):
+            for mode in ("pitting", "bending"):
+                key = f"{mode}_safety"
+                values = getattr(damage, key), getattr(required, key), None
+                yield Verdict(mode, name, "all load cases", *values)
+
+    def to_dict(self) -> dict[str, Any]:
+        """Safeties, and damage by load case, as JSON has them.
+
+        Returns
+        -------
+        dict of str
+        """
+        damages = self.rating.pinion, self.rating.wheel
+        return {
+            "load_cases": [case.name for case in self.rating.cases],
+            **{name: asdict(damage) for name, damage in zip(self.gears, damages, strict=True)},
+        }
+
+
+@dataclass(frozen=True)
+class CaseRating:
+    """Load capacity of all cylindrical gears of a result.
+
+    Parameters
+    ----------
+    ratings : tuple of MeshRating
+        Each mesh under each load.
+    spectra : tuple of MeshSpectrum
+        Each mesh under all load cases together, where there are several and a required life.
+    """
+
+    ratings: tuple[MeshRating, ...]
+    spectra: tuple[MeshSpectrum, ...] = ()
+
+    @property
+    def meshes(self) -> dict[str, PairRating]:
+        """Rating of each mesh by the standard, under the load with its least margin."""
+        return {name: each.standard for name, each in self._governing().items()}
+
+    @property
+    def gears(self) -> dict[str, dict[str, GearRating]]:
+        """Ratings of each gear by its meshes, under the load with the least margin."""
+        gears: dict[str, dict[str, GearRating]] = {}
+        for mesh, each in self._governing().items():
+            for name, rating in zip(each.gears, each.standard.gears.values(), strict=True):
+                gears.setdefault(name, {})[mesh] = rating
+        return gears
+
+    def _governing(self) -> dict[str, MeshRating]:
+        least: dict[str, tuple[float, MeshRating]] = {}
+        for each in self.ratings:
+            margin = min(verdict.margin for verdict in each.verdicts())
+            if each.mesh not in least or margin < least[each.mesh][0]:
+                least[each.mesh] = margin, each
+        return {mesh: each for mesh, (_, each) in least.items()}
+
+    def verdicts(self) -> list[Verdict]:
+        """Least safety of each part against each mode over all loads, the least margin first.
+
+        Returns
+        -------
+        list of Verdict
+        """
+        least: dict[tuple[str, str], Verdict] = {}
+        listed = chain(*(each.verdicts() for each in self.ratings))
+        for verdict in chain(listed, *(each.verdicts() for each in self.spectra)):
+            key = verdict.mode, verdict.part
+            if key not in least or verdict.margin < least[key].margin:
+                least[key] = verdict
+        return sorted(least.values(), key=lambda verdict: verdict.margin)
+
+    def to_dict(self) -> dict[str, Any]:
+        """Ratings of meshes and gears, as JSON has them.
+
+        Returns
+        -------
+        dict of str
+        """
+        gears = {
+            name: {mesh: rating.to_dict() for mesh, rating in meshes.items()}
+            for name, meshes in self.gears.items()
+        }
+        return {
+            "verdicts": [
+                {**verdict._asdict(), "margin": verdict.margin} for verdict in self.verdicts()
+            ],
+            "meshes": {name: each.to_dict() for name, each in self._governing().items()},
+            "gears": gears,
+            "spectra": {each.mesh: each.to_dict() for each in self.spectra},
+        }
+
+
+def gear_oil(case: Case) -> GearOil:
+    """Oil of a case as ratings need it, with its viscosities at 40 and 100 degC."""
+    data, rating = case.lubricant, case.rating
+    assert data is not None
+    assert rating is not None
+    cold, warm = (lubricant(data, temperature) for temperature in (313.15, 373.15))
+    return GearOil(
+        kinematic_viscosity_at_40=cold.kinematic_viscosity,
+        kinematic_viscosity_at_100=warm.kinematic_viscosity,
+        temperature=data.temperature or _WITHOUT_TEMPERATURE,
+        base_oil=_BASE_OILS.get(data.base_oil or "", "mineral"),
+        density_at_15=data.density_at_15,
+        lubrication=rating.lubrication,
+        scuffing_load_stage=rating.scuffing_load_stage,
+        micropitting_load_stage=rating.micropitting_load_stage,
+    )
+
+
+def conditions_of(case: Case, planets: int) -> dict[str, Any]:
+    """Conditions of ``[rating]``; planets share the load unevenly."""
+    rating = case.rating
+    assert rating is not None
+    sharing = rating.mesh_load_factor
+    if sharing is None:
+        sharing = PLANET_FACTORS.get(planets, max(PLANET_FACTORS.values()))
+    required = rating.minimum_safety
+    names = ("pitting_safety", "bending_safety", "scuffing_safety", "micropitting_safety")
+    safeties = {} if required is None else dict.fromkeys(names, required)
+    return {
+        "application_factor": rating.application_factor,
+        "mesh_load_factor": sharing,
+        "required_life": rating.required_life,
+        "edition": rating.edition,
+        **safeties,
+    }
+
+
+@dataclass(frozen=True)
+class RatedMesh:
+    """A mesh under a load, as it is rated."""
+
+    load: str
+    mesh: str
+    case: Case  #: of its pair
+    gears: tuple[str, str]
+    operation: tuple[float, float]  #: speed [rad/s] and torque [N*m] of the pinion
+    computed: Mapping[str, float]  #: factors of the motion and the load distribution
+    meshes_per_turn: tuple[int, int] = (1, 1)
+    reversed: tuple[bool, bool] = (False, False)
+    planets: int = 1
+    share: float | None = None  #: of the required life, of a load case
+
+    def __post_init__(self) -> None:
+        """Read what is common to all ratings of the mesh."""
+        data = self.case.rating
+        assert data is not None
+        pinion, wheel = (
+            RatedGear(
+                material=gear_material(self.case, role),
+                accuracy_grade=data.accuracy_grade,
+                flank_roughness=data.flank_roughness,
+                root_roughness=data.root_roughness,
+                meshes_per_turn=count,
+                stress_ratio=-1.2 if idler else 0.0,
+            )
+            for role, count, idler in zip(_ROLES, self.meshes_per_turn, self.reversed, strict=True)
+        )
+        conditions = conditions_of(self.case, self.planets)
+        if self.share is not None and conditions["required_life"] is not None:
+            conditions["required_life"] *= self.share
+        common = {"oil": gear_oil(self.case), "pinion": pinion, "wheel": wheel, **conditions}
+        object.__setattr__(self, "_common", common)
+
+    @property
+    def common(self) -> dict[str, Any]:
+        """Arguments of a rating other than the load."""
+        common: dict[str, Any] = vars(self)["_common"]
+        return common
+
+
+def rate_mesh(mesh: RatedMesh) -> MeshRating:
+    """Rating of a mesh with the factors of the standard, and with computed ones."""
+    pair, (speed, torque) = mesh.case.gear_pair, mesh.operation
+    standard = rate_pair(pair, torque=torque, speed=speed, **mesh.common)
+    with collected():  # those of the first rating
+        computed = rate_pair(pair, torque=torque, speed=speed, factors=mesh.computed, **mesh.common)
+    return MeshRating(mesh.load, mesh.mesh, mesh.gears, standard, computed)
+
+
+def rate_load_cases(meshes: Sequence[RatedMesh]) -> MeshSpectrum | None:
+    """Damage of a mesh by its load cases, each for its share of the required life."""
+    first = meshes[0]
+    life = first.case.rating.required_life if first.case.rating is not None else None
+    shares = [mesh for mesh in meshes if mesh.share]
+    if life is None or len(shares) < 2:
+        return None
+    cases = [
+        LoadCase(mesh.operation[1], mesh.operation[0], life * (mesh.share or 0.0), mesh.load)
+        for mesh in shares
+    ]
+    common = {**first.common, "required_life": None}
+    with collected():  # those of the single load cases
+        rating = rate_spectrum(first.case.gear_pair, cases=cases, **common)
+    return MeshSpectrum(first.mesh, first.gears, rating, conditions_of(first.case, 1))
+
+
+def computed_factors(figures: Mapping[str, float | None]) -> dict[str, float]:
+    """K_v of the motion, K_Hbeta and K_Halpha of the load distribution, where they are computed."""
+    factors = {}
+    if (dynamic := figures.get("dynamic_factor_peak")) is not None:
+        factors["K_v"] = max(float(dynamic), 1.0)
+    if (face := figures.get("face_load_factor")) is not None:
+        factors["K_Hbeta"] = max(float(face), 1.0)
+        factors["K_Halpha"] = factors["K_Falpha"] = 1.0  # contained in the load of the slices
+    return factors
+
+
+def case_rating(meshes: Iterable[RatedMesh]) -> CaseRating | None:
+    """Rating of meshes under their loads; None where there are none."""
+    groups: dict[str, list[RatedMesh]] = {}
+    for mesh in meshes:
+        groups.setdefault(mesh.mesh, []).append(mesh)
+    ratings = tuple(rate_mesh(mesh) for group in groups.values() for mesh in group)
+    spectra = tuple(filter(None, map(rate_load_cases, groups.values())))
+    return CaseRating(ratings, spectra) if ratings else None
+
+
+def rated_pair(result: Result) -> Iterator[RatedMesh]:
+    """The mesh of a pair, if its case has ``[rating]``."""
+    case = result.case
+    if case.is_rated:
+        factors = computed_factors(result.figures)
+        yield RatedMesh("operation", result._MESH, case, _ROLES, case.operating_point, factors)

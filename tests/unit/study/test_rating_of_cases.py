@@ -1,0 +1,200 @@
+"""Load capacity of cases: keys, results of pairs and machines, the command."""
+
+from __future__ import annotations
+
+import json
+from typing import Any
+
+import pytest
+
+import tribodyn as td
+from tribodyn.cli import main
+from tribodyn.errors import InputError
+from tribodyn.study import Case
+
+PAIR: dict[str, Any] = {
+    "gears": {
+        "normal_module": 4.5e-3, "normal_pressure_angle": "20 deg", "center_distance": 91.5e-3,
+        "driver": "pinion", "composite_roughness": 0.5e-6,
+        "pinion": {"teeth": 16, "face_width": 14e-3, "profile_shift_coefficient": 0.1817,
+                   "material": "steel"},
+        "wheel": {"teeth": 24, "profile_shift_coefficient": 0.1715, "material": "steel"},
+    },
+    "lubricant": {"name": "ISO VG 220", "temperature": "80 degC"},
+    "operation": {"speed": "1500 rpm", "torque": 200.0},
+    "dynamics": {"model": "torsional"},
+    "film": {"model": "none"},
+    "friction": {"law": "none"},
+    "stiffness": {"model": "iso6336"},
+    "materials": {"steel": {"kind": "Eh", "grade": "MQ", "hardness": 720.0}},
+    "rating": {"required_life": "20000 h", "application_factor": 1.25, "scuffing_load_stage": 12,
+               "micropitting_load_stage": 9},
+}  # fmt: skip
+MACHINE: dict[str, Any] = {
+    "gears": {
+        "z1": {"shaft": "in", "teeth": 24, "face_width": 20e-3, "material": "steel"},
+        "z2": {"shaft": "middle", "teeth": 31, "face_width": 20e-3, "material": "steel"},
+        "z3": {"shaft": "out", "teeth": 37, "face_width": 20e-3},
+    },
+    "meshes": {
+        "first": {"gears": ["z1", "z2"], "normal_module": 3e-3},
+        "second": {"gears": ["z2", "z3"], "normal_module": 3e-3},
+    },
+    "operation": {"input": "in", "output": "out", "speed": "1200 rpm", "torque": 100.0},
+    "load_cases": [
+        {"name": "low", "share": 0.9, "torque": 100.0},
+        {"name": "high", "share": 0.1, "torque": 180.0},
+    ],
+    "lubricant": {"name": "ISO VG 220", "temperature": "80 degC"},
+    "film": {"model": "none"},
+    "friction": {"law": "none"},
+    "stiffness": {"model": "iso6336"},
+    "materials": PAIR["materials"],
+    "rating": {"required_life": "20000 h"},
+}
+
+
+def changed(data: dict[str, Any], **tables: Any) -> dict[str, Any]:
+    return {name: table for name, table in {**data, **tables}.items() if table is not None}
+
+
+@pytest.fixture(scope="module")
+def result() -> Any:
+    return td.run(Case(**PAIR))
+
+
+def test_a_pair_is_rated_as_without_a_case(result):
+    rating = result.rating
+    case = result.case
+    pair = td.rating.rate_pair(
+        case.gear_pair, torque=200.0, speed=case.pinion_speed, required_life=7.2e7,
+        application_factor=1.25,
+        oil=td.rating.GearOil(
+            kinematic_viscosity_at_40=220e-6, temperature=353.15, scuffing_load_stage=12,
+            micropitting_load_stage=9,
+        ),
+    )  # fmt: skip
+    ours = rating.meshes["mesh"]
+    assert ours.pitting_safety == pytest.approx(pair.pitting_safety, rel=2e-3)
+    assert ours.bending_safety == pytest.approx(pair.bending_safety, rel=1e-9)
+    assert rating.gears["wheel"]["mesh"].bending_safety == ours.wheel.bending_safety
+    assert ours.scuffing_safety_flash is not None
+    assert ours.micropitting_safety is not None
+
+
+def test_computed_loads_stand_beside_those_of_the_standard(result):
+    (mesh,) = result.rating.ratings
+    peak = max(result.figures["dynamic_factor_peak"], 1.0)
+    assert mesh.computed.factors["K_v"] == pytest.approx(peak, rel=1e-12)
+    assert mesh.standard.factors["K_v"].branch.startswith("subcritical")
+    ratio = (mesh.computed.bending_safety / mesh.standard.bending_safety) - 1.0
+    assert (ratio < 0.0) == (peak > mesh.standard.factors["K_v"])
+    verdicts = result.rating.verdicts()
+    assert {v.mode for v in verdicts} == {
+        "pitting", "bending", "scuffing (flash)", "scuffing (integral)", "micropitting",
+    }  # fmt: skip
+    assert [v.margin for v in verdicts] == sorted(v.margin for v in verdicts)
+    json.dumps(result.rating.to_dict())
+
+
+def test_one_required_safety_holds_for_all_modes():
+    case = Case(**changed(PAIR, rating={**PAIR["rating"], "minimum_safety": 1.7}))
+    assert {v.required for v in td.run(case).rating.verdicts()} == {1.7}
+
+
+def test_a_case_without_a_rating_has_none():
+    gears = {**PAIR["gears"]}
+    for role in ("pinion", "wheel"):
+        gears[role] = {k: v for k, v in gears[role].items() if k != "material"}
+    case = Case(**changed(PAIR, gears=gears, materials=None, rating=None))
+    assert not case.is_rated
+    assert td.run(case).rating is None
+
+
+@pytest.mark.parametrize(
+    ("tables", "text"),
+    [
+        ({"materials": {"stel": {}}}, 'there is no material "steel"'),
+        ({"materials": {**PAIR["materials"], "other": {}}}, "other has no effect"),
+        ({"materials": {"steel": {"hardness": 900.0}}}, "660 to 800 HV"),
+        ({"materials": {"steel": {"kind": "V"}}}, "hardness is missing"),
+        ({"materials": {"steel": {"kind": "Stahl"}}}, "GGG"),
+        ({"rating": None}, "materials has no effect"),
+        ({"lubricant": None}, "viscosity at 40 degC"),
+        (
+            {
+                "lubricant": {
+                    "dynamic_viscosity": 0.08,
+                    "density": 880.0,
+                    "pressure_viscosity_coefficient": 2e-8,
+                }
+            },
+            "viscosity of the oil at 40 degC",
+        ),
+        ({"rating": {"edition": 2010}}, "2006 and 2019"),
+        ({"rating": {"required_lief": "1 h"}}, "required_life"),
+    ],
+)
+def test_keys_that_are_wrong_or_have_no_effect_are_refused(tables, text):
+    with pytest.raises(InputError, match=text):
+        Case(**changed(PAIR, **tables))
+
+
+def test_an_idler_of_a_machine_is_bent_both_ways_and_its_load_cases_add_up():
+    from tribodyn.study import MachineCase
+
+    rating = td.run(MachineCase(**MACHINE)).rating
+    factors = {mesh: gears["z2"] for mesh, gears in _by_gear(rating).items()}
+    assert all(gear.factors["Y_M"] < 1.0 for gear in factors.values())
+    assert _by_gear(rating)["first"]["z1"].factors["Y_M"] == 1.0
+    assert {each.load for each in rating.ratings} == {"low", "high"}
+    cycles = {each.load: each.standard.pinion.load_cycles for each in rating.ratings}
+    assert cycles["low"] / cycles["high"] == pytest.approx(9.0)
+    spectrum = rating.spectra[0].rating
+    high = [each for each in rating.ratings if (each.mesh, each.load) == ("first", "high")]
+    assert spectrum.pinion.pitting_safety <= high[0].standard.pinion.pitting_safety * (1 + 1e-9)
+    assert "all load cases" in {verdict.load for verdict in rating.verdicts()} or all(
+        damage == 0.0 for damage in spectrum.pinion.pitting_damage[:1]
+    )
+
+
+def _by_gear(rating: Any) -> dict[str, dict[str, Any]]:
+    meshes: dict[str, dict[str, Any]] = {}
+    for gear, by_mesh in rating.gears.items():
+        for mesh, each in by_mesh.items():
+            meshes.setdefault(mesh, {})[gear] = each
+    return meshes
+
+
+@pytest.mark.parametrize(
+    ("change", "text"),
+    [
+        ({"materials": {**PAIR["materials"], "other": {}}}, "other has no effect"),
+        ({"rating": None}, "has no effect"),
+    ],
+)
+def test_keys_of_machines_that_have_no_effect_are_refused(change, text):
+    from tribodyn.study import MachineCase
+
+    with pytest.raises(InputError, match=text):
+        td.run(MachineCase(**changed(MACHINE, **change)))
+
+
+def command(*words: str) -> int:
+    with pytest.raises(SystemExit) as left:
+        main(list(words))
+    return int(left.value.code or 0)
+
+
+def test_the_command_prints_the_verdict(tmp_path, capsys):
+    path = tmp_path / "rated.toml"
+    path.write_text(Case(**PAIR).to_toml(), "utf-8")
+    assert command("rate", str(path), "--all") == 0
+    text = capsys.readouterr().out
+    assert "The design is limited by" in text
+    assert "K_Hbeta" in text
+    assert command("rate", str(path), "--json") == 0
+    data = json.loads(capsys.readouterr().out)
+    assert data["meshes"]["mesh"]["factors"]["K_v"]["value"] >= 1.0
+    assert command("rate", "fzg-film") == 2
+    assert "[rating]" in capsys.readouterr().err
