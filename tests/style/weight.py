@@ -74,7 +74,7 @@ LINES: dict[str, int] = {
     "report": 1790,
     "signals": 1754,
     "stiffness": 5084,
-    "study": 17224,
+    "study": 17215,
     "surrogate": 777,
     "types": 7,
     "uncertainty": 290,

@@ -196,3 +196,12 @@ def test_all_planets_are_sampled_at_the_same_places_of_their_cycle(count):
     )
     assert steps_of(structure) % (2 * count) == 0
     assert 240 <= steps_of(structure) < 240 + 2 * count
+
+
+def test_what_a_load_of_a_stage_had_is_read_under_its_old_name(result):
+    load = result.operation
+    for name in ("shares", "phases"):
+        with pytest.warns(DeprecationWarning, match=rf"LoadResult\.stage\(\)\.{name}"):
+            assert type(getattr(load, name)) is type(getattr(load.stage(), name))
+    with pytest.raises(AttributeError, match="no attribute 'no_such_name'"):
+        load.no_such_name  # noqa: B018

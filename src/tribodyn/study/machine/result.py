@@ -9,6 +9,7 @@ from functools import cached_property, wraps
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from tribodyn.aliases import warn_of_old_name
 from tribodyn.drawing import draw
 from tribodyn.errors import Argument, InputError
 from tribodyn.gear import Misalignment, MisalignmentStudy, misalignment_study
@@ -194,6 +195,13 @@ class LoadResult:
     def ring_sensor(self, *arguments: Any, **options: Any) -> RingSensorSignal:
         """Signal of a sensor on the ring of the first stage, as of :class:`StageResult`."""
         return self.stage().ring_sensor(*arguments, **options)
+
+    def __getattr__(self, name: str) -> Any:
+        """Find what a stage by itself had in an earlier version."""
+        if name not in ("shares", "phases") or not self.machine.planets:
+            raise AttributeError(f"LoadResult has no attribute {name!r}")
+        warn_of_old_name(f"LoadResult.{name}", f"LoadResult.stage().{name}")
+        return getattr(self.stage(), name)
 
     @property
     def mesh_orders(self) -> tuple[MeshOrder, ...]:

@@ -8,7 +8,7 @@ import os
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
@@ -142,9 +142,9 @@ def _motion_of(folder: Path) -> str:
     return next((name for name in MOTIONS if (folder / f"{name}.nc").is_file()), MOTIONS[-1])
 
 
-def _check_files(folder: Path, summary: Mapping[str, float], facts: Mapping[str, Any]) -> None:
+def _check_files(folder: Path, summary: Mapping[str, float], facts: Mapping[str, object]) -> None:
     """Refuse files that lack, or that differ from those with which the result was written."""
-    checksums: dict[str, str] = json.loads(facts.get("files", "{}"))
+    checksums: dict[str, str] = json.loads(str(facts.get("files", "{}")))
     for name in checksums:
         _require(folder, name)
     changed = [name for name, checksum in checksums.items() if _checksum(folder / name) != checksum]

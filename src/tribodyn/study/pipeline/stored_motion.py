@@ -54,30 +54,18 @@ def parts_of(result: Result) -> Parts:
         variables[name] = (("time", "coordinate"), getattr(response, name), attributes)
         coordinates[f"{name}_unit"] = ("coordinate", np.where(turns, turning, straight))
     pressed, force = _contacts(response)
-    variables["deflection"] = (
-        ("time", "contact"),
-        pressed,
-        _attributes_of(
-            "m",
-            "compression of every contact, counted from the middle of the play: its flanks touch "
-            "at the attribute half_backlash",
-        ),
-    )
-    variables["contact_force"] = (
-        ("time", "contact"),
-        force,
-        _attributes_of("N", "force of every contact"),
-    )
+    text = "compression of every contact, counted from the middle of the play: its flanks touch at "
+    attributes = _attributes_of("m", f"{text}the attribute half_backlash")
+    variables["deflection"] = (("time", "contact"), pressed, attributes)
+    attributes = _attributes_of("N", "force of every contact")
+    variables["contact_force"] = (("time", "contact"), force, attributes)
     for name, (values, unit, meaning) in signals(result, response).items():
         if not name.startswith("acceleration_"):  # the variable acceleration holds them
             variables[name] = ("time", values, _attributes_of(unit, meaning))
     if is_steady(response):
         variables |= _spectra(result)
-        coordinates["order"] = (
-            "order",
-            variables.pop("order"),
-            _attributes_of("1", "mesh harmonic"),
-        )
+        attributes = _attributes_of("1", "mesh harmonic")
+        coordinates["order"] = ("order", variables.pop("order"), attributes)
     facts = {
         "omega_max_dt": response.step_number,
         "title": result.case.title,
@@ -116,11 +104,8 @@ def _spectra(result: Result) -> dict[str, Any]:
         attributes = _attributes_of(unit, f"peak amplitude of the harmonics: {meaning}")
         spectra[f"{name}_spectrum"] = ("order", spectrum.amplitude, attributes)
         spectra["order"] = spectrum.order
-        spectra["frequency"] = (
-            "order",
-            spectrum.frequency,
-            _attributes_of("Hz", "frequency of a harmonic"),
-        )
+        attributes = _attributes_of("Hz", "frequency of a harmonic")
+        spectra["frequency"] = ("order", spectrum.frequency, attributes)
     return spectra
 
 
