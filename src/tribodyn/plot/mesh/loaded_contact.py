@@ -246,13 +246,25 @@ def loaded_contact(contact: LoadedContact) -> Any:
 
 
 def _caption(contact: LoadedContact) -> str:
-    driving, driven = contact.gear_pair.driver, contact.gear_pair.driven_gear
-    return (
-        "A pair takes over load as it enters and sheds it before it leaves. In the grey ranges a "
-        f"tip corner carries load off the line of action: before A that of the {driven}, after E "
-        f"that of the {driving}. High forces there cause high pressure and call for tip relief. "
-        "If teeth differ, the band covers all pairs."
-    )
+    pair, life = contact.gear_pair, Life.of(contact, contact.normal_force)
+    sentences = ["A pair takes over load as it enters and sheds it before it leaves."]
+    if _corners(contact, life)["shapes"] and pair.overlap_ratio:
+        sentences.append("In the grey ranges a part of the face carries load.")
+    elif _corners(contact, life)["shapes"]:
+        sentences.append(
+            "In the grey ranges a tip corner carries load off the line of action: before A that "
+            f"of the {pair.driven_gear}, after E that of the {pair.driver}. High forces there "
+            "cause high pressure and call for tip relief."
+        )
+    if np.max(life.greatest - life.least) > _DIFFERENT * np.max(life.greatest):
+        sentences.append("The teeth differ: the band covers all pairs.")
+    return " ".join(sentences)
+
+
+def _corners(contact: LoadedContact, life: Life) -> dict[str, list[Any]]:
+    """Shades of the ranges in which a tip corner carries load."""
+    loaded = life.age[(life.greatest > _LOADED * life.greatest.max()).any(axis=0)]
+    return corner_shades(contact.gear_pair, float(loaded.min()), float(loaded.max()))
 
 
 def _band(x: Array, least: Array, greatest: Array, color: str) -> dict[str, Any]:
@@ -289,9 +301,8 @@ def loaded_sharing(contact: LoadedContact) -> Any:
     life = Life.of(contact, contact.normal_force)
     inside = (life.age >= first) & (life.age <= last)
     peak = life.greatest.max()
-    loaded = life.age[(life.greatest > _LOADED * peak).any(axis=0)]
     layout = event_lines(pair_letters(pair))
-    for kind, shades in corner_shades(pair, float(loaded.min()), float(loaded.max())).items():
+    for kind, shades in _corners(contact, life).items():
         layout[kind] = [*shades, *layout[kind]]
     ends = displayed("roll_angle", roll_angle_of(pair, np.array([first, last])))
     layout["xaxis"] = {"range": ends.tolist()}

@@ -39,6 +39,7 @@ if TYPE_CHECKING:
 
 _WAYS = {"up": (PINION, "solid"), "down": (WHEEL, "dash")}
 _WORDS = {"up": "upwards", "down": "downwards"}
+_CHANGES = {"up": "rising", "down": "falling"}
 _COLORS = (PINION, WHEEL, *PAIR_COLORS)
 #: Number of curves above which a map is drawn.
 _CURVES = len(_COLORS)
@@ -99,12 +100,24 @@ def _speed_title(sweep: SpeedSweep) -> str:
     return f"The mesh vibrates most strongly at {rounded(name, float(places[top]))}"
 
 
+def _speed_caption(sweep: SpeedSweep) -> str:
+    ways = " and for ".join(f"slowly {_CHANGES[way]}" for way in sweep.directions)
+    sentences = [f"Amplitude of the steady state for {ways} speed."]
+    if np.any(sweep.differs):
+        sentences.append("Where the two differ, two steady states coexist and the history decides.")
+    if sweep.jumps:
+        sentences.append("Arrows are jumps.")
+    if not np.all(sweep.stable):
+        sentences.append("Crosses are states that are unstable or not periodic.")
+    if np.any(np.asarray(sweep.period) > 1):
+        sentences.append("Diamonds repeat after several mesh cycles.")
+    return " ".join(sentences)
+
+
 @drawing(
     "speed_sweep",
     heading="Steady states over the speed",
-    caption="Amplitude of the steady state for slowly rising and for slowly falling speed. "
-    "Where the two differ, two steady states coexist and the history decides; arrows are "
-    "jumps. Crosses are states that are unstable or not periodic.",
+    caption=_speed_caption,
     of="SpeedSweep",
     made_by="Call tribodyn.dynamics.speed_sweep(...) and its plot method.",
 )

@@ -23,6 +23,9 @@ _HARMONICS, _POINTS = 4.5, 8000
 #: Decades below the largest line that are shown.
 _DECADES = 5.0
 
+#: Depth over the greatest below which a place hardly wears.
+_SPARED = 0.1
+
 
 def _caption(motion: TurningMotion) -> str:
     turns = [
@@ -126,11 +129,23 @@ def _load_along_face(mesh: TurningMesh) -> Row:
     return Row("From the middle of the face [mm]", Panel("Load over its mean", curves))
 
 
+def _wear_caption(wear: Wear) -> str:
+    depths = {"pinion": wear.depth_pinion[-1], "wheel": wear.depth_wheel[-1]}
+    spared = [
+        f"the {gear} at {wear.place[int(np.argmin(depth))]:.2g}"
+        for gear, depth in depths.items()
+        if depth.max() > 0.0 and depth.min() < _SPARED * depth.max()
+    ]
+    return (
+        "Depth of wear over the used flank, from its lowest point (0) to the tip (1), after each "
+        "step." + f" Least wears where the flanks slide least: {', '.join(spared)}." * bool(spared)
+    )
+
+
 @drawing(
     "wear_depth",
     heading="Wear of the flanks",
-    caption="Depth of wear over the used flank, from its lowest point to the tip, after each step. "
-    "Nothing wears at the pitch point, where the flanks do not slide.",
+    caption=_wear_caption,
     of="Wear",
     made_by="Call tribodyn.study.wear(...) and its plot method.",
 )
@@ -148,5 +163,6 @@ def wear_depth(wear: Wear) -> Any:
         ]  # fmt: skip
         panels.append(curves("wear_depth", gear, wear.place, steps))
     deepest = rounded("wear_depth", float(max(wear.depth_pinion.max(), wear.depth_wheel.max())))
-    title = f"The flanks lose up to {deepest} in {wear.turns[-1]:.3g} turns of the pinion"
+    lost = f"up to {deepest}" if wear.depth_pinion.any() or wear.depth_wheel.any() else "nothing"
+    title = f"The flanks lose {lost} in {wear.turns[-1]:.3g} turns of the pinion"
     return stack(title, "Place on the used flank", panels)
