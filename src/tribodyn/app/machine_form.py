@@ -11,7 +11,7 @@ from tribodyn.model import Option
 from tribodyn.study.case.case import Case
 from tribodyn.study.case.checks import case_options
 from tribodyn.study.case.provenance import effective
-from tribodyn.study.case.section import Section, Table
+from tribodyn.study.case.section import Table, options_of
 from tribodyn.study.case.values import Plain
 from tribodyn.study.machine.case import MachineCase
 from tribodyn.study.machine.pair_cases import SHARED
@@ -83,7 +83,7 @@ class MachineForm:
 
     def _of_table(self, name: str) -> dict[str, Option]:
         """Options of a table of the machine, and those of what it gives for its meshes."""
-        options = {f"{name}.{key}": option for key, option in _options(TABLES[name])}
+        options = {f"{name}.{key}": option for key, option in options_of(TABLES[name], "")}
         given = (f"{name}.{key}" for key, _ in flat_keys(self.case.data.get(name, {})))
         return {**options, **self._known(key for key in given if key not in options)}
 
@@ -93,9 +93,9 @@ class MachineForm:
         table = part_table(name, body)
         stage = name == "gears" and "planets" in self.case.data
         skipped = ("shaft", "position") if stage else ()
-        options = {f"{prefix}.{k}": o for k, o in _options(table) if k not in skipped}
+        options = {f"{prefix}.{k}": o for k, o in options_of(table, "") if k not in skipped}
         if name == "meshes" and "stiffness" in body and not isinstance(body["stiffness"], Mapping):
-            options |= {f"{prefix}.{key}": option for key, option in _options(MeshDynamics)}
+            options |= {f"{prefix}.{key}": option for key, option in options_of(MeshDynamics, "")}
         given = {f"{prefix}.{key}": value for key, value in flat_keys(body)}
         return {**options, **self._known(key for key in given if key not in options)}
 
@@ -107,7 +107,7 @@ class MachineForm:
         """Options of a table of models and of the model that it names."""
         table = Case.fields[name]
         assert isinstance(table, Table)
-        options = {f"{name}.{key}": option for key, option in _options(table.kind)}
+        options = {f"{name}.{key}": option for key, option in options_of(table.kind, "")}
         if selector := table.kind.selector:
             key = f"{name}.{selector}"
             chosen = self.typed.get(key) or self._text(key) or self._defaults.get(key)
@@ -161,7 +161,3 @@ class MachineForm:
         if isinstance(value, bool):
             return str(value).lower()
         return ", ".join(map(str, value)) if isinstance(value, list | tuple) else str(value)
-
-
-def _options(section: type[Section]) -> Iterator[tuple[str, Option]]:
-    return ((name, o) for name, o in section.fields.items() if isinstance(o, Option))

@@ -182,3 +182,11 @@ def test_studies_of_machines_display_and_save_their_result(kind: str, tmp_path: 
     assert shown["figures"]
     assert all(figure.data for _, figure, _ in shown["figures"])
     assert (tmp_path / "result" / "report.html").is_file()
+
+
+def test_flanks_of_the_gears_of_a_machine_are_modified_on_the_page(desk: TabSession) -> None:
+    key = "gears.z1.modification.tip_relief"
+    assert fields(desk)[key]["unit"] == "um"
+    assert typed(desk, key, value="12", unit="um") == []
+    assert dict(desk.case.values())[key] == pytest.approx(12e-6)
+    assert typed(desk, key, value="-3 m")[0]["key"] == key

@@ -261,7 +261,7 @@ def _caption(contact: LoadedContact) -> str:
     return " ".join(sentences)
 
 
-def _corners(contact: LoadedContact, life: Life) -> dict[str, list[Any]]:
+def _corners(contact: LoadedContact, life: Life) -> dict[str, list[Trace]]:
     """Shades of the ranges in which a tip corner carries load."""
     loaded = life.age[(life.greatest > _LOADED * life.greatest.max()).any(axis=0)]
     return corner_shades(contact.gear_pair, float(loaded.min()), float(loaded.max()))
