@@ -33,6 +33,7 @@ __all__ = ["ANY", "FILES", "LINES", "import_circles", "lines_of_code", "measures
 #:
 #: machine, study: models of couplings, one file each.
 #: arguments: copies that the package makes of its own objects are not checked again.
+#: 
 LINES: dict[str, int] = {
     "__init__": 100,
     "__main__": 3,
@@ -74,7 +75,7 @@ LINES: dict[str, int] = {
     "report": 1790,
     "signals": 1754,
     "stiffness": 5084,
-    "study": 17215,
+    "study": 17263,
     "surrogate": 777,
     "types": 7,
     "uncertainty": 290,
@@ -83,7 +84,7 @@ LINES: dict[str, int] = {
     "variants": 1073,
 }
 #: Modules of the package, and its annotations without a type.
-FILES, ANY = 768, 2621
+FILES, ANY = 768, 2623
 
 _NO_CODE = {
     tokenize.COMMENT, tokenize.NL, tokenize.NEWLINE, tokenize.INDENT, tokenize.DEDENT,

@@ -8,6 +8,7 @@ from typing import Any
 import pytest
 
 import tribodyn as td
+from tribodyn.cases.catalogue import all_files
 from tribodyn.errors import InputError
 from tribodyn.study.case.provenance import changed_keys, provenance
 from tribodyn.study.machine.read import read_any_case
@@ -47,7 +48,7 @@ def test_a_value_is_reached_by_its_key(case: Any) -> None:
 
 
 def test_a_key_that_is_not_given_has_its_default(case: Any) -> None:
-    key = "solver.method" if hasattr(case, "solver") else "dynamics.modal_damping_ratio"
+    key = "solver.method" if case.lumped else "dynamics.modal_damping_ratio"
     assert case[key] == case.option_of(key).default
 
 
@@ -120,3 +121,63 @@ def test_the_former_name_of_a_central_value_stays() -> None:
     with pytest.warns(DeprecationWarning, match="get"):
         assert case.central("operation.torque") == case["operation.torque"] == 600.0
     assert case.uncertain == {"operation.torque": "600 N*m +- 5 %"}
+
+
+COMMENTED = """# Above the title.
+title = "Two gears"  # the title
+
+# Shafts are rigid.
+[gears.z1]  # the driver
+shaft = "in"
+teeth = 27
+face_width = "50 mm"  # measured
+# A table in one line.
+modification = { tip_relief = "10 um" }
+
+[gears.z2]
+shaft = "out"
+teeth = 51
+face_width = "50 mm"
+
+[meshes.first]
+gears = ["z1", "z2"]
+normal_module = "4.5 mm"  # from the drawing
+
+[lubricant]
+name = "ISO VG 220"
+temperature = "70 degC"
+
+[operation]
+input = "in"
+output = "out"
+speed = "1200 rpm"  # of the motor
+torque = "400 N*m"
+
+[[load_cases]]  # the first
+name = "slow"
+speed = "600 rpm"  # at night
+
+[[load_cases]]  # the second
+name = "fast"
+# The end.
+"""
+
+
+def test_a_file_of_parts_is_written_as_it_was_read() -> None:
+    case = read_any_case(COMMENTED, "x.toml")
+    assert case.to_toml() == COMMENTED
+    text = case.replace({"operation.speed": "1300 rpm", "gears.z1.face_width": 0.051}).to_toml()
+    before = text.partition("\n[based_on]")[0].splitlines()
+    assert [line for line in before if line not in COMMENTED.splitlines()][:2] == [
+        'face_width = "51 mm"',
+        'speed = "1300 rpm"',
+    ]
+    assert read_any_case(text, "x.toml").to_toml() == text
+
+
+@pytest.mark.parametrize("name", [n for n in td.cases(machines=True) if n not in td.cases()])
+def test_built_in_files_of_parts_are_written_as_they_are(name: str) -> None:
+    text = all_files()[name].read_text(encoding="utf-8")
+    words = [" ".join(line.split()) for line in text.splitlines() if "_file" not in line]
+    written = td.load_case(name).to_toml().splitlines()
+    assert [" ".join(line.split()) for line in written if "_file" not in line] == words

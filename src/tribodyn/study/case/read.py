@@ -8,7 +8,7 @@ from collections.abc import Iterator, Mapping
 from contextlib import contextmanager, suppress
 from functools import partial
 from pathlib import Path
-from typing import Any
+from typing import Any, Self
 
 from tribodyn import units
 from tribodyn.errors import InputError, Problem
@@ -18,33 +18,38 @@ from tribodyn.study.case.user_input import Source, UserInput
 from tribodyn.validated_files import read_bytes
 
 _SPACE = " \t\r"
+Comments = dict[str, list[tuple[list[str], str]]]
 
 
 class _Scanner:
-    """Scanner of TOML text; ``lines`` maps dotted keys to their line numbers."""
+    """Scanner of TOML text: numbers of the lines, and comments, by dotted key."""
 
     def __init__(self, text: str) -> None:
         self.text = text
         self.at = 0
         self.line, self.counted = 1, 0  #: line number, and position up to which lines are counted
         self.lines: dict[str, list[int]] = {}
+        self.comments: Comments = {}
+        self._above: list[str] = []
 
-    def run(self) -> dict[str, list[int]]:
+    def run(self) -> Self:
         """Scan the text."""
         table: tuple[str, ...] = ()
         while self.at < len(self.text):
             self._skip(_SPACE + "\n")
             if self._peek() == "#":
-                self._to_line_end()
+                self._above.append(self._comment())
             elif self._peek() == "[":
                 self._skip("[")
                 start = self.at
                 table = self._key("]")
                 self._note(table, start)
-                self._to_line_end()
+                self._skip("]" + _SPACE)
+                self._behind(table)
             elif self.at < len(self.text):
                 self._pair(table, "\n")
-        return self.lines
+        self.comments[""] = [(self._above, "")]
+        return self
 
     def _peek(self) -> str:
         return self.text[self.at : self.at + 1]
@@ -57,10 +62,23 @@ class _Scanner:
         end = self.text.find("\n", self.at)
         self.at = len(self.text) if end < 0 else end
 
+    def _comment(self) -> str:
+        """Read to the end of the line."""
+        start = self.at
+        self._to_line_end()
+        return self.text[start : self.at].rstrip()
+
+    def _behind(self, key: tuple[str, ...]) -> None:
+        """Keep the rest of the line as the comment behind a key."""
+        notes = self.comments[".".join(key)]
+        notes[-1] = notes[-1][0], self._comment()
+
     def _note(self, key: tuple[str, ...], position: int) -> None:
         self.line += self.text.count("\n", self.counted, position)
         self.counted = max(position, self.counted)
         self.lines.setdefault(".".join(key), []).append(self.line)
+        self.comments.setdefault(".".join(key), []).append((self._above, ""))
+        self._above = []
 
     def _key(self, end: str) -> tuple[str, ...]:
         """Read a dotted key, quoted parts included, up to and with the character ``end``."""
@@ -111,7 +129,7 @@ class _Scanner:
                 self._string(character)
                 continue
             if character == "#":
-                self._to_line_end()
+                self._to_line_end() if depth else self._behind(key)
                 continue
             if character == "{":
                 self._inline(key)
@@ -132,7 +150,12 @@ class _Scanner:
 
 def key_lines(text: str) -> dict[str, list[int]]:
     r"""Map every dotted key and table of TOML text to its line numbers."""
-    return _Scanner(text).run()
+    return _Scanner(text).run().lines
+
+
+def key_comments(text: str) -> Comments:
+    """Lines of comments above and comment behind each dotted key of TOML text, in their order."""
+    return _Scanner(text).run().comments
 
 
 #: A number followed by a unit, without quotes.

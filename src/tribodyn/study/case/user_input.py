@@ -181,6 +181,10 @@ class Source:
         dict  #: finds the lines of the keys; called on demand
     )
     replaced: Mapping[str, str] = field(default_factory=dict)
+    #: finds the lines above the keys and the comments behind them
+    notes: Callable[[], Mapping[str, list[tuple[list[str], str]]]] = field(
+        default=dict, kw_only=True
+    )
 
     @cached_property
     def lines(self) -> Mapping[str, list[int]]:

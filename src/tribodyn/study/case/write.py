@@ -26,6 +26,10 @@ if TYPE_CHECKING:
     from tribodyn.study.case.case_data import CaseData
 
 
+#: Line above ``[based_on]``.
+BASE_NOTE = "# Initial values of this case, which reports use to name changed values: do not edit"
+
+
 def written_number(spec: Option, value: float) -> str:
     """Format a number as TOML, with its unit."""
     if not spec.unit:
@@ -159,7 +163,7 @@ def base_lines(case: BaseCase) -> list[str]:
     ]
     return [
         "",
-        "# Initial values of this case, which reports use to name changed values: do not edit",
+        BASE_NOTE,
         "[based_on]",
         *lines,
     ]

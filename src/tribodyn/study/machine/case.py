@@ -27,7 +27,7 @@ from tribodyn.machine.plane_law import with_exchanged_gears
 from tribodyn.study.case.case import Case
 from tribodyn.study.case.provenance import Assumption, reason_faults
 from tribodyn.study.case.sections import LubricantData
-from tribodyn.study.case.user_input import Source, unsound
+from tribodyn.study.case.user_input import Source
 from tribodyn.study.case.values import KeyedProblems
 from tribodyn.study.faults.machine_section import impossible_faults, machine_fault_problems
 from tribodyn.study.machine.housing_files import read_housing
@@ -128,8 +128,6 @@ class MachineCase(PartsBase):
 
     def __init__(self, source: Source | None = None, /, **data: Any) -> None:
         origin = source or Source()
-        if unreadable := list(unsound(data)):
-            raise InputError(origin.place(unreadable))
         problems = self._take(source, data)
         check_tables(self.data, _TOP, problems)
         problems += unused_keys(self.data)
@@ -185,8 +183,7 @@ class MachineCase(PartsBase):
         if problems := impossible_faults(self):
             raise InputError(origin.place(problems))
         self._check_spreads(origin)
-        if "assumed" in data or "based_on" in data:
-            self._read_records(data)
+        self._read_records(data)
 
     def __getstate__(self) -> dict[str, Any]:
         """Return the state without what is kept for further loads."""

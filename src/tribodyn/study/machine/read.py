@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 from tribodyn.errors import InputError
 from tribodyn.model import NO_OPTIONS
-from tribodyn.study.case.read import changed_file, key_lines, parse_toml
+from tribodyn.study.case.read import changed_file, key_comments, key_lines, parse_toml
 from tribodyn.study.case.section import file_keys
 from tribodyn.study.case.user_input import Source
 from tribodyn.study.machine.case import MachineCase
@@ -66,7 +66,8 @@ def _read(
     changes: Mapping[str, Any],
     by: str,
 ) -> Case | MachineCase:
-    source = Source(name or "case", partial(key_lines, text)).with_replaced(changes, by)
+    source = Source(name or "case", partial(key_lines, text), notes=partial(key_comments, text))
+    source = source.with_replaced(changes, by)
     if not is_machine(data):
         return changed_file(text, name, changes, by)
     place = Path(name).parent if folder is None else folder

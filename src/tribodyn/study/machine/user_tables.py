@@ -32,6 +32,7 @@ from tribodyn.study.case.user_input import (
     UserInput,
     named_rows,
     spread_problem,
+    unsound,
     without_spread,
 )
 from tribodyn.study.case.values import (
@@ -42,7 +43,7 @@ from tribodyn.study.case.values import (
     read_value,
     unmarked,
 )
-from tribodyn.study.case.write import base_lines, reason_lines, written_number
+from tribodyn.study.case.write import BASE_NOTE, base_lines, reason_lines, written_number
 from tribodyn.study.machine.pair_cases import SHARED, option_at, unknown_key
 from tribodyn.study.machine.read_parts import LENGTH, in_si
 from tribodyn.study.machine.tables import APART, STIFF, TABLES
@@ -68,6 +69,8 @@ class PartsBase(BaseCase):
     def _take(self, source: Source | None, typed: dict[str, Any]) -> KeyedProblems:
         """Set the tables as the user typed them, in SI where they come from Python."""
         self._source = source or Source()
+        if unreadable := list(unsound(typed)):
+            raise InputError(self._source.place(unreadable))
         typed = deepcopy(typed) if source is not None else in_si(typed)
         ready = for_each_planet(without_records(typed))
         self.data, self._spread, problems = without_spread(ready, lists=True)
@@ -148,10 +151,8 @@ class PartsBase(BaseCase):
         return changed
 
     def _text(self, *, comments: bool) -> str:
-        written_tables, base = with_spreads(self.data, self._spread), []
-        if changed_keys(self):
-            base = base_lines(self)
-        lines = _lines(self, written_tables, (), comments=comments)
+        base = base_lines(self) if changed_keys(self) else []
+        lines = _Writer(self, comments).lines(with_spreads(self.data, self._spread), ())
         return "\n".join([*lines, *base]).strip() + "\n"
 
     def _check_spreads(self, origin: Source) -> None:
@@ -361,36 +362,75 @@ def _option_at(case: PartsBase, path: tuple[str, ...]) -> Option | None:
     return option_at(case, path)
 
 
-def _lines(
-    case: PartsBase, table: Mapping[str, Any], path: tuple[str, ...], *, comments: bool = False
-) -> Iterator[str]:
-    if path == ("assumed",):
-        records = bool(changed_keys(case) or case._records.marks)
-        yield from reason_lines(case, table, records=records)
-        return
-    values = {k: v.value if isinstance(v, Plain) else v for k, v in table.items()}
-    inner = {k: v for k, v in values.items() if isinstance(v, Mapping)}
-    rows = {k: v for k, v in values.items() if _is_rows(v)}
-    for name, value in table.items():
-        if name not in inner and name not in rows and values[name] is not None:
-            option = None if isinstance(value, str) else _option_at(case, (*path, name))
-            note = _note(case, (*path, name)) if comments else ""
-            yield f"{_key(name)} = {written_value(value, option)}{note}"
-    for name, body in inner.items():
-        place = (*path, name)
-        if not body or any(not isinstance(v, Mapping) for v in body.values()):
-            yield f"\n[{'.'.join(map(_key, place))}]"
-        yield from _lines(case, body, place, comments=comments)
-    for name, bodies in rows.items():
-        for body in bodies:
-            yield f"\n[[{'.'.join(map(_key, (*path, name)))}]]"
-            yield from _lines(case, body, (*path, name), comments=comments)
+class _Writer:
+    """Writer of tables in their order, with the comments of their file or with meanings."""
+
+    def __init__(self, case: PartsBase, meanings: bool) -> None:
+        self._case, self._meanings = case, meanings
+        notes = {} if meanings else case.source.notes()
+        self._notes = {key: iter(each) for key, each in notes.items()}
+        self._places = case.source.lines if notes else {}
+        self._changed = {key for key in changed_keys(case) if key not in _TEXTS}
+
+    def lines(self, table: Mapping[str, Any], path: tuple[str, ...]) -> Iterator[str]:
+        """Lines of a table, of what is inside, and of comments at the end of the file."""
+        if path == ("assumed",):
+            records = bool(self._changed or self._case._records.marks)
+            yield from reason_lines(self._case, table, records=records)
+            return
+        values = {k: v.value if isinstance(v, Plain) else v for k, v in table.items()}
+        inner = {k: v for k, v in values.items() if self._is_table((*path, k), v)}
+        rows = {k: v for k, v in values.items() if _is_rows(v)}
+        for name, value in table.items():
+            if name not in inner and name not in rows and values[name] is not None:
+                place = (*path, name)
+                yield from self._line(place, f"{_key(name)} = {self._value(place, value)}")
+        for name, body in inner.items():
+            place = (*path, name)
+            if not body or any(not self._is_table((*place, k), v) for k, v in body.items()):
+                yield ""
+                yield from self._line(place, f"[{'.'.join(map(_key, place))}]")
+            yield from self.lines(body, place)
+        for name, bodies in rows.items():
+            for body in bodies:
+                yield ""
+                yield from self._line((*path, name), f"[[{'.'.join(map(_key, (*path, name)))}]]")
+                yield from self.lines(body, (*path, name))
+        for key in ("based_on", "") if not path else ():
+            above, _ = next(self._notes.get(key, iter(())), ([], ""))
+            yield from (line for line in above if line != BASE_NOTE)
+
+    def _is_table(self, path: tuple[str, ...], body: Any) -> bool:
+        """Whether a value is a table, and was not written in the line of its first key."""
+        if not isinstance(body, Mapping):
+            return False
+        keys = ".".join(path), ".".join((*path, next(iter(body), "")))
+        first, second = (self._places.get(key, [0])[0] for key in keys)
+        return not first == second > 0
+
+    def _value(self, path: tuple[str, ...], value: Any) -> str:
+        """Text of a value, or of a table in one line."""
+        if isinstance(value, Mapping):
+            pairs = (f"{_key(k)} = {self._value((*path, k), v)}" for k, v in value.items())
+            return f"{{ {', '.join(pairs)} }}"
+        return written_value(
+            value, None if isinstance(value, str) else _option_at(self._case, path)
+        )
+
+    def _line(self, path: tuple[str, ...], text: str) -> Iterator[str]:
+        """A line with the comments of its key; that behind a changed value may be wrong."""
+        key = ".".join(path)
+        above, behind = next(self._notes.get(key, iter(())), ([], ""))
+        yield from above
+        if self._meanings and "=" in text:
+            behind = _note(self._case, path)
+        yield f"{text}  {behind}".rstrip() if behind and key not in self._changed else text
 
 
 def _note(case: PartsBase, path: tuple[str, ...]) -> str:
-    """Comment of a key of the file; empty where it is named by the user."""
+    """Meaning of a key of the file as a comment; empty where it is named by the user."""
     option = APART.get(path[0], {}).get(path[-1]) or _option_at(case, path)
-    return f"  # {key_comment(option)}" if option is not None and option.meaning else ""
+    return f"# {key_comment(option)}" if option is not None and option.meaning else ""
 
 
 def _is_rows(value: Any) -> bool:
