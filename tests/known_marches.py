@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from tribodyn.dynamics._engine.adaptive_engine import adaptive_lanes
+from tribodyn.dynamics._engine.adaptive_engine import adaptive_lanes, lane_groups
 from tribodyn.dynamics._engine.blocks import march
 from tribodyn.dynamics.equations.compiled import compile_lanes
 from tribodyn.dynamics.time.engines import AdaptiveMarcher, Setting
@@ -41,11 +41,13 @@ def march_one(system, frequency, state, cycles, *, rtol=1e-6, points=None, recor
     """March one lane in adaptive steps; returns steps, rejections and crossings."""
     lanes = np.array([float(frequency)]), cycles, np.zeros((1, system.size))
     (lane,) = adaptive_lanes([(system, np.arange(1))], *lanes, rtol)
-    grid, trail = np.zeros(1) if points is None else np.ascontiguousarray(points), np.zeros((0, 2))
-    rows = None if record is None else record[:, :, 0]
+    grid = np.zeros(1) if points is None else np.ascontiguousarray(points)
+    rows = None if record is None else np.ascontiguousarray(record[None, :, :, 0])
 
     def run(state):
-        return lane.march(state, cycles, grid, rows, trail, 0)
+        return lane_groups([lane], 1)[0].march(state[None], cycles, grid, 0, rows)
 
-    (report,) = in_threads(run, [state.copy()], 1)
-    return report[:3]
+    (courses,) = in_threads(run, [state.copy()], 1)
+    if rows is not None:
+        record[:, :, 0] = rows[0]
+    return courses.steps[0], courses.rejections[0], courses.crossings[0]

@@ -86,3 +86,25 @@ def test_diagrams_and_basins_do_not_depend_on_threads(threads, monkeypatch):
     monkeypatch.setattr(os, "cpu_count", lambda: threads)
     for one, other in zip(figures(), reference, strict=True):
         np.testing.assert_array_equal(one, other)
+
+
+def test_a_system_of_an_ensemble_moves_as_alone_with_adaptive_steps():
+    systems = [
+        reference_system(friction, gap=2e-5, damping=300.0) for friction in (0.1, 0.04, 0.07)
+    ]
+    systems.append(replace(systems[0], contacts=[replace(systems[0].contacts[0], gap=1e-5)]))
+    generator = np.random.default_rng(6)
+    start = 2e-5 * generator.normal(size=(2, 8, 6))
+
+    def march(index, threads=None):
+        return simulate_ensemble(
+            [systems[lane % 4] for lane in index], 2600.0, 3, tuple(start[:, index]),
+            steps=64, method="dormand-prince", threads=threads,
+        )  # fmt: skip
+
+    together = march(np.arange(8), threads=1)
+    assert together.contact_loss_share.max() > 0.01
+    for index in ([0], [3], [5, 2], [7, 6, 1, 0, 3]):
+        part = march(np.asarray(index), threads=2)
+        for place, lane in enumerate(index):
+            np.testing.assert_array_equal(numbers(part, place), numbers(together, lane))

@@ -30,6 +30,7 @@ __all__ = ["ANY", "FILES", "LINES", "import_circles", "lines_of_code", "measures
 #: analysis, cli, plot, study: kinematic frequencies of every case.
 #: study: heat balance of machines.
 #: study: film, friction and load agree in machines.
+#: dynamics: adaptive trajectories of an ensemble step side by side.
 #:
 #: machine, study: models of couplings, one file each.
 #: arguments: copies that the package makes of its own objects are not checked again.
@@ -50,7 +51,7 @@ LINES: dict[str, int] = {
     "contact": 422,
     "cookbook": 85,
     "drawing": 168,
-    "dynamics": 13985,
+    "dynamics": 14162,
     "ehl": 9810,
     "errors": 224,
     "exchange": 1892,

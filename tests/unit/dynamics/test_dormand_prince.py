@@ -12,7 +12,7 @@ from plain.dormand_prince import step_plain
 from tribodyn.dynamics import Contact, System, energy_audit, simulate, solve_adaptive
 from tribodyn.dynamics._engine.blocks import march
 from tribodyn.dynamics._engine.dormand_prince import MATRIX, NODES, WEIGHT_ERROR
-from tribodyn.dynamics._engine.row_table import POINTS, build_table
+from tribodyn.dynamics._engine.row_table import POINTS, _powers, build_table
 from tribodyn.dynamics.equations.compiled import compile_for
 from tribodyn.errors import ComputationError, InputError
 
@@ -120,16 +120,28 @@ def test_error_stays_within_the_tolerance(case, rtol, fine):
 
 
 def row_at(table, phase, segment):
-    """One row at one mesh phase, in plain NumPy: Lagrange's polynomial through nearby nodes."""
+    """Varying factors at one mesh phase, in plain NumPy."""
     low, high = table.events[segment : segment + 2]
-    begin, end = table.first[segment : segment + 2]
-    rows = table.program.rows.reshape(len(table.program.width), 3, -1)[begin:end]
-    nodes = np.concatenate((rows[:, :2].reshape(-1, rows.shape[2]), rows[-1:, 2]))
-    places = np.linspace(low, high, len(nodes))
-    start = int(np.clip(np.searchsorted(places, phase, side="right") - 3, 0, len(nodes) - POINTS))
-    return BarycentricInterpolator(
-        places[start : start + POINTS], nodes[start : start + POINTS], rng=0
-    )(phase)
+    powers = table.powers[slice(*table.first[segment : segment + 2])]
+    place = (phase - low) / (high - low) * len(powers)
+    interval = min(int(place), len(powers) - 1)
+    return np.polyval(powers[interval], place - interval)
+
+
+def test_polynomials_of_a_table_are_those_through_its_nodes():
+    generator = np.random.default_rng(4)
+    for steps in (1, 2, 3, 7):
+        rows = generator.normal(size=(steps, 3, 2))
+        rows[1:, 0] = rows[:-1, 2]
+        nodes = np.concatenate((rows[:, :2].reshape(-1, 2), rows[-1:, 2]))
+        powers = _powers(rows, np.array([0, steps]))
+        for place in (0.0, 0.3, 0.8 * steps, 1.7 * steps, 2.0 * steps):
+            interval = min(int(place), 2 * steps - 1)
+            start = min(max(interval - 2, 0), max(len(nodes) - POINTS, 0))
+            near = slice(start, start + POINTS)
+            lagrange = BarycentricInterpolator(np.arange(len(nodes))[near], nodes[near], rng=0)
+            value = np.polyval(powers[interval], place - interval)
+            assert value == pytest.approx(lagrange(place), abs=1e-12)
 
 
 def test_table_meets_the_entries_and_takes_sides_at_events():

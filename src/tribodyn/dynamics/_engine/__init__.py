@@ -14,8 +14,8 @@ A lane is one trajectory of a block of trajectories that are integrated together
 | `running_statistics` | accumulation of the statistics during the integration |
 | `midpoint` | state in the middle of a step, needed for the statistics |
 | `marching` | integration loop of a block of lanes with fixed steps |
-| `adaptive` | integration loop of one trajectory with adaptive steps |
+| `adaptive` | integration loop of a block of lanes, each with adaptive steps of its own |
 | `blocks` | fixed steps: distribution over blocks and threads, report of failures |
 | `adaptive_engine` | adaptive steps: tolerances of each trajectory, report of failures |
-| `row_table` | entries of the system on a grid fine enough to interpolate between its nodes |
+| `row_table` | entries of the system as polynomials between the nodes of a grid fine enough |
 """

@@ -5,12 +5,18 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from functools import cache, partial
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from tribodyn.dynamics._engine.row_table import RowTable, build_table
-from tribodyn.dynamics.equations.divergence import Failed, adaptive_failure, chattering_step
+from tribodyn.dynamics.equations.divergence import (
+    CHATTERS,
+    Failed,
+    adaptive_failure,
+    chattering_step,
+)
 from tribodyn.dynamics.equations.grid import system_events
 from tribodyn.dynamics.equations.lane_parameters import LaneParameters, kinds_of
 from tribodyn.dynamics.equations.nodes import sampled
@@ -18,7 +24,7 @@ from tribodyn.dynamics.equations.orbit_coordinates import static_start
 from tribodyn.dynamics.equations.program import lane_load
 from tribodyn.dynamics.equations.step_limit import largest_rate, state_roots
 from tribodyn.dynamics.equations.system import System
-from tribodyn.errors import InputError, real_numbers, require_between
+from tribodyn.errors import ComputationError, InputError, real_numbers, require_between
 from tribodyn.interrupt import refuse_stopped, stop_flag
 from tribodyn.types import Array, Index
 
@@ -35,6 +41,9 @@ _SAMPLE = 64
 #: smaller share where flanks can separate: with it the error of two masses that spread small
 #: differences 450-fold equals the tolerance.
 _SHARE, _SHARE_WITH_GAP, _BUDGET, _LEAST = 0.015, 0.001, 3.0, 1e-5
+#: Lanes of a block; fewer than some are integrated one by one. Most trajectories that one thread
+#: integrates at a time: their tables are joined.
+_WIDTH, _FEW, _MOST = 8, 3, 256
 
 
 def read_atol(atol: Tolerance, size: int) -> Array:
@@ -126,44 +135,94 @@ class AdaptiveLane:
         first = min(0.1 * rtol**0.2 / max(self.rate * self.period, 1e-9), 0.1)
         #: Next step, last error, and largest size so far of every state.
         self.memory = np.concatenate(([first, 1.0], np.zeros(2 * n)))
-        self.load = lane_load(table.program, system, extra_force, factors[5])
-        if np.any(factors != 1.0):
-            self.load = np.concatenate((self.load, factors))
+        load = lane_load(table.program, system, extra_force, factors[5])
+        self.load = np.concatenate((load, factors))
+
+    def failure(self, course: Any, state: Array, elapsed: int) -> ComputationError:
+        """Reason of a failure; ``state`` is that at the failed step."""
+        phase = elapsed + course.cycle + course.phase
+        if course.reason == CHATTERS:
+            contact = int(course.contact), len(self.examined.system.contacts)
+            at = phase, phase * self.period
+            return chattering_step(*contact, *at, self.number, adaptive=True)
+        place = self.examined.system, self.examined.nodes, state[None], np.array([phase])
+        failed = Failed(*place, self.period, self.number, self.factors, 0.0)
+        return adaptive_failure(failed, self.atol / (SMALL * self.rtol))
+
+
+class LaneGroup:
+    """Trajectories of one structure that are integrated together."""
+
+    def __init__(self, lanes: Sequence[AdaptiveLane], numbers: Index) -> None:
+        from tribodyn.dynamics._engine.adaptive import JoinedTables
+
+        self.lanes, self.numbers = [lanes[number] for number in numbers], numbers
+        tables = {id(lane.table): lane.table for lane in self.lanes}
+        # Where the arrays of each table begin in those of all.
+        sizes = {key: [array.size for array in _arrays(table)] for key, table in tables.items()}
+        ends = np.cumsum(list(sizes.values()), axis=0)
+        begins = dict(zip(tables, ends - list(sizes.values()), strict=True))
+        keys = [id(lane.table) for lane in self.lanes]
+        self._parts = np.array([(*begins[key], *sizes[key]) for key in keys])
+        self._tables = JoinedTables(
+            *map(np.concatenate, zip(*map(_arrays, tables.values()), strict=True))
+        )
+        self._load = np.stack([lane.load for lane in self.lanes])
+        parts = [lane.safety * np.append(lane.atol, lane.rtol) for lane in self.lanes]
+        self._tolerance = np.stack(parts)
 
     def march(
         self,
         state: Array,
         cycles: int,
         points: Array,
-        record: Array | None,
-        trail: Array,
         elapsed: int,
-    ) -> Array:
-        """Integrate a state (2 n,), which is overwritten; returns the report."""
-        from tribodyn.dynamics._engine.adaptive import MarchOutput, march_adaptive
+        record: Array | None = None,
+        trail: Array | None = None,
+    ) -> Any:
+        """Integrate the states (c, 2 n), which are overwritten; returns the courses.
 
-        states = np.zeros((0, state.size)) if record is None else record
-        report = np.zeros(9)
-        tolerances = self.safety * self.rtol, self.safety * self.atol
-        output = MarchOutput(points, states, trail, report)
-        period, load, lane = np.array([self.period]), self.load[None], state[None]
-        march_adaptive(
-            self.table, period, load, lane, self.memory, *tolerances, cycles, output, stop_flag()
-        )
-        refuse_stopped(int(report[4]))
-        if report[4]:
-            self._report(report, state, elapsed)
-        return report
+        ``record`` (c, cycles * points + 1, 2 n) and ``trail`` (c, steps, 2 + 6 n) are filled.
+        """
+        from tribodyn.dynamics._engine.adaptive import Output, march_adaptive
+        from tribodyn.dynamics._engine.dormand_prince import COURSE
 
-    def _report(self, report: Array, state: Array, elapsed: int) -> None:
-        """Raise the reason of a failure; ``state`` is that at the failed step."""
-        phase = elapsed + report[8] + report[5]
-        if report[4] == 2.0:
-            contact = int(report[6]), len(self.examined.system.contacts), phase, phase * self.period
-            raise chattering_step(*contact, self.number, adaptive=True)
-        place = self.examined.system, self.examined.nodes, state[None], np.array([phase])
-        failed = Failed(*place, self.period, self.number, self.factors, 0.0)
-        raise adaptive_failure(failed, self.atol / (SMALL * self.rtol))
+        courses: Any = np.zeros(len(self.lanes), COURSE).view(np.recarray)
+        begin, size = np.split(self._parts, 2, axis=1)
+        courses.row, courses.first, _, courses.varying, courses.origin = begin.T
+        courses.segment, courses.last = courses.first, courses.first + size[:, 1] - 1
+        courses.columns, courses.period = size[:, 3], [lane.period for lane in self.lanes]
+        memory = np.stack([lane.memory for lane in self.lanes])
+        courses.plan, courses.error, largest = memory[:, 0], memory[:, 1], memory[:, 2:].copy()
+        empty = np.zeros((len(self.lanes), 0, 2 + 3 * state.shape[1]))
+        arrays = (empty if array is None else array for array in (record, trail))
+        code = march_adaptive(
+            (0.0,) * (1 if len(self.lanes) < _FEW else _WIDTH), self.lanes[0].table.program,
+            self._tables, self._load, (state, largest), self._tolerance, courses, cycles,
+            Output(points, *arrays), stop_flag(),
+        )  # fmt: skip
+        refuse_stopped(int(code))
+        for lane, course, last, sizes in zip(self.lanes, courses, state, largest, strict=True):
+            if course.reason:
+                raise lane.failure(course, last, elapsed)
+            lane.memory = np.concatenate(([course.plan, course.error], sizes))
+        return courses
+
+
+def _arrays(table: RowTable) -> tuple[Array | Index, ...]:
+    """Arrays of a table, in the order of the joined ones."""
+    return table.program.rows, table.events, table.first, table.varying, table.powers.reshape(-1)
+
+
+def lane_groups(lanes: Sequence[AdaptiveLane], threads: int) -> list[LaneGroup]:
+    """Divide trajectories into groups, each of one structure, some per thread."""
+    kinds: dict[bytes, list[int]] = {}
+    for number, lane in enumerate(lanes):
+        program = lane.table.program
+        kinds.setdefault(program.code.tobytes() + program.reads.tobytes(), []).append(number)
+    counts = [max(min(threads, len(e) // _WIDTH), len(e) // _MOST, 1) for e in kinds.values()]
+    parts = map(np.array_split, kinds.values(), counts)
+    return [LaneGroup(lanes, numbers) for part in parts for numbers in part]
 
 
 def adaptive_lanes(

@@ -236,10 +236,7 @@ class Run:
             lane_numbers = member.lanes
             self.member[lane_numbers] = number
             self.load[lane_numbers] = lane_load(
-                programs[number],
-                member.system,
-                extra[lane_numbers],
-                self.scales[lane_numbers, 5],
+                programs[number], member.system, extra[lane_numbers], self.scales[lane_numbers, 5]
             )
         if parameters is not None:
             self.load = np.hstack((self.load, self.scales))

@@ -4,27 +4,30 @@ Seven stages give a solution of fifth order and, by comparison with one of fourt
 (Dormand and Prince 1980). The last stage is the first of the next step. Between the ends the
 position is the quintic Hermite interpolant of position, velocity and acceleration at both ends,
 and the velocity is its derivative: of sixth and fifth order, hence no worse than the step.
-Every trajectory has steps of its own, so that no vectors of lanes appear: slots are plain numbers.
-The readable version is in ``tests/plain``.
+The lanes of a block step at the same time, each from its phase over its width with its row, so that
+no lane depends on the others. The readable version is in ``tests/plain``.
 """
 
 from __future__ import annotations
 
-import math
-from typing import Any, NamedTuple
+from collections.abc import Sequence
+from typing import NamedTuple, Protocol
 
 import numba as nb
 import numpy as np
 
-from tribodyn.dynamics._engine.contact_forces import (
-    I64,
-    Law,
-    acceleration,
-    slots_of,
+from tribodyn.dynamics._engine.contact_forces import I64, Law, acceleration, slots_of
+from tribodyn.dynamics._engine.lanes import (
+    ahead,
+    greatest,
+    keep_apart,
+    load,
+    magnitude,
+    quotient,
+    store,
 )
-from tribodyn.dynamics._engine.lanes import keep_apart
 from tribodyn.dynamics._engine.method import INNER
-from tribodyn.dynamics._engine.row_table import DENOMINATORS, POINTS
+from tribodyn.dynamics._engine.row_table import POINTS
 from tribodyn.dynamics.equations import motion
 from tribodyn.types import Array, Index
 
@@ -60,10 +63,12 @@ class AdaptiveSlots(NamedTuple):
     rate: int  #: velocities of the seven stages
     mean: int  #: mean velocity of the step
     size: int  #: largest size of each state so far
+    allowed: int  #: absolute tolerance of each state, then the relative one
     tolerance: int  #: inverse tolerance of each state
-    period: int  #: [s]
+    error: int  #: square of the error of the step over the tolerance
     table: int  #: distances of every contact at five places of the step
     fresh: int  #: marks of contacts that have just changed their sides
+    row: int  #: factors at the phase of the stage
     end: int
 
 
@@ -73,122 +78,165 @@ def adaptive_slots(code: Index) -> AdaptiveSlots:
     s = slots_of(code)
     n, stage, contacts = s.n, s.end, s.contacts
     mean = stage + 14 * n
-    period = mean + 5 * n
-    fresh = period + 1 + 10 * contacts
+    error = mean + 7 * n + 1
+    fresh = error + 1 + 10 * contacts
+    row = fresh + contacts
     return AdaptiveSlots(
-        stage, stage + 6 * n, stage + 7 * n, mean, mean + n, mean + 3 * n, period, period + 1,
-        fresh, fresh + contacts,
+        stage, stage + 6 * n, stage + 7 * n, mean, mean + n, mean + 3 * n, mean + 5 * n + 1, error,
+        error + 1, fresh, row, row + code[2],
     )  # fmt: skip
 
 
-class Rows(NamedTuple):
-    """Addresses of the table between whose rows is interpolated."""
+class Course(Protocol):
+    """A trajectory during its integration, and what is reported of it."""
 
-    events: Any
-    first: Any
-    varying: Any
-    varies: int  #: how many columns vary
-    columns: int
-    values: Any
-    weights: Any  #: of the nodes of an interpolation
-    places: Any  #: of their rows in the values
-
-
-class Trial(NamedTuple):
-    """A step within the segment between two events."""
-
+    row: int  #: first factor in the rows
+    first: int  #: first segment of the table, and the one behind the last
+    last: int
+    varying: int  #: first of the columns that vary
+    columns: int  #: how many vary
+    origin: int  #: first power of the table
+    period: float  #: [s]
+    cycle: int
     segment: int
-    phase: float  #: [-]
-    width: float  #: [-]
+    begin: float  #: phase of its event [-]
+    intervals: int  #: their number, and how many there are per phase
+    rate: float
+    powers: int  #: first power of the segment
+    phase: float  #: where it is [-]
+    width: float  #: of its step [-]
+    cut: int  #: 1 if the step ends at a crossing
+    new_error: float  #: error of the step over the tolerance
+    plan: float  #: width of the next step, and error of the last one
+    error: float
+    low: float  #: fractions of the step between which the crossing is searched; 2: none
+    theta: float
+    changes: int  #: of side since the phase ``counted``
+    counted: float
+    point: int  #: next output point
+    widest: float
+    steps: int
+    rejections: int
+    crossings: int
+    reason: int  #: of a failure: 1 step too narrow, 2 chatter
+    contact: int  #: that chatters
+
+
+#: The same as a record of an array.
+COURSE = np.dtype(
+    [
+        (name, np.int64 if kind == "int" else np.float64)
+        for name, kind in Course.__annotations__.items()
+    ]
+)
+
+
+#: A tuple as long as a block has lanes, and the courses of its trajectories.
+Lanes = tuple[float, ...]
+Courses = Sequence[Course]
+
+
+class Rows(NamedTuple):
+    """Addresses of the tables of all trajectories."""
+
+    events: Array
+    first: Index
+    varying: Index
+    powers: Array
 
 
 @nb.njit(**INNER)
-def fill_row(rows: Rows, segment: int, phase: float, row: Array) -> None:
-    """Interpolate the varying factors of the row at a phase of the segment."""
-    low, high = rows.events[segment], rows.events[segment + 1]
-    begin, end = rows.first[segment], rows.first[segment + 1]
-    last = 2 * (end - begin)
-    points = min(I64(POINTS), last + 1)
-    x = (phase - low) / (high - low) * last
-    start = min(max(I64(x) - 2, 0), last + 1 - points)
-    weights, at = rows.weights, rows.places
-    for k in range(points):
-        node = start + k
-        step = min(node >> 1, end - begin - 1)
-        at[k] = (3 * (begin + step) + node - 2 * step) * rows.columns
-        weights[k] = DENOMINATORS[points, k]
-        for j in range(points):
-            if j != k:
-                weights[k] *= x - (start + j)
-    for k in range(points, POINTS):
-        at[k], weights[k] = at[0], 0.0
-    for item in range(rows.varies):
-        column = rows.varying[item]
-        total = 0.0
-        for k in range(POINTS):
-            total += weights[k] * rows.values[at[k] + column]
-        row[column] = total
+def fill_row(rows: Rows, course: Course, phase: float, width: int, row: Array) -> None:
+    """Evaluate the varying factors of the row of one of ``width`` lanes at a phase."""
+    keep_apart()
+    x = (phase - course.begin) * course.rate
+    interval = min(max(I64(x), 0), course.intervals - 1)
+    x -= interval
+    columns, at = course.columns, course.powers + interval * POINTS * course.columns
+    for item in range(columns):
+        total = rows.powers[at + item]
+        for k in range(1, POINTS):
+            total = total * x + rows.powers[at + k * columns + item]
+        row[rows.varying[course.varying + item] * width] = total
 
 
 @nb.njit(**INNER)
-def fill_within(rows: Rows, trial: Trial, theta: float, row: Array) -> None:
-    """Interpolate the row at a fraction of a step."""
-    fill_row(rows, trial.segment, trial.phase + theta * trial.width, row)
+def fill_lanes(
+    lanes: Lanes,
+    law: Law,
+    rows: Rows,
+    courses: Courses,
+    theta: float,
+    w: Array,
+) -> None:
+    """Interpolate the rows of all lanes with a step at a fraction of it."""
+    width, row = len(lanes), adaptive_slots(law.code).row
+    for lane in range(width):
+        if courses[lane].width > 0.0:
+            at = courses[lane].phase + theta * courses[lane].width
+            fill_row(rows, courses[lane], at, width, ahead(w, row * width + lane))
 
 
 @nb.njit(**INNER)
-def set_scale(code: Index, rtol: float, atol: Array, w: Array) -> None:
+def set_scale(lanes: Lanes, code: Index, w: Array) -> None:
     """Update the largest size and the inverse tolerance of each state."""
     o = adaptive_slots(code)
+    relative = load(lanes, w, o.tolerance - 1)
     for i in range(2 * code[0]):
-        w[o.size + i] = max(w[o.size + i], abs(w[i]))
-        w[o.tolerance + i] = 1.0 / (atol[i] + rtol * w[o.size + i])
+        size = greatest(load(lanes, w, o.size + i), magnitude(load(lanes, w, i)))
+        store(w, o.size + i, size)
+        allowed = load(lanes, w, o.allowed + i) + relative * size
+        store(w, o.tolerance + i, quotient(0.0 * size + 1.0, allowed))
 
 
 @nb.njit(**INNER)
-def try_step(law: Law, rows: Rows, trial: Trial, w: Array) -> float:
-    """Step from buffer 0 to buffer 2; returns the error over the tolerance."""
+def try_step(lanes: Lanes, law: Law, rows: Rows, courses: Courses, w: Array) -> None:
+    """Step from buffer 0 to buffer 2, and its error."""
     keep_apart()
     s, o = slots_of(law.code), adaptive_slots(law.code)
-    n, h = s.n, trial.width * w[o.period]
-    w[s.h] = h
+    n, h = s.n, load(lanes, w, s.h)
+    zero = 0.0 * h
     for i in range(n):
-        w[o.rate + i] = w[n + i]
+        store(w, o.rate + i, load(lanes, w, n + i))
     for stage in range(1, 7):
         if stage < 6:
-            fill_within(rows, trial, NODES[stage], law.rows)
+            fill_lanes(lanes, law, rows, courses, NODES[stage], w)
         buffer = I64(2) if stage == 6 else I64(1)
         target = 2 * n * buffer
         for i in range(n):
-            dq, dv = 0.0, 0.0
+            dq, dv = zero, zero
             for j in range(stage):
-                dq += MATRIX[stage, j] * w[o.rate + j * n + i]
-                dv += MATRIX[stage, j] * w[o.stage + j * n + i]
-            v = w[n + i] + h * dv
-            w[target + i] = w[i] + h * dq
-            w[target + n + i] = w[o.rate + stage * n + i] = v
-            w[o.mean + i] = dq
-        acceleration(SINGLE, law, I64(0), buffer, o.stage + stage * n, w)
-    total = 0.0
+                dq = dq + MATRIX[stage, j] * load(lanes, w, o.rate + j * n + i)
+                dv = dv + MATRIX[stage, j] * load(lanes, w, o.stage + j * n + i)
+            v = load(lanes, w, n + i) + h * dv
+            store(w, target + i, load(lanes, w, i) + h * dq)
+            store(w, target + n + i, v)
+            store(w, o.rate + stage * n + i, v)
+            store(w, o.mean + i, dq)
+        acceleration(lanes, law, I64(0), buffer, o.stage + stage * n, w)
+    total = zero
     for i in range(2 * n):
         at = (o.rate if i < n else o.stage - n) + i
-        error = 0.0
+        error = zero
         for j in range(7):
-            error += WEIGHT_ERROR[j] * w[at + j * n]
-        total += (error * h * w[o.tolerance + i]) ** 2
-    return math.sqrt(total) if math.isfinite(total) else math.inf
+            error = error + WEIGHT_ERROR[j] * load(lanes, w, at + j * n)
+        error = error * h * load(lanes, w, o.tolerance + i)
+        total = total + error * error
+    store(w, o.error, total)
 
 
 @nb.njit(**INNER)
-def between(law: Law, theta: float, speed: bool, w: Array) -> None:
+def between(lanes: Lanes, law: Law, theta: float, speed: bool, w: Array) -> None:
     """State at the fraction ``theta`` of the step, into buffer 1; velocities if ``speed``."""
     s, o = slots_of(law.code), adaptive_slots(law.code)
-    n, h = s.n, w[s.h]
+    n, h = s.n, load(lanes, w, s.h)
     b5, b1, b4, b2, b3 = quintic_place(theta)
     d5, d1, d4, d2, d3 = quintic_speed(theta)
     for i in range(n):
-        v0, v1, mean = w[n + i], w[5 * n + i], w[o.mean + i]
-        a0, a1 = w[o.stage + i], w[o.last + i]
-        w[2 * n + i] = w[i] + h * (b5 * mean + b1 * v0 + b4 * v1 + h * (b2 * a0 + b3 * a1))
+        v0, v1 = load(lanes, w, n + i), load(lanes, w, 5 * n + i)
+        mean = load(lanes, w, o.mean + i)
+        a0, a1 = load(lanes, w, o.stage + i), load(lanes, w, o.last + i)
+        q = b5 * mean + b1 * v0 + b4 * v1 + h * (b2 * a0 + b3 * a1)
+        store(w, 2 * n + i, load(lanes, w, i) + h * q)
         if speed:
-            w[3 * n + i] = d5 * mean + d1 * v0 + d4 * v1 + h * (d2 * a0 + d3 * a1)
+            store(w, 3 * n + i, d5 * mean + d1 * v0 + d4 * v1 + h * (d2 * a0 + d3 * a1))

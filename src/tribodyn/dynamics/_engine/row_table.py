@@ -2,14 +2,15 @@
 
 Rows are the factors that the kernel reads
 (:class:`~tribodyn.dynamics.equations.program.Program`). The grid has equal steps between two
-events, so that their ends and middles are equidistant nodes, and a row follows from the six nearest
-nodes of its segment by Lagrange's polynomial. The grid is refined until the middle of every step
-follows from the ends of the neighbouring steps, which are twice as far apart. Kinks never do: steps
-of the integration end on both sides of them.
+events, so that their ends and middles are equidistant nodes, and a row between two of them follows
+from the polynomial through the six nearest of its segment. The grid is refined until the middle of
+every step follows from the ends of the neighbouring steps, which are twice as far apart. Kinks
+never do: steps of the integration end on both sides of them.
 """
 
 from __future__ import annotations
 
+from functools import cache
 from typing import NamedTuple
 
 import numpy as np
@@ -22,16 +23,6 @@ from tribodyn.types import Array, Index
 
 #: Nodes of an interpolation; a segment of two steps has five.
 POINTS = 6
-#: ``1 / prod(k - j)`` of node k among ``row`` nodes.
-DENOMINATORS = np.array(
-    [
-        [
-            1.0 / np.prod([k - j for j in range(points) if j != k]) if k < points else 0.0
-            for k in range(POINTS)
-        ]
-        for points in range(POINTS + 1)
-    ]
-)
 #: Initial and largest number of steps, and most numbers of the table.
 _FIRST, _MOST_STEPS, _MOST_NUMBERS = 256, 32768, 2**24
 #: Deviation over the tolerance of the motion at which the grid is fine enough.
@@ -47,12 +38,13 @@ _SLOPE = 2.0
 
 
 class RowTable(NamedTuple):
-    """Rows of a program between which is interpolated."""
+    """Polynomials of the factors of a program between the nodes."""
 
-    program: Program
+    program: Program  #: with a single row, for the factors that do not vary
     events: Array  #: mesh phases of the events, of both sides of kinks, and 1 [-]
-    first: Index  #: first step of each segment, and the number of steps
+    first: Index  #: first interval of each segment, and the number of intervals
     varying: Index  #: columns of the factors that vary
+    powers: Array  #: from the fifth power on, over the part of each interval (m, 6, varying)
     error: float  #: mean deviation of the entries from their interpolation, over their size [-]
 
 
@@ -75,10 +67,42 @@ def build_table(
     first = np.flatnonzero(grid.after_event)
     if deviation.max() > _FINE * rtol:
         first = np.union1d(first, _around_kinks(deviation.max(axis=1)))
-    rows = program.rows.reshape(3 * steps, -1)
-    varying = np.flatnonzero(np.any(rows != rows[0], axis=0))
-    phases = np.append(grid.left[first], 1.0)
-    return RowTable(program, phases, np.append(first, steps), varying, error)
+    rows = program.rows.reshape(steps, 3, -1)
+    varying = np.flatnonzero(np.any(rows != rows[0, 0], axis=(0, 1)))
+    phases, last = np.append(grid.left[first], 1.0), np.append(first, steps)
+    powers = _powers(rows[..., varying], last)
+    program = program._replace(rows=rows[0, 0].copy())
+    return RowTable(program, phases, 2 * last, varying, powers, error)
+
+
+def _powers(rows: Array, first: Index) -> Array:
+    """Powers of the polynomial between all nodes, from rows (steps, 3, varying)."""
+    begin, count = (np.repeat(item, 2 * np.diff(first)) for item in (first[:-1], np.diff(first)))
+    start, basis = _polynomials(np.arange(2 * len(rows)) - 2 * begin, 2 * count)
+    powers = np.zeros((begin.size, POINTS, rows.shape[2]))
+    for k in range(POINTS):
+        node = np.minimum(start + k, 2 * count)
+        step = np.minimum(node >> 1, count - 1)
+        powers += basis[:, k, :, None] * rows[begin + step, node - 2 * step][:, None]
+    return powers
+
+
+def _polynomials(number: Index, count: Index) -> tuple[Index, Array]:
+    """First node of each interval, of ``count``, and powers of each node's basis (m, 6, 6)."""
+    points = np.minimum(POINTS, count + 1)
+    start = np.clip(number - 2, 0, count + 1 - points)
+    kinds, which = np.unique(POINTS * points + number - start, return_inverse=True)
+    return start, np.stack([_basis(*divmod(kind, POINTS)) for kind in kinds.tolist()])[which]
+
+
+@cache
+def _basis(points: int, shift: int) -> Array:
+    """Powers of the polynomial of each of some nodes, in the interval behind node ``shift``."""
+    basis, nodes = np.zeros((POINTS, POINTS)), np.arange(points)
+    for k in range(points):
+        others = np.delete(nodes, k)
+        basis[k, POINTS - points :] = np.poly(others - shift) / np.prod(k - others)
+    return basis
 
 
 def _around_kinks(deviation: Array) -> Index:
@@ -122,13 +146,5 @@ def _stencils(grid: Grid) -> tuple[Index, Array]:
     begins = np.flatnonzero(grid.after_event)
     counts = np.diff(np.append(begins, grid.steps))
     begin, count = np.repeat(begins, counts), np.repeat(counts, counts)
-    points = np.minimum(POINTS, count + 1)
-    number = np.arange(grid.steps) - begin
-    first = np.clip(number - 2, 0, count + 1 - points)
-    x = number + 0.5 - first
-    weights = DENOMINATORS[points].copy()
-    for k in range(POINTS):
-        for j in range(POINTS):
-            if j != k:
-                weights[:, k] *= np.where(j < points, x - j, 1.0)
-    return begin + first, weights
+    start, basis = _polynomials(np.arange(grid.steps) - begin, count)
+    return begin + start, basis @ 0.5 ** np.arange(POINTS - 1, -1, -1)

@@ -22,6 +22,8 @@ _STRONG = 0.4
 _HUGE = 1e100
 #: The same over the usual size, for adaptive steps, which become too small before it is infinite.
 _BEYOND = 1e9
+#: Reason of a failure of adaptive steps: a contact changes its side without end.
+CHATTERS = 2
 
 
 class Failed(NamedTuple):

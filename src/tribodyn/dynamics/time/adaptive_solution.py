@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from dataclasses import field
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from tribodyn.checks import require_number, require_whole
-from tribodyn.dynamics._engine.adaptive_engine import Tolerance, adaptive_lanes
+from tribodyn.dynamics._engine.adaptive_engine import Tolerance, adaptive_lanes, lane_groups
 from tribodyn.dynamics.equations.motion import quintic_place, quintic_speed
 from tribodyn.dynamics.equations.system import System
 from tribodyn.dynamics.time.simulate import read_force, read_start
@@ -188,23 +189,24 @@ def solve_adaptive(
     (lane,) = adaptive_lanes(systems, frequency, cycles, extra[None, :], rtol, atol)
     trails, capacity, counts, n = [], _ROOM, np.zeros(2, dtype=np.int64), system.size
 
-    def march(task: tuple[Array, Array, int]) -> Array:
+    (group,) = lane_groups([lane], 1)
+
+    def march(task: tuple[Array, Array, int]) -> Any:
         state, trail, elapsed = task
-        return lane.march(state, 1, np.zeros(1), None, trail, elapsed)
+        return group.march(state[None], 1, np.zeros(1), elapsed, trail=trail[None])[0]
 
     for cycle in range(cycles):
-        memory, begin = lane.memory.copy(), state
+        memory, begin = lane.memory, state
         while True:
             trail, state = np.zeros((capacity, 2 + 6 * n)), begin.copy()
             # In a thread, so that an interruption stops it.
-            (report,) = in_threads(march, [(state, trail, cycle)], 1)
-            steps = int(report[7])
-            if steps <= capacity:
+            (course,) = in_threads(march, [(state, trail, cycle)], 1)
+            if course.steps <= capacity:
                 break
-            capacity, lane.memory[:] = 2 * steps, memory
+            capacity, lane.memory = 2 * int(course.steps), memory
         trail[:, 0] += cycle
-        trails.append(trail[:steps])
-        counts += report[1:3].astype(np.int64)
+        trails.append(trail[: course.steps])
+        counts += course.rejections, course.crossings
     trail = np.concatenate(trails)
     phase = np.append(trail[:, 0], float(cycles))
     return AdaptiveSolution(

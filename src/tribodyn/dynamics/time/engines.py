@@ -9,7 +9,12 @@ from typing import Any, Literal, NamedTuple
 
 import numpy as np
 
-from tribodyn.dynamics._engine.adaptive_engine import Tolerance, adaptive_lanes
+from tribodyn.dynamics._engine.adaptive_engine import (
+    LaneGroup,
+    Tolerance,
+    adaptive_lanes,
+    lane_groups,
+)
 from tribodyn.dynamics._engine.blocks import Backend, LaneBlock, Run, march, marching_on
 from tribodyn.dynamics._engine.method import Newmark, RungeKutta4
 from tribodyn.dynamics._engine.statistics import Statistics
@@ -63,7 +68,7 @@ class FixedMarcher:
 
 
 class AdaptiveMarcher:
-    """Integrate lanes with adaptive steps, one by one; the grid defines the samples."""
+    """Integrate lanes with adaptive steps of their own; the grid defines the samples."""
 
     def __init__(
         self, setting: Setting, compiled: Compiled, rtol: float, atol: Tolerance | None
@@ -93,25 +98,28 @@ class AdaptiveMarcher:
         setting, points, new = self.setting, self._compiled.grid.left, state.copy()
         facts = 1.0 / setting.frequency, state, setting.extra_force
         run = Run(self._compiled, RungeKutta4(), setting.parameters, *facts)
-        empty, at_once = np.zeros((0, 2 + 3 * state.shape[1])), cycles if statistics is None else 1
+        at_once, threads = cycles if statistics is None else 1, threads or os.cpu_count() or 1
 
-        def march_lane(number: int) -> float:
-            lane, widest = self.lanes[number], 0.0
-            rows = None
+        def march_group(group: LaneGroup) -> float:
+            states, widest, rows = new[group.numbers], 0.0, None
             if record is not None or statistics is not None:
-                rows = np.empty((at_once * points.size + 1, state.shape[1]))
+                rows = np.empty((len(states), at_once * points.size + 1, state.shape[1]))
             for before in range(elapsed, elapsed + cycles, at_once):
-                report = lane.march(new[number], at_once, points, rows, empty, before)
-                widest = max(widest, float(report[3]))
+                courses = group.march(states, at_once, points, before, rows)
+                rates = [lane.rate for lane in group.lanes]
+                widest = max(widest, float(np.max(rates * courses.period * courses.widest)))
                 if rows is not None and statistics is not None:
-                    block = LaneBlock(np.array([number]), 1)
-                    run.gather(block, rows[:, :, None], statistics, cycles)
+                    for number, lane_rows in zip(group.numbers, rows, strict=True):
+                        block = LaneBlock(np.array([number]), 1)
+                        run.gather(block, lane_rows[:, :, None], statistics, cycles)
                 if rows is not None and record is not None:
                     first = (before - elapsed) * points.size
-                    record[first : first + len(rows), :, number] = rows
-            return lane.rate * widest * lane.period
+                    lanes = slice(first, first + rows.shape[1]), slice(None), group.numbers
+                    record[lanes] = rows.transpose(1, 2, 0)
+            new[group.numbers] = states
+            return widest
 
-        numbers = in_threads(march_lane, range(len(state)), threads or os.cpu_count() or 1)
+        numbers = in_threads(march_group, lane_groups(self.lanes, threads), threads)
         self._step_number = max([self._step_number, *numbers])
         return new
 

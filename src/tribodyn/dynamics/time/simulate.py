@@ -10,13 +10,7 @@ from tribodyn.checks import require_number, require_whole
 from tribodyn.dynamics._engine.adaptive_engine import Tolerance
 from tribodyn.dynamics._engine.blocks import Backend
 from tribodyn.dynamics.equations.system import System
-from tribodyn.dynamics.time.engines import (
-    Method,
-    Setting,
-    automatic_method,
-    engine_name,
-    prepare,
-)
+from tribodyn.dynamics.time.engines import Method, Setting, automatic_method, engine_name, prepare
 from tribodyn.dynamics.time.response import Response, build_response, later
 from tribodyn.errors import Argument, InputError, real_numbers, require_positive
 from tribodyn.progress import SILENT, Progress
