@@ -48,6 +48,7 @@ from tribodyn.rating.oil import GearOil
 from tribodyn.rating.pair_rating import GearRating, PairRating, rate_pair
 from tribodyn.rating.rated_gear import PinionShaft, RatedGear, ShaperCutter
 from tribodyn.rating.spectrum import GearDamage, LoadCase, SpectrumRating, rate_spectrum
+from tribodyn.rating.surface.subsurface import LineContactStress, line_contact_stress
 from tribodyn.rating.tolerances import Deviations, gear_tolerances
 
 __all__ = [
@@ -59,6 +60,7 @@ __all__ = [
     "GearMaterial",
     "GearOil",
     "GearRating",
+    "LineContactStress",
     "LoadCase",
     "PairRating",
     "PinionShaft",
@@ -81,6 +83,7 @@ __all__ = [
     "gear_tolerances",
     "life_factor",
     "life_modification_factor",
+    "line_contact_stress",
     "rate_pair",
     "rate_shaft",
     "rate_spectrum",
