@@ -108,6 +108,13 @@ def _planets(data: Mapping[str, Any]) -> KeyedProblems:
             why = "The stage gives planets their shafts and their places on the pins"
             table = _tables(data, "gears").get(str(gear))
             yield from _refused(f"gears.{gear}", table, places, why, "Remove it")
+        for role in ("sun", "ring", "carrier"):
+            member = str(body.get(role))
+            shaft = _tables(data, "gears").get(member, {}).get("shaft", member)
+            held = [b for b in _tables(data, "bearings").values() if b.get("shaft") == shaft]
+            if held or _is_set(_tables(data, "shafts").get(shaft), "sections"):
+                why = f"Shaft {shaft} has sections, or bearings that support it"
+                yield from _refused(key, body, (f"{role}_support",), why, "Remove it")
 
 
 def _constant_meshes(data: Mapping[str, Any]) -> KeyedProblems:
