@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from test_machine_run import GEARED
+from tests.unit.study.test_machine_run import GEARED
 
 import tribodyn as td
 from tribodyn.dynamics import simulate, torsional

@@ -7,8 +7,8 @@ from typing import Any
 
 import numpy as np
 import pytest
-from test_machine_run import GEARED
 from test_summary_names import QUICK
+from tests.unit.study.test_machine_run import GEARED
 
 import tribodyn as td
 from tribodyn.study.machine.read import read_any_case
