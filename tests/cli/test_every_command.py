@@ -116,6 +116,11 @@ def _mesh(name: str) -> list[str]:
     return ["--mesh", mesh_names(tribodyn.load_case(name))[0]]
 
 
+def _followed(name: str) -> list[str]:
+    case = tribodyn.load_case(name)
+    return [] if isinstance(case, Case) else ["--mesh", next(iter(case.meshes))]
+
+
 def _sensor(name: str) -> str:
     case = tribodyn.load_case(name)
     if isinstance(case, MachineCase):
@@ -150,10 +155,11 @@ _ARGUMENTS: dict[str, Callable[[_Place, str], list[str]]] = {
     ],
     "friction-from-loss": lambda p, n: ["fzg-wheel-driven", "--case", p.file(n), *_mesh(n)],
     "bifurcation": lambda p, n: [
-        p.file(n), f"operation.speed={_range(n)}:3", "--cycles", "8", "--transient", "8"
+        p.file(n), f"operation.speed={_range(n)}:3", "--cycles", "8", "--transient", "8",
+        *_followed(n),
     ],
-    "continuation": lambda p, n: [p.file(n), f"operation.speed={_range(n)}"],
-    "basins": lambda p, n: [p.file(n), "--points", "3"],
+    "continuation": lambda p, n: [p.file(n), f"operation.speed={_range(n)}", *_followed(n)],
+    "basins": lambda p, n: [p.file(n), "--points", "3", *_followed(n)],
     "lyapunov": lambda p, n: [p.file(n), "--cycles", "8", "--transient", "8"],
     "experiment": lambda p, n: [
         "friction", p.file(n), "--roughness", "0.3,0.5 um", "--laws", "xu-2007"

@@ -16,7 +16,8 @@ from tribodyn.dynamics import Contact, System, simulate
 from tribodyn.dynamics._engine.blocks import march
 from tribodyn.dynamics.equations.compiled import compile_for
 from tribodyn.errors import ComputationError, InputError
-from tribodyn.nonlinear.lyapunov import _Carrier, grouped_products
+from tribodyn.nonlinear.lyapunov_carrier import Carrier
+from tribodyn.nonlinear.lyapunov_products import grouped_products
 from tribodyn.nonlinear.lyapunov_tangent import TangentTables
 
 TURN = 2.0 * np.pi
@@ -193,7 +194,7 @@ def test_disturbance_of_one_cycle_agrees_with_two_marched_motions(name):
     for _ in range(6):
         record = np.empty((513, 2, 1))
         new = march(compiled, period, state, 1, record=record)
-        steps, _ = _Carrier(tables, state[0], np.zeros(1))._matrices(record[:, :, 0])
+        steps, _ = Carrier(tables, state[0], np.zeros(1))._matrices(record[:, :, 0])
         matrix = grouped_products(steps[None], 512)[0, 0]
         y, small = reduce(state)[0], 1e-6 * np.eye(2)
         disturbed = [

@@ -16,7 +16,9 @@ FOLDERS = {
 
 #: Inner function -> arguments that it had when the limit was set.
 FUNCTIONS = {
-    "bifurcation": 10,
+    "basins": 9,
+    "bifurcation": 11,
+    "continuation": 9,
     "follow": 9,
     "march": 12,
     "number": 11,

@@ -172,7 +172,8 @@ class _Block:
         points = LONGEST_PERIOD * self.steps + 1
         self.record = None
         self.lanes = width if on_gpu() else min(width, _LANES)
-        if points * size * self.lanes <= _MOST_RECORDED:
+        by_cycle = motions.compiled.engine is not None
+        if points * size * self.lanes <= _MOST_RECORDED and not by_cycle:
             self.record = np.empty((points, size, self.lanes))
 
     def run(self) -> None:

@@ -7,9 +7,10 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import ArrayLike
 
-from tribodyn.dynamics.equations.compiled import Compiled, compile_for
+from tribodyn.dynamics.equations.compiled import Compiled
 from tribodyn.dynamics.equations.orbit_coordinates import static_start
 from tribodyn.dynamics.equations.system import System
+from tribodyn.dynamics.modal.modal_march import compile_motion
 from tribodyn.dynamics.time.simulate import read_start
 from tribodyn.errors import InputError
 from tribodyn.nonlinear.attractors import Motions
@@ -56,8 +57,9 @@ def basins(
     coordinates : two str, optional
         The components: the name of a coordinate, or of one followed by ``_velocity``; the first
         coordinate and its velocity by default. Or ``("dynamic_transmission_error",
-        "dynamic_transmission_error_rate")``: the compression of the first contact from where its
-        driving flank first touches, and its rate, as a push at the contact changes them.
+        "dynamic_transmission_error_rate")``: the compression of the first contact, or that of
+        ``signal``, from where its driving flank first touches, and its rate, as a push at the
+        contact changes them.
     points : two int
         Values of each.
     start : (position, velocity), optional
@@ -106,9 +108,9 @@ def basins(
     >>> result.coordinates, [each.period for each in result.attractors]
     (('x', 'x_velocity'), [1, 1])
     """
-    compiled = compile_for(system, mesh_frequency, steps)
+    compiled = compile_motion(system, mesh_frequency, steps)
     beat = float(mesh_frequency)
-    plane = start_plane(compiled, beat, coordinates)
+    plane = start_plane(compiled, beat, coordinates, signal if isinstance(signal, int) else 0)
     axes = _axes(between, points, cycles)
     state = static_start(compiled) if start is None else read_start(system, start)
     starts = plane.starts(axes, state)
@@ -128,9 +130,9 @@ def basins(
     ]
     refined = np.full(label.shape, -3)
     if verdict and motions.finished.all():
-        again = _motions(compile_for(system, beat, 2 * steps), starts, beat, force)
+        again = _motions(compile_motion(system, beat, 2 * steps), starts, beat, force)
         fine = _followed_again(catalogue, again, force, progress)
-        attractors = _judged(attractors, fine, compiled.step_number)
+        attractors = _judged(attractors, fine, compiled.limited_number)
         refined = _labels_again(fine, again, len(attractors))
     progress.finish()
     order = np.argsort([-attractor.share for attractor in attractors], kind="stable")

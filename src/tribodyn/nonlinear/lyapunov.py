@@ -8,42 +8,27 @@ made orthogonal again before they become parallel. Growth per time is the spectr
 from __future__ import annotations
 
 import math
-from collections import deque
 from dataclasses import replace
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from tribodyn.checks import require_whole
-from tribodyn.dynamics._engine.blocks import march
-from tribodyn.dynamics.equations.compiled import compile_for
-from tribodyn.dynamics.equations.motion import sides
 from tribodyn.dynamics.equations.orbit_coordinates import OrbitCoordinates, static_start
 from tribodyn.dynamics.equations.system import System
+from tribodyn.dynamics.modal.modal_march import compile_motion
 from tribodyn.dynamics.time.simulate import read_force, read_start
 from tribodyn.errors import ComputationError, InputError
-from tribodyn.nonlinear.lyapunov_products import (
-    floquet_growth,
-    grouped_products,
-    repeats_after,
-    safe_length,
-    share_in,
-)
-from tribodyn.nonlinear.lyapunov_tangent import TangentTables, carry_over_crossings
+from tribodyn.nonlinear.lyapunov_carrier import ALIGN, Carrier, carrier_of
+from tribodyn.nonlinear.lyapunov_products import floquet_growth, repeats_after
 from tribodyn.nonlinear.survey import Verdict
 from tribodyn.progress import SILENT, Progress
 from tribodyn.record import Parts, Record, fact, quantity, record
 from tribodyn.types import Array, Mask
 
-#: Largest number of stored values while disturbances are integrated.
-_MOST_VALUES = 6_000_000
-#: Mesh cycles of the transient over which disturbances already turn into their directions.
-_ALIGN = 200
 _BLOCKS = 32
 #: Mesh cycles over which a motion that repeats is integrated with half the step.
 _FEW = 64
-#: Mesh cycles whose matrices are compared to see whether they repeat.
-_COMPARED = 32
 #: Standard errors by which the largest exponent of a chaotic motion is above zero.
 _SURE = 3.0
 #: Largest exponents agree within this many standard errors of their difference, or this share, or
@@ -229,7 +214,9 @@ def lyapunov_exponents(
     block averages. Any other motion is averaged with a smooth window, which converges faster than
     every power of the number of cycles for periodic and quasi-periodic motion (Das, Saiki, Sander
     and Yorke, Nonlinearity 30, 2017); its error is half the difference of the two halves. The
-    saltation matrix is that of Mueller, Chaos, Solitons and Fractals 5 (1995).
+    saltation matrix is that of Mueller, Chaos, Solitons and Fractals 5 (1995). Systems with more
+    than 24 coordinates, and those with ramps, are integrated in modal coordinates; their average
+    ends as soon as the matrices repeat.
 
     Free rotations follow from the structure, not from exponents that are small: they are the
     motions that no spring strains and no contact direction feels at any mesh phase. The exponent
@@ -246,17 +233,17 @@ def lyapunov_exponents(
     """
     require_whole("cycles", cycles)
     require_whole("transient", transient, 0)
-    compiled = compile_for(system, mesh_frequency, steps)
-    tables = TangentTables(compiled, mesh_frequency)
-    if tables.coordinates.elastic.shape[1] == 0:
+    compiled = compile_motion(system, mesh_frequency, steps)
+    extra = read_force(system, extra_force)
+    state = static_start(compiled) if start is None else read_start(system, start)
+    forced = np.broadcast_to(extra, (system.size,))
+    carrier = carrier_of(compiled, mesh_frequency, state, forced)
+    if carrier.tables.coordinates.elastic.shape[1] == 0:
         what = "no coordinate is restrained by a spring or a contact"
         why = "Nothing vibrates, so that every exponent is zero"
         raise InputError(what, "System.stiffness", why, "Restrain at least one coordinate")
-    extra = read_force(system, extra_force)
-    state = static_start(compiled) if start is None else read_start(system, start)
-    carrier = _Carrier(tables, state, np.broadcast_to(extra, (system.size,)))
     progress.start("Mesh cycles", int(cycles + transient))
-    align = min(int(transient), _ALIGN)
+    align = min(int(transient), ALIGN)
     carrier.settle(int(transient) - align)
     progress.advance(int(transient) - align)
     carrier.carry(align, progress)
@@ -281,103 +268,7 @@ def lyapunov_exponents(
     return replace(spectrum, verdict=exponent_verdict(spectrum, refined))
 
 
-class _Carrier:
-    """A motion with its orthogonal disturbances."""
-
-    def __init__(self, tables: TangentTables, state: Array, extra: Array) -> None:
-        self.tables = tables
-        self.extra = extra
-        self.state = state[None, :]
-        k = tables.size
-        self.frame = np.linalg.qr(np.random.default_rng(0).standard_normal((k, k)))[0]
-        braked = tables.coordinates.braked
-        #: Directions of the speeds of braked free rotations, and how far disturbances lie in them.
-        self.braked = np.vstack((np.zeros((k - len(braked), braked.shape[1])), braked))
-        self.share = np.zeros(k)
-        self.length = self.elapsed = 0
-        self.last: deque[Array] = deque(maxlen=_COMPARED)
-
-    def settle(self, cycles: int) -> None:
-        """March without disturbances."""
-        for first in range(0, cycles, _ALIGN):
-            self._march(min(_ALIGN, cycles - first), None)
-
-    def _march(self, cycles: int, record: Array | None) -> None:
-        frequency = self.tables.mesh_frequency
-        state = march(
-            self.tables.compiled,
-            np.array([1.0 / frequency]),
-            self.state,
-            cycles,
-            extra_force=self.extra[None, :],
-            record=record,
-            elapsed=self.elapsed,
-        )
-        self.elapsed += cycles
-        # The free rotation runs away and nothing depends on it.
-        coordinates = self.tables.coordinates
-        self.state = coordinates.expand(coordinates.reduce(state))
-
-    def carry(self, cycles: int, progress: Progress) -> tuple[Array, Array]:
-        """Growth of every disturbance and mean trace in each mesh cycle [1/s]."""
-        k, steps = self.tables.size, self.tables.compiled.grid.steps
-        chunk = max(1, _MOST_VALUES // (steps * (k * k + self.state.shape[1])))
-        growth, divergence, share = np.zeros((cycles, k)), np.zeros(cycles), np.zeros(k)
-        for first in range(0, cycles, chunk):
-            count = min(chunk, cycles - first)
-            record = np.empty((count * steps + 1, self.state.shape[1], 1))
-            self._march(count, record)
-            matrices, traces = self._matrices(record[:, :, 0])
-            matrices = matrices.reshape(count, steps, k, k)
-            divergence[first : first + count] = traces.reshape(count, steps).sum(axis=1)
-            self.length = self.length or safe_length(matrices[0])
-            for cycle, group in enumerate(grouped_products(matrices, self.length)):
-                for product in group:
-                    self.frame, upper = np.linalg.qr(product @ self.frame)
-                    growth[first + cycle] += np.log(np.abs(np.diag(upper)))
-                share += share_in(self.braked, self.frame)
-                self.last.append(group.copy())
-            progress.advance(count)
-        self.share = share / max(1, cycles)
-        return growth * self.tables.mesh_frequency, divergence * self.tables.mesh_frequency
-
-    def _matrices(self, states: Array) -> tuple[Array, Array]:
-        """Matrix of every step along recorded states, and the integral of the trace."""
-        tables, nodes = self.tables, self.tables.compiled.nodes
-        size, steps = self.extra.size, tables.compiled.grid.steps
-        place = states[:, :size].reshape(-1, size)
-
-        def sides_at(q: Array, node: int) -> Array:
-            q = q.reshape(-1, steps, size)
-            d = np.einsum("rji,cri->crj", nodes.direction[:, node], q) - nodes.error[:, node]
-            side = sides(d, nodes.gap[:, node], tables.dead)
-            return side.reshape(len(q) * steps, d.shape[-1])
-
-        left, right = sides_at(place[:-1], 0), sides_at(place[1:], 2)
-        number = np.tile(np.arange(steps), len(left) // steps)
-        crossed = np.any(left != right, axis=1)
-        touching = left != 0.0
-        matrices = np.empty((len(left), tables.size, tables.size))
-        traces = np.empty(len(left))
-        patterns = touching @ 2.0 ** np.arange(touching.shape[1])
-        for pattern, first in zip(*np.unique(patterns, return_index=True), strict=True):
-            which = np.flatnonzero(~crossed & (patterns == pattern))
-            step_tables = tables.whole_steps(touching[first])
-            matrices[which], traces[which] = (
-                step_tables[0][number[which]],
-                step_tables[1][number[which]],
-            )
-        which = np.flatnonzero(crossed)
-        if which.size:
-            matrices[which], traces[which] = carry_over_crossings(
-                tables, self.extra, number[which], states[which], left[which]
-            )
-        return matrices, traces
-
-
-def _summarize(
-    carrier: _Carrier, growth: Array, divergence: Array, count: int
-) -> LyapunovExponents:
+def _summarize(carrier: Carrier, growth: Array, divergence: Array, count: int) -> LyapunovExponents:
     mesh_frequency = carrier.tables.mesh_frequency
     values, errors, share = growth.mean(axis=0), _block_error(growth), carrier.share
     mean = float(divergence.mean())

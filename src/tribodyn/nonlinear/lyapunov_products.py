@@ -14,7 +14,7 @@ _PERIODS, _REPEATS = 16, 1e-8
 #: Blocks of the frame are apart when they exchange less than this.
 _APART = 1e-10
 #: A product whose singular values differ by more loses the small disturbances to rounding.
-_SPREAD = 1e6
+SPREAD = 1e6
 
 
 def share_in(directions: Array, disturbances: Array) -> Array:
@@ -72,7 +72,7 @@ def safe_length(matrices: Array) -> int:
     product, length = matrices[None], 1
     while product.shape[1] > 1:
         longer = _pairwise(product)
-        if not np.all(np.linalg.cond(longer) <= _SPREAD):
+        if not np.all(np.linalg.cond(longer) <= SPREAD):
             break
         product, length = longer, 2 * length
     return length

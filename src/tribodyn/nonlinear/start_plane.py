@@ -1,6 +1,6 @@
 """Planes of starts: two components of the state, or the transmission error and its rate.
 
-The transmission error is the compression of the first contact, its error included, counted from
+The transmission error is the compression of a contact, its error included, counted from
 where the driving flank first touches. Its plane holds the states that a push at the contact leads
 to: displacements and velocities along ``M^-1 h``, with the direction ``h`` of the contact at the
 mesh phase 0, which give free rotations no momentum.
@@ -17,7 +17,7 @@ from tribodyn.dynamics.equations.system import System
 from tribodyn.errors import InputError
 from tribodyn.types import Array
 
-#: Coordinates of a plane across the first contact.
+#: Coordinates of a plane across a contact.
 MESH_PLANE = ("dynamic_transmission_error", "dynamic_transmission_error_rate")
 #: Ending of the name of a velocity.
 VELOCITY = "_velocity"
@@ -48,22 +48,25 @@ class StartPlane:
 
 
 def start_plane(
-    compiled: Compiled, mesh_frequency: float, names: tuple[str, str] | None
+    compiled: Compiled, mesh_frequency: float, names: tuple[str, str] | None, contact: int = 0
 ) -> StartPlane:
     """Plane of starts over two coordinates; by default the first of the system and its velocity."""
     system = compiled.system
     names = names or (system.names[0], system.names[0] + VELOCITY)
     if tuple(names) == MESH_PLANE and system.contacts:
-        return _across_mesh(compiled, mesh_frequency)
+        return _across_mesh(compiled, mesh_frequency, contact)
     columns = _columns(system, names)
     rows = np.eye(2 * system.size)[list(columns)]
     units = (_unit(names[0]), _unit(names[1]))
     return StartPlane((names[0], names[1]), units, rows, np.zeros(2), rows.T, columns)
 
 
-def _across_mesh(compiled: Compiled, mesh_frequency: float) -> StartPlane:
+def _across_mesh(compiled: Compiled, mesh_frequency: float, contact: int) -> StartPlane:
     nodes = compiled.nodes
-    along, turning = nodes.direction[0, 0, 0], mesh_frequency * nodes.direction_slope[0, 0, 0]
+    along, turning = (
+        nodes.direction[0, 0, contact],
+        mesh_frequency * nodes.direction_slope[0, 0, contact],
+    )
     push = np.linalg.solve(np.asarray(compiled.system.mass), along)
     push = push / (along @ push)
     still = np.zeros_like(along)
@@ -72,7 +75,7 @@ def _across_mesh(compiled: Compiled, mesh_frequency: float) -> StartPlane:
         MESH_PLANE,
         ("m", "m/s"),
         np.vstack((np.concatenate((along, still)), np.concatenate((turning, along)))),
-        np.array([float(nodes.gap[..., 0].min()), 0.0]),
+        np.array([float(nodes.gap[..., contact].min()), 0.0]),
         np.stack(lift, axis=1),
     )
 

@@ -22,6 +22,7 @@ from tribodyn.dynamics.equations.compiled import Compiled, compile_lanes
 from tribodyn.dynamics.equations.orbit_coordinates import static_start
 from tribodyn.dynamics.equations.step_limit import LIMIT
 from tribodyn.dynamics.equations.system import System
+from tribodyn.dynamics.modal.modal_march import compile_motion
 from tribodyn.dynamics.orbits.periods import open_period
 from tribodyn.errors import ComputationError, InputError
 from tribodyn.interrupt import in_threads
@@ -168,8 +169,11 @@ class Points:
             compiled = self._compiled.pop(first, None)
         if compiled is None:
             steps = int(self.steps[first])
-            compiled = compile_lanes(self.systems[first], slowest, steps, any_step=True)
-            self.step_number[group] = compiled.step_number * slowest / self.mesh_frequency[group]
+            # Lanes with factors of their own are not integrated in modal coordinates.
+            compile_group = compile_lanes if self.factors else compile_motion
+            compiled = compile_group(self.systems[first], slowest, steps, any_step=True)
+            numbers = compiled.limited_number * slowest / self.mesh_frequency[group]
+            self.step_number[group] = numbers
         with self._lock:  # The other branch requests the groups in reverse order.
             self._compiled[first] = compiled
             while sum(each.grid.steps for each in self._compiled.values()) > _CACHED_STEPS:

@@ -10,7 +10,6 @@ import numpy as np
 from tribodyn import plot
 from tribodyn.progress import SILENT, Progress
 from tribodyn.report.study_report_data import StudyReportData, figure_with_caption
-from tribodyn.study.case.provenance import spec_of
 from tribodyn.study.pipeline.summary_figures import figure_of
 from tribodyn.study.studies.study_axes import Axis
 
@@ -31,7 +30,7 @@ _VERDICTS = {
 
 
 def lyapunov_report_data(
-    case: Case,
+    case: Case | MachineCase,
     cycles: int = 1000,
     transient: int = 300,
     progress: Progress = SILENT,
@@ -79,12 +78,13 @@ def _exponent_statements(spectrum: LyapunovExponents) -> list[str]:
 
 
 def basins_report_data(
-    case: Case,
+    case: Case | MachineCase,
     transmission_error: Any = None,
     rate: Any = None,
     points: int = 31,
     keep_partial: bool = False,
     progress: Progress = SILENT,
+    mesh: str | None = None,
 ) -> StudyReportData:
     """Basins of attraction of a case over transmission error and its rate."""
     from tribodyn.study.studies.nonlinear import basins
@@ -94,6 +94,7 @@ def basins_report_data(
         transmission_error,
         rate,
         points=points,
+        mesh=mesh,
         keep_partial=keep_partial,
         progress=progress,
     )
@@ -130,14 +131,8 @@ def basins_report_data(
     head = ("Attractor", "Share [%]", "Period [mesh cycles]", "Rms [um]", "Contact loss [%]",
             "Transmission error at phase 0 [um]", "Its rate [um/s]", "Largest multiplier",
             "Verdict")  # fmt: skip
-    return StudyReportData(
-        plane,
-        [figure_with_caption(plot.basins, plane)],
-        _basin_statements(plane),
-        head,
-        rows,
-        facts,
-    )
+    figures = [figure_with_caption(plot.basins, plane)]
+    return StudyReportData(plane, figures, _basin_statements(plane), head, rows, facts)
 
 
 def _basin_statements(plane: Basins) -> list[str]:
@@ -167,13 +162,14 @@ def _basin_statements(plane: Basins) -> list[str]:
 
 
 def continuation_report_data(
-    case: Case,
+    case: Case | MachineCase,
     over: str,
     between: tuple[Any, Any],
     periods: int = 1,
     longest_step: float = 0.02,
     by: str = "",
     progress: Progress = SILENT,
+    mesh: str | None = None,
 ) -> StudyReportData:
     """Branch of periodic orbits of a case over one of its values."""
     from tribodyn.study.studies.nonlinear import continuation
@@ -182,12 +178,9 @@ def continuation_report_data(
         case,
         over,
         between,
-        periods=periods,
-        longest_step=longest_step,
-        by=by,
-        progress=progress,
-    )
-    spec = spec_of(case, over)
+        mesh=mesh, periods=periods, longest_step=longest_step, by=by, progress=progress,
+    )  # fmt: skip
+    spec = case.option_of(over)
     unit = (spec.unit, spec.display_unit) if spec else ("", "")
     axis = Axis(over, tuple(map(float, branch.parameter)), *unit)
     multiplier = np.abs(branch.floquet_multipliers).max(axis=1, initial=0.0)

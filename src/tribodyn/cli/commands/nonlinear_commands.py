@@ -15,6 +15,7 @@ from tribodyn.cli.settings import (
     CaseName,
     Flag,
     Force,
+    Mesh,
     Output,
     Settings,
     read_ends,
@@ -34,6 +35,7 @@ def bifurcation(
     cycles: int = 64,
     transient: int = 300,
     steps: int | None = None,
+    mesh: Mesh = None,
     out: Path | None = None,
     set_: Settings = None,
     force: Force = False,
@@ -74,8 +76,9 @@ def bifurcation(
 
             read_axes(ready, {key: (first, last, points)}, by="bifurcation")
             diagram = compute(
-                ready, key, (first, last), points, steps=steps, sweep=sweep, by="bifurcation",
-                keep_partial=True, progress=progress, checkpoints=checkpoints, **options,
+                ready, key, (first, last), points, mesh=mesh, steps=steps, sweep=sweep,
+                by="bifurcation", keep_partial=True, progress=progress, checkpoints=checkpoints,
+                **options,
             )  # fmt: skip
         show_resumed(checkpoints)
         if not diagram.finished.any():
@@ -111,6 +114,7 @@ def continuation(
     *,
     periods: int = 1,
     longest_step: float = 0.02,
+    mesh: Mesh = None,
     out: Output = None,
     set_: Settings = None,
     force: Force = False,
@@ -139,7 +143,7 @@ def continuation(
         from tribodyn.report.nonlinear_report_data import continuation_report_data
 
         answer = continuation_report_data(
-            ready, key, ends, periods, longest_step, "continuation", progress
+            ready, key, ends, periods, longest_step, "continuation", progress, mesh
         )
     finish("continuation", ready, target, answer, force, json)
 
@@ -151,6 +155,7 @@ def basins(
     transmission_error: _Signed = None,
     rate: _Signed = None,
     points: int = 31,
+    mesh: Mesh = None,
     out: Output = None,
     set_: Settings = None,
     force: Force = False,
@@ -180,7 +185,7 @@ def basins(
     with progress_bar() as progress:
         from tribodyn.report.nonlinear_report_data import basins_report_data
 
-        answer = basins_report_data(ready, error, speed, points, True, progress)
+        answer = basins_report_data(ready, error, speed, points, True, progress, mesh)
     finish("basins", ready, target, answer, force, json)
     return 0 if answer.facts["complete"] else INTERRUPTED
 

@@ -177,6 +177,9 @@ def march(
 ) -> Array:
     """Integrate lanes over mesh cycles, after ``elapsed`` others; returns their new states."""
     # The caller has checked that the steps are short enough for the parameters.
+    if compiled.engine is not None:
+        new: Array = compiled.engine.march(period, state, cycles, extra_force, record, statistics)
+        return new
     lanes = state.shape[0]
     run = Run(compiled, method, parameters, period, state, extra_force)
     if on_gpu():

@@ -48,9 +48,17 @@ class Compiled:
     step_number: float  #: ``omega_max * dt`` of the slowest mesh frequency [-]
     members: tuple[Member, ...] = ()  #: systems of the lanes where these differ
     parameters: LaneParameters | None = None  #: factors of the lanes for which the step was checked
+    engine: Any = field(
+        default=None, repr=False, compare=False
+    )  #: integrates instead of the program
     _programs: dict[int, tuple[Program, ...]] = field(
         default_factory=dict, init=False, repr=False, compare=False
     )
+
+    @property
+    def limited_number(self) -> float:
+        """The number of the step where its size is limited; 0 for an engine without a limit."""
+        return self.step_number if self.engine is None else 0.0
 
     def programs(self, kind: int = 0) -> tuple[Program, ...]:
         """Programs of all members, or of the one system, for lanes of a kind (``kinds_of``)."""

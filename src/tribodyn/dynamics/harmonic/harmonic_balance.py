@@ -389,7 +389,7 @@ def _marched(prepared: Prepared, residual: Residual, response: Response, **facts
 def _resampled(grid: Compiled, trace: Trace, steps: int) -> Array:
     """Motion at the contacts (steps, r) over the last period of a march."""
     phase, at = grid.nodes.phase[:, 1:].reshape(-1), np.arange(steps) / steps
-    paths = trace.contacts.reshape(phase.size, -1).T
+    paths = np.split(trace.contacts, 2, axis=2)[0].reshape(phase.size, -1).T
     return np.stack([np.interp(at, phase, path, period=1.0) for path in paths], axis=1)
 
 

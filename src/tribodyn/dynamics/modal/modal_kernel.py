@@ -81,8 +81,10 @@ class Trace(NamedTuple):
 
     modes: Array  #: (rows, 2, m); empty to record nothing
     sums: Array  #: integral and double integral of the forces (rows, 2, s)
-    contacts: Array  #: motion at the middle and end of steps of the last cycle (steps, 2, r)
-    report: Array  #: reason of a failure, step, contact; changes of side, iterations
+    contacts: Array  #: motion and rate at middle and end of last steps (steps, 2, 2 r)
+    report: Array  #: reason of a failure, step, contact; changes of side, iterations; log entries
+    #: changes of side: step, fraction, contact, spring, side, motion and rate (entries, 5 + 2 r)
+    log: Array
 
 
 @nb.njit(**INNER)
@@ -320,6 +322,20 @@ def _crossing(contacts: Contacts, w: Buffers, spring: Index, tau: float) -> tupl
 
 
 @nb.njit(**INNER)
+def _change(
+    trace: Trace, tau: float, j: int, k: int, side: float, start: Array, w: Buffers
+) -> None:
+    """Give a spring another side, at a fraction of the step of the report."""
+    w.side[j, k] = side
+    entry = int(trace.report[5])
+    if entry < trace.log.shape[0]:
+        row = trace.log[entry]
+        row[0], row[1], row[2], row[3], row[4] = trace.report[1], tau, j, k, side
+        row[5:] = start
+    trace.report[5] += 1.0
+
+
+@nb.njit(**INNER)
 def _divide(
     modes: Modes, contacts: Contacts, table: Array, width: float, weights: Weights, w: Buffers,
     start: Array, scale: float, reach: float, trace: Trace, sums: Array,
@@ -369,7 +385,7 @@ def _divide(
                 last = j == worst[0] and k == worst[1]
                 if last or _clear(contacts, w, 2, j, k) <= 2.0 * _TOUCHING * reach:
                     away = 1.0 if w.deflection[2, j] > 0.0 else -1.0
-                    w.side[j, k] = 0.0 if w.side[j, k] != 0.0 else away
+                    _change(trace, at, j, k, 0.0 if w.side[j, k] != 0.0 else away, start, w)
                     trace.report[3] += 1.0
         if 1.0 - tau < 1e-13:
             return 0
@@ -424,6 +440,7 @@ def _build(digest: str) -> Any:
                 )
                 width = widths[kind[step]]
                 w.rows[:] = table[step]
+                trace.report[1] = cycle * steps + step
                 _begin(modes, contacts, w, start)
                 if switching and restart[step]:
                     for j in range(count):
@@ -432,7 +449,9 @@ def _build(digest: str) -> Any:
                         for k in range(springs):
                             gap = w.rows[0, (springs + 3) * count + j * springs + k]
                             if contacts.dead[j, k]:
-                                w.side[j, k] = 1.0 if d > gap else (-1.0 if d < -gap else 0.0)
+                                side = 1.0 if d > gap else (-1.0 if d < -gap else 0.0)
+                                if side != w.side[j, k]:
+                                    _change(trace, 0.0, j, k, side, start, w)
                     _begin(modes, contacts, w, start)
                 iterations = _settle(modes, contacts, weights, w, scale)
                 trace.report[4] += iterations
@@ -443,31 +462,22 @@ def _build(digest: str) -> Any:
                     crossing |= _clearance(contacts, w, 2, worst) < edge
                 else:
                     crossing = False
-                trace.contacts[step, 0] = w.motion[:r]
+                trace.contacts[step, 0] = w.motion[: 2 * r]
                 if crossing:
                     failure = _divide(
-                        modes,
-                        contacts,
-                        table[step],
-                        width,
-                        partial,
-                        w,
-                        start,
-                        scale,
-                        reach,
-                        trace,
-                        sums,
-                    )
+                        modes, contacts, table[step], width, partial, w, start, scale, reach,
+                        trace, sums,
+                    )  # fmt: skip
                 elif not failure:
                     _accept(modes, weights, w, width, sums)
                     start[:] = w.motion[2 * r :]
-                trace.contacts[step, 1] = start[:r]
+                trace.contacts[step, 1] = start
                 for o in range(r):
                     scale = max(scale, abs(start[o]))
                 if not scale < _LARGEST:
                     failure = GROWING
                 if failure:
-                    trace.report[0], trace.report[1] = failure, cycle * steps + step
+                    trace.report[0] = failure
                     return sums
                 if recorded:
                     row = cycle * steps + step + 1

@@ -13,8 +13,11 @@ from typing import Any
 
 import numpy as np
 
-from tribodyn.dynamics.equations.compiled import Compiled
-from tribodyn.dynamics.equations.nodes import Nodes, springs
+from tribodyn.dynamics._engine.statistics import Statistics
+from tribodyn.dynamics.equations.compiled import Compiled, compile_lanes, sample_system
+from tribodyn.dynamics.equations.motion import forces, has_gap, with_middles
+from tribodyn.dynamics.equations.nodes import Nodes, ramp_count, springs
+from tribodyn.dynamics.equations.system import System
 from tribodyn.dynamics.modal.closed_structure import ClosedStructure
 from tribodyn.dynamics.modal.contact_equations import close_contacts, with_dead_zone
 from tribodyn.dynamics.modal.modal_kernel import (
@@ -25,11 +28,13 @@ from tribodyn.dynamics.modal.modal_kernel import (
     Trace,
     march_modes,
 )
-from tribodyn.errors import ComputationError, InputError, Problem
+from tribodyn.errors import ComputationError, InputError, Problem, require_positive
 from tribodyn.types import Array, ComplexArray
 
 #: Coordinates up to which all multipliers are computed, and number of the leading ones beyond.
 _DENSE, _LEADING = 24, 4
+#: Coordinates above which the automatic choice integrates in modal coordinates.
+SMALL = 24
 
 
 class ModalMotion:
@@ -67,6 +72,9 @@ class ModalMotion:
         )
         self._rows, self._rates = self._table(compiled.nodes)
         self.inverse = np.linalg.inv(structure.matrix)
+        count, rows = structure.root.shape[0], structure.free_rows
+        root = np.linalg.inv(structure.root)
+        self._free_rows = np.hstack((rows[:, :count] @ root, rows[:, count:]))
 
     def _table(self, nodes: Nodes) -> tuple[Array, Array]:
         """Rows of the kernel (steps, 3, row), and which entries count per time (row,)."""
@@ -87,6 +95,7 @@ class ModalMotion:
         ]
         if system.frictions:
             parts += [nodes.friction_direction @ into_push, nodes.friction_coefficients]
+        self.shapes = [part.shape[2:] for part in parts]
         flat = [part.reshape(*nodes.phase.shape, -1) for part in parts]
         marks = [np.full(part.shape[2], i in (3, 6)) for i, part in enumerate(flat)]
         return np.concatenate(flat, axis=2), np.concatenate(marks)
@@ -100,48 +109,77 @@ class ModalMotion:
         free = np.concatenate((braked, c.free.T @ x, c.free.T @ rate))
         return np.concatenate((elastic, c.moving.T @ rate)), free
 
+    def gained(self, change: Array, sums: Array) -> tuple[Array, Array]:
+        """Integrals of states, and gains of free motions, by changes of state and sums of force."""
+        # The integral of a state follows from its equation of motion.
+        structure, c = self.structure, self.structure.coordinates
+        once = (change - sums @ structure.input.T) @ self.inverse.T
+        return once, sums @ (c.free.T @ structure.push).T - once @ self._free_rows.T
+
     def motion(
         self, state: Array, free: Array, time: Array, first: Array, sums: Array
     ) -> tuple[Array, Array]:
         """Positions and velocities (rows, n); ``first`` (m,) and ``free`` are those at time 0."""
         structure, c = self.structure, self.structure.coordinates
         count, blocked = structure.root.shape[0], c.braked.shape[1]
-        # The integral of a state follows from its equation of motion.
-        gain, twice = sums[:, 0] @ structure.input.T, sums[:, 1] @ structure.input.T
-        once = (state - first - gain) @ self.inverse.T
+        once, gained = self.gained(state - first, sums[:, 0])
+        twice = sums[:, 1] @ structure.input.T
         double = (once - np.outer(time, first) - twice) @ self.inverse.T
         turned = free[:blocked] + once[:, count:] @ c.braked
         place, speed = np.split(free[blocked:], 2)
-        push, rows = c.free.T @ structure.push, structure.free_rows.copy()
-        rows[:, :count] = rows[:, :count] @ np.linalg.inv(structure.root)
-        speeds = speed + sums[:, 0] @ push.T - once @ rows.T
-        places = place + np.outer(time, speed) + sums[:, 1] @ push.T - double @ rows.T
+        speeds = speed + gained
+        places = place + np.outer(time, speed) + sums[:, 1] @ (c.free.T @ structure.push).T
+        places = places - double @ self._free_rows.T
         x = state[:, :count] @ structure.places.T
         x = x + turned @ (c.moving @ c.braked).T + places @ c.free.T
         rate = state[:, count:] @ c.moving.T + speeds @ c.free.T
         return x @ c.inverse, rate @ c.inverse
 
-    def advance(
-        self, state: Array, frequency: float, cycles: int, extra: Array, recorded: bool = False
-    ) -> tuple[Array, Array, Trace]:
-        """States and sums of forces at the ends of all steps, or the last, from a state (m,)."""
-        structure, grid = self.structure, self.compiled.grid
-        rows = self._rows.copy()
+    def split(self, states: Array) -> ComplexArray:
+        """Modes (m, k) of states (m, k), one of each conjugate pair."""
+        return np.asarray(self._left @ states, dtype=complex)
+
+    def joined(self, modes: ComplexArray) -> Array:
+        """States (m, k) of modes."""
+        return np.asarray((self._right @ modes).real)
+
+    def rows(self, frequency: float, extra: Array) -> Array:
+        """Rows of the kernel (steps, 3, row) at a frequency, under an additional force (n,)."""
+        structure, rows = self.structure, self._rows.copy()
         rows[..., self._rates] *= frequency
         width = self.modes.input.shape[1]
         if extra.any():
             count, each = self.contacts.dead.shape
             at = (3 + 2 * each + 2 * structure.along.shape[1] + width) * count
             rows[..., at : at + width] += extra @ structure.coordinates.inverse.T @ structure.push
+        return rows
+
+    def advance(
+        self,
+        state: Array,
+        frequency: float,
+        cycles: int,
+        extra: Array,
+        recorded: bool = False,
+        log: int = 0,
+    ) -> tuple[Array, Array, Trace]:
+        """States and sums of forces at the ends of all steps, or the last, from a state (m,)."""
+        # log: most changes of side that the trace keeps
+        grid, rows, width = (
+            self.compiled.grid,
+            self.rows(frequency, extra),
+            self.modes.input.shape[1],
+        )
         widths, kind = np.unique(np.round(grid.width, 15), return_inverse=True)
-        z = self._left @ state
+        z = self.split(state)
         output = np.concatenate((self.modes.output, self.modes.output * self.modes.values))
         count = cycles * grid.steps + 1 if recorded else 0
         trace = Trace(
             np.empty((count, 2, z.size)),
             np.empty((count, 2, width)),
-            np.empty((grid.steps, 2, structure.along.shape[1])),
-            np.zeros(5),
+            np.empty((grid.steps, 2, len(output))),
+            np.zeros(6),
+            np.empty((log, 5 + len(output))),
         )
         parts = np.stack((z.real, z.imag))
         sums = march_modes(
@@ -207,15 +245,71 @@ class ModalMotion:
         raise ComputationError(Problem(f"{what}, at {at:.6g} s", "the modal engine", why, remedy))
 
 
-class ModalMarcher:
+class ModalEngine:
     """Integrate lanes of one system in modal coordinates, one after the other."""
+
+    def __init__(self, compiled: Compiled, extra_force: Array) -> None:
+        self.structure, _ = close_contacts(compiled, extra_force)
+        self.motion = ModalMotion(compiled, self.structure)
+
+    def step_number(self, frequency: float) -> float:
+        """``omega_max * dt`` of the widest step; its steps have no such limit."""
+        return self.structure.rate * float(self.motion.compiled.grid.width.max()) / frequency
+
+    def march(
+        self,
+        period: Array,
+        state: Array,
+        cycles: int,
+        extra_force: Array | None = None,
+        record: Array | None = None,
+        statistics: Statistics | None = None,
+    ) -> Array:
+        """Integrate lanes over ``cycles`` periods of the clock; returns their new states."""
+        size, new, needed = state.shape[1] // 2, np.empty_like(state), record is not None
+        for lane, start in enumerate(state):
+            extra = np.zeros(size) if extra_force is None else extra_force[lane]
+            frequency = 1.0 / float(period[lane])
+            forces = frequency, cycles, extra, needed or statistics is not None
+            states = self.motion.march(start[:size], start[size:], *forces)
+            new[lane] = states[-1]
+            if record is not None:
+                record[:, :, lane] = states
+            if statistics is not None:
+                self._gather(states, frequency, extra, statistics, lane)
+        return new
+
+    def _gather(
+        self, states: Array, frequency: float, extra: Array, statistics: Statistics, lane: int
+    ) -> None:
+        """Add the plain moments of a recorded motion to those of a lane."""
+        compiled, nodes = self.motion.compiled, self.motion.compiled.nodes
+        steps = compiled.grid.steps
+        cycles = len(states) // steps
+        parts = np.stack([states[c * steps : (c + 1) * steps + 1] for c in range(cycles)])
+        q, v = with_middles(compiled.grid.width / frequency, parts)
+        moved = forces(compiled.system, nodes, frequency, q, v, extra=extra)
+        outputs = np.concatenate((q, v), axis=-1) @ statistics.outputs.T
+        apart = (moved.deflection <= nodes.gap) & has_gap(nodes)
+        weight, share = nodes.weight / cycles, statistics.of_contacts[statistics.contacts :, 4]
+        signals = (moved.deflection, moved.contact), (moved.acceleration, outputs)
+        for rows, of_kind in zip((statistics.of_contacts, statistics.others), signals, strict=True):
+            values = np.concatenate(of_kind, axis=-1)
+            rows[:, 0, lane] += np.einsum("rs,crsj->j", weight, values)
+            rows[:, 1, lane] += np.einsum("rs,crsj->j", weight, values**2)
+            rows[:, 2, lane] = np.minimum(rows[:, 2, lane], values.min(axis=(0, 1, 2)))
+            rows[:, 3, lane] = np.maximum(rows[:, 3, lane], values.max(axis=(0, 1, 2)))
+        share[:, lane] += np.einsum("rs,crsj->j", weight, 1.0 * apart)
+
+
+class ModalMarcher:
+    """Integrate lanes at their frequencies, under their forces."""
 
     def __init__(self, compiled: Compiled, frequency: Array, extra_force: Array) -> None:
         self.frequency, self.extra_force = frequency, extra_force
-        structure, _ = close_contacts(compiled, extra_force)
-        number = structure.rate * float(compiled.grid.width.max() / frequency.min())
+        self._engine = ModalEngine(compiled, extra_force)
+        number = self._engine.step_number(float(frequency.min()))
         self.compiled = replace(compiled, step_number=number)
-        self._motion = ModalMotion(compiled, structure)
 
     def march(
         self, state: Array, cycles: int, *, record: Array | None = None, **options: Any
@@ -225,11 +319,31 @@ class ModalMarcher:
             why = "It integrates one motion at a time"
             remedy = 'Use method = "rk4" or "dormand-prince"'
             raise InputError('method = "modal" in an ensemble', "argument method", why, remedy)
-        size, new = self.compiled.system.size, np.empty_like(state)
-        for lane, start in enumerate(state):
-            forces = float(self.frequency[lane]), cycles, self.extra_force[lane]
-            states = self._motion.march(start[:size], start[size:], *forces, record is not None)
-            new[lane] = states[-1]
-            if record is not None:
-                record[:, :, lane] = states
-        return new
+        return self._engine.march(1.0 / self.frequency, state, cycles, self.extra_force, record)
+
+
+def compile_motion(
+    system: System, mesh_frequency: float, steps: int, *, any_step: bool = False
+) -> Compiled:
+    """Compile a system for many motions: in modal coordinates if it is large or has ramps."""
+    if not is_modal(system):
+        return compile_lanes(system, mesh_frequency, steps, any_step=any_step)
+    return compile_modal(system, mesh_frequency, steps)
+
+
+def compile_modal(system: System, mesh_frequency: float, steps: int) -> Compiled:
+    """Compile a system for the integration in modal coordinates."""
+    require_positive("mesh_frequency", mesh_frequency, "Hz")
+    return with_engine(sample_system(system, steps), float(mesh_frequency))
+
+
+def with_engine(compiled: Compiled, mesh_frequency: float) -> Compiled:
+    """Integrate a sampled system in modal coordinates."""
+    engine = ModalEngine(compiled, np.zeros((0, compiled.system.size)))
+    return replace(compiled, engine=engine, step_number=engine.step_number(mesh_frequency))
+
+
+def is_modal(system: System) -> bool:
+    """Whether motions are integrated in modal coordinates where nothing else is chosen."""
+    ramps = any(ramp_count(f"contacts[{j}]", each) for j, each in enumerate(system.contacts))
+    return ramps or (system.size > SMALL and bool(system.contacts))

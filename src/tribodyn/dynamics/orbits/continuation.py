@@ -12,10 +12,11 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike
 
+from tribodyn.dynamics.equations.compiled import Compiled
 from tribodyn.dynamics.equations.nodes import lowest_of_each_law
 from tribodyn.dynamics.equations.orbit_coordinates import static_start
 from tribodyn.dynamics.equations.system import System
-from tribodyn.dynamics.harmonic.harmonic_balance import TOLERANCE
+from tribodyn.dynamics.harmonic.harmonic_balance import TOLERANCE, harmonic_balance
 from tribodyn.dynamics.orbits.continuation_path import (
     BranchPoint,
     Family,
@@ -30,17 +31,19 @@ from tribodyn.dynamics.orbits.continuation_path import (
     tests_of_multipliers,
     with_values,
 )
-from tribodyn.dynamics.orbits.orbit_map import OrbitMap
+from tribodyn.dynamics.orbits.orbit_map import OrbitMap, newton
 from tribodyn.dynamics.orbits.search import find_orbit
 from tribodyn.dynamics.orbits.solution_branch import Branch, SpecialPoint
 from tribodyn.dynamics.time.response import Response, build_response, sample_extremes
 from tribodyn.dynamics.time.simulate import read_start
-from tribodyn.errors import ComputationError, InputError, require_positive, warn
+from tribodyn.errors import ComputationError, InputError, quiet, require_positive, warn
 from tribodyn.progress import SILENT, Progress
 from tribodyn.types import Array
 
 #: A start this close to an orbit, relative to the motion, is taken for that orbit.
 _NEAR = 0.1
+#: Periods after which Newton's method starts in modal coordinates.
+_SETTLED = 100
 #: First step away from a point where the period doubles, relative to the motion.
 _ASIDE = 1e-2
 #: Figures of the orbits that a branch stores.
@@ -57,7 +60,7 @@ _COLUMNS = (
 
 
 def continuation(
-    make_system: System | Callable[[float], System | tuple[System, float]],
+    make_system: System | Callable[[float], System | tuple[System | Compiled, float]],
     mesh_frequency: float | None = None,
     *,
     parameter: str = "mesh_frequency",
@@ -193,17 +196,33 @@ def _first(
                 return point
         except StalledError:
             pass
-    orbit = find_orbit(mapping, y, TOLERANCE)
-    if not orbit.error <= TOLERANCE:
+    y, error = _search(mapping, y)
+    if not error <= TOLERANCE:
         raise ComputationError(
             f"no orbit of {function.periods} mesh cycle(s) was found at {between[0]:g}: "
-            f"certified error {orbit.error:.2e}",
+            f"certified error {error:.2e}",
             why=f"The limit is {TOLERANCE:.0e}",
             remedy="Begin at another value, give a start, or try periods = 2, 3, 4",
         )
-    function.size = _motion(mapping, orbit.point)
-    x = np.append(orbit.point / function.size, 0.0)
+    function.size = _motion(mapping, y)
+    x = np.append(y / function.size, 0.0)
     return correct(function, x, hold(x.size), None, tolerance)
+
+
+def _search(mapping: OrbitMap, y: Array) -> tuple[Array, float]:
+    """Orbit that a start leads to, and its certified error."""
+    if mapping.compiled.engine is None:
+        orbit = find_orbit(mapping, y, TOLERANCE)
+        return orbit.point, orbit.error
+    if mapping.periods == 1 and mapping.balance is None:
+        with quiet():  # what is not found is reported here
+            motion = harmonic_balance(mapping.compiled.system, float(1.0 / mapping.period))
+        y = mapping.start(np.concatenate((motion.position[0], motion.velocity[0])))
+    else:
+        for _ in range(_SETTLED):
+            y = mapping(y)
+    orbits = newton(mapping, y[None], TOLERANCE)
+    return orbits.point[0], float(orbits.error[0])
 
 
 def _motion(mapping: OrbitMap, y: Array) -> float:

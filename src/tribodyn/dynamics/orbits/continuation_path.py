@@ -12,12 +12,14 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from itertools import pairwise
+from typing import Any
 
 import numpy as np
 
-from tribodyn.dynamics.equations.compiled import Compiled, compile_for
+from tribodyn.dynamics.equations.compiled import Compiled
 from tribodyn.dynamics.equations.orbit_coordinates import OrbitCoordinates
 from tribodyn.dynamics.equations.system import System
+from tribodyn.dynamics.modal.modal_march import compile_motion
 from tribodyn.dynamics.orbits.orbit_map import OrbitMap
 from tribodyn.errors import ComputationError, InputError
 from tribodyn.progress import Progress
@@ -43,6 +45,8 @@ _EASY, _HARD = 6, 9
 _WIDTH = 1e-10
 #: Largest distance of the critical multiplier from the unit circle at such a point.
 _CRITICAL = 1e-3
+#: Multipliers below this are those of motions that are gone after a period.
+_GONE = 1e-3
 #: Change of the scaled parameter along a branch that is mere rounding.
 _UPRIGHT = 1e-7
 
@@ -52,14 +56,14 @@ class Family:
 
     def __init__(
         self,
-        make: System | Callable[[float], System | tuple[System, float]],
+        make: System | Callable[[float], Any],
         mesh_frequency: float | None,
         steps: int,
         lowest: float,
     ) -> None:
         self._make, self._frequency, self._steps = make, mesh_frequency, steps
         # The slowest cycle has the longest steps.
-        self._compiled = compile_for(make, lowest, steps) if isinstance(make, System) else None
+        self._compiled = compile_motion(make, lowest, steps) if isinstance(make, System) else None
 
     def __call__(self, parameter: float) -> tuple[Compiled, float]:
         """Compile the system of one parameter; returns it with its mesh frequency."""
@@ -68,6 +72,8 @@ class Family:
             return self._compiled, parameter
         result = self._make(parameter)
         system, frequency = result if isinstance(result, tuple) else (result, self._frequency)
+        if isinstance(system, Compiled) and frequency is not None:
+            return system, float(frequency)
         if not isinstance(system, System) or frequency is None:
             raise InputError(
                 f"the function of the parameter returned {type(result).__name__}"
@@ -77,7 +83,7 @@ class Family:
                 "mesh frequency)",
                 remedy="Return one of the two",
             )
-        return compile_for(system, float(frequency), self._steps), float(frequency)
+        return compile_motion(system, float(frequency), self._steps), float(frequency)
 
 
 @dataclass(frozen=True)
@@ -375,9 +381,10 @@ def _period_doubling(point: BranchPoint) -> float:
 
 
 def _neimark_sacker(point: BranchPoint) -> float:
-    """Product of ``mu_i mu_j - 1`` over all pairs."""
-    i, j = np.triu_indices(point.multipliers.size, 1)
-    return float(np.prod(point.multipliers[i] * point.multipliers[j] - 1.0).real)
+    """Product of ``1 - mu_i mu_j`` over all pairs; that of a motion that is gone is one."""
+    left = point.multipliers[np.abs(point.multipliers) > _GONE]
+    i, j = np.triu_indices(left.size, 1)
+    return float(np.prod(1.0 - left[i] * left[j]).real)
 
 
 def _branch_point(point: BranchPoint) -> float:

@@ -8,7 +8,7 @@ integrated together as lanes.
 from __future__ import annotations
 
 from copy import copy
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -169,6 +169,8 @@ class OrbitMap:
         self, y: Array, step: Array | float, *, central: bool = False
     ) -> tuple[Array, Array]:
         """Images and matrices of the map at points (..., k), by differences of a ``step`` (...)."""
+        if self.compiled.engine is not None:
+            return self._tangents(y)
         eye, step = np.eye(y.shape[-1]), np.asarray(step)[..., None, None]
         moves = np.vstack((0.0 * eye[:1], eye, -eye if central else eye[:0]))
         images = self(y[..., None, :] + step * moves)
@@ -180,9 +182,48 @@ class OrbitMap:
             slope = (disturbed - images[..., :1, :]) / step
         return images[..., 0, :], np.swapaxes(slope, -1, -2)
 
+    def _tangents(self, y: Array) -> tuple[Array, Array]:
+        """Images and matrices at points (..., k), by the tangent of the engine."""
+        points = y.reshape(-1, y.shape[-1])
+        every = np.repeat(self._lane_periods(1), len(points)) if np.ndim(self.period) == 0 else (
+            self._lane_periods(len(points)))  # fmt: skip
+        parts = [
+            self._tangent(point, float(span)) for point, span in zip(points, every, strict=True)
+        ]
+        images, matrices = (np.array(part) for part in zip(*parts, strict=True))
+        return images.reshape(y.shape), matrices.reshape(*y.shape, y.shape[-1])
+
+    def _tangent(self, y: Array, period: float) -> tuple[Array, Array]:
+        from tribodyn.dynamics.orbits.modal_tangent import ModalTangent
+
+        motion, c = self.compiled.engine.motion, self.coordinates
+        states, extra = self.split(y)
+        tangent = ModalTangent(motion, 1.0 / period, extra[0])
+        w = motion.state(*np.split(states[0], 2))[0]
+        matrix: Any = np.eye(w.size)
+        gains: Array = np.zeros((c.free.shape[1], w.size))
+        for _ in range(self.periods):
+            part = tangent.at(w)
+            w, change = part.state, part.matrix - np.eye(w.size)
+            gains = np.asarray(gains + motion.gained(change.T, part.sums[0].T)[1].T @ matrix)
+            matrix = np.asarray(part.matrix @ matrix)
+        self.cycles += self.periods
+        scale = engine_scaling(self.compiled, c)
+        matrix, gains = np.linalg.solve(scale, matrix @ scale), gains @ scale
+        if self.balance is None:
+            return np.asarray(np.linalg.solve(scale, w)), matrix
+        # The torque acts by the differences of two motions.
+        step = 1e-6 * float(np.linalg.norm(y)) * np.eye(y.size)[-1]
+        plus, minus = self(np.stack((y + step, y - step)))
+        column = (plus - minus) / (2.0 * step[-1])
+        rows = np.vstack((matrix, -self.balance.direction @ gains))
+        return 0.5 * (plus + minus), np.column_stack((rows, column))
+
     @property
     def affine(self) -> bool:
         """Whether the map is affine: no dead zone, no nonlinear friction."""
+        if self.compiled.engine is not None:
+            return not self.compiled.engine.motion.contacts.dead.any()
         code = self.compiled.program.code
         if self.compiled.nodes.friction_coefficients.shape[-1] > 1:
             return False
@@ -205,6 +246,17 @@ class OrbitMap:
         left = self.compiled.nodes.phase[:, 0]
         phase = np.append(np.add.outer(np.arange(self.periods), left), float(self.periods))
         return take_drift_out(self.coordinates, phase[:, None] * self.period, states)
+
+
+def engine_scaling(compiled: Compiled, coordinates: OrbitCoordinates) -> Array:
+    """Matrix (m, m) from reduced vectors to states of the closed structure of an engine."""
+    structure = compiled.engine.structure
+    places = structure.root @ structure.coordinates.elastic.T @ coordinates.elastic
+    speeds = structure.coordinates.moving.T @ coordinates.moving
+    count = len(places)
+    matrix = np.zeros((count + len(speeds), count + len(speeds)))
+    matrix[:count, :count], matrix[count:, count:] = places / coordinates.rate, speeds
+    return matrix
 
 
 def take_drift_out(c: OrbitCoordinates, time: Array, states: Array) -> Array:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 from tribodyn.record import Parts, Record, fact, quantity, record
 from tribodyn.types import Array, ComplexArray, Mask
@@ -164,3 +164,9 @@ class Branch(Record):
         variables["special_parameter"] = (special[0], [point.parameter for point in special[1]])
         coordinates["special_kind"] = (special[0], [point.kind for point in special[1]])
         return parts
+
+
+def of_contact(branch: Branch, contact: int) -> Branch:
+    """The branch with the figures of one contact alone."""
+    names = ("peak_force", "contact_loss", "clearance")
+    return replace(branch, **{name: getattr(branch, name)[:, [contact]] for name in names})

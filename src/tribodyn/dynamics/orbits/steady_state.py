@@ -18,7 +18,6 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from tribodyn.checks import require_number, require_whole
-from tribodyn.dynamics.equations.compiled import compile_for
 from tribodyn.dynamics.equations.nodes import halved_nodes
 from tribodyn.dynamics.equations.orbit_coordinates import static_start
 from tribodyn.dynamics.equations.program import build_program
@@ -28,6 +27,7 @@ from tribodyn.dynamics.harmonic.harmonic_balance import (
     TOLERANCE,
     harmonic_balance,
 )
+from tribodyn.dynamics.modal.modal_march import compile_motion
 from tribodyn.dynamics.orbits.orbit_map import OrbitMap, newton_step
 from tribodyn.dynamics.orbits.periods import find_any_orbit, shortest_period
 from tribodyn.dynamics.orbits.search import OrbitPoint, find_orbit, finish_orbit, motion_size
@@ -114,7 +114,7 @@ def steady_state(
         return harmonic_balance(
             system, mesh_frequency, **options, stability=True, progress=progress
         )
-    compiled = compile_for(system, mesh_frequency, steps)
+    compiled = compile_motion(system, mesh_frequency, steps)
     mapping = OrbitMap(compiled, mesh_frequency, count or 1)
     state = static_start(compiled) if start is None else read_start(system, start)
     y = mapping.start(state)

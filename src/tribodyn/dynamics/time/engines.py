@@ -21,7 +21,7 @@ from tribodyn.dynamics._engine.statistics import Statistics
 from tribodyn.dynamics.equations.compiled import Compiled, compile_lanes, sample_system
 from tribodyn.dynamics.equations.lane_parameters import LaneParameters
 from tribodyn.dynamics.equations.system import System
-from tribodyn.dynamics.modal.modal_march import ModalMarcher
+from tribodyn.dynamics.modal.modal_march import ModalMarcher, is_modal
 from tribodyn.dynamics.time.newmark import newmark_law, newmark_method
 from tribodyn.errors import InputError, require_one_of
 from tribodyn.interrupt import in_threads
@@ -30,8 +30,6 @@ from tribodyn.types import Array
 
 #: Methods of time integration.
 Method = Literal["rk4", "dormand-prince", "newmark", "modal"]
-#: Coordinates above which the automatic choice integrates in modal coordinates.
-SMALL = 24
 
 
 class Setting(NamedTuple):
@@ -180,8 +178,8 @@ _BEGIN: Mapping[str, tuple[Callable[..., Marcher], tuple[str, ...]]] = {
 
 
 def automatic_method(system: System) -> Method:
-    """Method for a system: large structures are integrated in modal coordinates."""
-    return "modal" if system.size > SMALL and system.contacts else "rk4"
+    """Method for a system: large structures and ramps are integrated in modal coordinates."""
+    return "modal" if is_modal(system) else "rk4"
 
 
 def engine_name(method: str) -> str:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import replace
 from itertools import groupby
 from typing import TYPE_CHECKING, Any
 
@@ -12,16 +13,21 @@ from tribodyn.aliases import with_old_names
 from tribodyn.checkpoints import Checkpoints
 from tribodyn.errors import InputError, collected
 from tribodyn.progress import SILENT, Progress
-from tribodyn.study.case.provenance import spec_of
-from tribodyn.study.case.to_models import locate_errors
-from tribodyn.study.first_use import compile_in_parallel
-from tribodyn.study.studies.case_grid import contact_without_speed, identity, study_steps, varied
-from tribodyn.study.studies.needs import require
+from tribodyn.study.machine.case import MachineCase
+from tribodyn.study.studies.case_grid import (
+    Moving,
+    contact_without_speed,
+    identity,
+    many_motions,
+    moving_members,
+    study_steps,
+    varied,
+)
+from tribodyn.study.studies.needs import PARTS, kind_of, mesh_in_motion
 from tribodyn.study.studies.study_axes import Axis, ends_of
 from tribodyn.types import Array
 
 if TYPE_CHECKING:
-    from tribodyn.dynamics import System
     from tribodyn.nonlinear.bifurcation import Bifurcation
     from tribodyn.study.case.case import Case
 
@@ -33,11 +39,12 @@ _MAX_STEP_RATIO = 2
 
 @with_old_names
 def bifurcation(
-    case: Case,
+    case: Case | MachineCase,
     over: str = "operation.speed",
     between: tuple[Any, Any] | None = None,
     points: int = 300,
     *,
+    mesh: str | None = None,
     steps: int | None = None,
     by: str = "",
     progress: Progress = SILENT,
@@ -48,7 +55,7 @@ def bifurcation(
 
     Parameters
     ----------
-    case : Case
+    case : Case or MachineCase
         From :func:`tribodyn.load_case`.
     over : str
         Dotted key of the value that varies.
@@ -56,6 +63,9 @@ def bifurcation(
         Its two ends: floats in SI, or text with a unit.
     points : int
         Values, evenly spaced, the ends included.
+    mesh : str, optional
+        Mesh of a machine or a stage that is followed, where there are several. Its cycles are then
+        the periods of the clock, after which all meshes come back.
     steps : int, optional
         Steps per mesh cycle; by default those of the case, else a quarter of those of a single run
         and at least 512. Every motion is judged by a repetition with half the step.
@@ -90,15 +100,20 @@ def bifurcation(
     """
     from tribodyn.analysis import bifurcation as compute
 
-    require("bifurcation", case)
+    name = mesh_in_motion("bifurcation", case, mesh)
     values = _values(case, over, between, points, by)
-    study = identity("bifurcation", case, [over, values.tolist()], steps=steps, **options)
+    named = {} if mesh is None else {"mesh": name}
+    study = identity("bifurcation", case, [over, values.tolist()], steps=steps, **named, **options)
     checkpoints = (Checkpoints() if checkpoints is None else checkpoints).begin(study)
-    with compile_in_parallel(case, "bifurcation"):
-        systems, frequency, counts = _systems(case, over, values, steps, progress, checkpoints)
-        return compute(
-            systems,
-            frequency,
+    with many_motions(case):
+        members = _members(case, name, over, values, progress, checkpoints)
+        counts = [steps or each.steps for each in members]
+        if members[0].system is members[-1].system and max(counts) <= _MAX_STEP_RATIO * min(counts):
+            counts = [max(counts)] * len(counts)
+        options.setdefault("signal", members[0].contact)
+        diagram: Bifurcation = compute(
+            [each.system for each in members],
+            [each.frequency for each in members],
             parameter=values,
             parameter_name=over,
             parameter_unit=_unit(case, over),
@@ -107,37 +122,39 @@ def bifurcation(
             checkpoints=checkpoints,
             **options,
         )
+    of_mesh = kind_of(case) in PARTS and options["signal"] == members[0].contact
+    return replace(diagram, signal=f"mesh {name}") if of_mesh else diagram
 
 
-def _systems(
-    case: Case,
+def _members(
+    case: Case | MachineCase,
+    mesh: str,
     over: str,
     values: Any,
-    steps: int | None,
     progress: Progress,
     checkpoints: Checkpoints,
-) -> tuple[list[System], list[float], list[int]]:
-    """Structure, mesh frequency and steps of every value; one shared structure if none differs."""
-    same = over == "operation.speed" and contact_without_speed(case)
+) -> list[Moving]:
+    """Structure of every value; one shared structure if none differs."""
+    if not case.lumped:
+        return moving_members(case, over, values.tolist(), mesh, progress)
     changes = [{over: float(value)} for value in values]
-    with locate_errors(case), collected():
+    same = over == "operation.speed" and contact_without_speed(case)
+    with collected():
         members = varied(case, changes[:1] if same else changes, progress, checkpoints)
-        systems = [member.system for member in members]
-        frequency = [member.mesh.mesh_frequency for member in members]
-        cases = [member.case for member in members]
-        if same:
-            systems *= len(values)
-            frequency = [frequency[0] * float(value) / float(values[0]) for value in values]
-            cases = [case.replace(change) for change in changes]
-        counts = [
-            steps or study_steps(*member) for member in zip(cases, systems, frequency, strict=True)
-        ]
-    if same and max(counts) <= _MAX_STEP_RATIO * min(counts):
-        counts = [max(counts)] * len(counts)
-    return systems, frequency, counts
+    systems = [member.system for member in members]
+    frequency = [member.mesh.mesh_frequency for member in members]
+    cases = [member.case for member in members]
+    if same:
+        systems *= len(values)
+        frequency = [frequency[0] * float(value) / float(values[0]) for value in values]
+        cases = [case.replace(change) for change in changes]
+    parts = zip(cases, systems, frequency, strict=True)
+    return [Moving(system, beat, study_steps(each, system, beat)) for each, system, beat in parts]
 
 
-def _values(case: Case, over: str, between: tuple[Any, Any] | None, points: int, by: str) -> Any:
+def _values(
+    case: Case | MachineCase, over: str, between: tuple[Any, Any] | None, points: int, by: str
+) -> Any:
     """Return the values of the key in SI; both ends are checked like the key of the case."""
     if between is None or len(between) != 2 or int(points) != points or points < 2:
         why = "A diagram goes from one value to another in at least two points"
@@ -147,8 +164,8 @@ def _values(case: Case, over: str, between: tuple[Any, Any] | None, points: int,
     return np.linspace(first, last, int(points))
 
 
-def _unit(case: Case, over: str) -> str:
-    spec = spec_of(case, over)
+def _unit(case: Case | MachineCase, over: str) -> str:
+    spec = case.option_of(over)
     return str(spec.unit) if spec is not None and spec.unit else "-"
 
 
@@ -162,8 +179,8 @@ _DIFFERENT = 0.05
 class Findings:
     """Findings of a bifurcation diagram: sentences, figures and a table."""
 
-    def __init__(self, case: Case, diagram: Bifurcation) -> None:
-        spec = spec_of(case, diagram.parameter_name)
+    def __init__(self, case: Case | MachineCase, diagram: Bifurcation) -> None:
+        spec = case.option_of(diagram.parameter_name)
         units = (spec.unit, spec.display_unit) if spec else ("", "")
         values = tuple(float(value) for value in diagram.parameter)
         self.diagram, self.axis = diagram, Axis(diagram.parameter_name, values, *units)

@@ -7,11 +7,12 @@ import json
 import os
 import threading
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from contextlib import suppress
+from contextlib import contextmanager, suppress
+from functools import partial
 from typing import TYPE_CHECKING, Any, NamedTuple, TypeVar
 
 from tribodyn.checkpoints import Checkpoints
-from tribodyn.errors import ComputationError, InputError, collected
+from tribodyn.errors import Argument, ComputationError, InputError, collected
 from tribodyn.interrupt import (
     STOPPED,
     in_threads,
@@ -19,12 +20,16 @@ from tribodyn.interrupt import (
     single_blas_thread,
     stop_flag,
 )
+from tribodyn.machine import system as system_of
+from tribodyn.machine.static.clearance import clearance_supports
 from tribodyn.mesh import MeshTable
 from tribodyn.progress import SILENT, Progress, StageProgress
 from tribodyn.study.case.to_models import locate_errors
+from tribodyn.study.first_use import compile_in_parallel
 from tribodyn.study.machine.case import MachineCase
 from tribodyn.study.machine.result import LoadResult
-from tribodyn.study.machine.run import MeshWarning, run_load
+from tribodyn.study.machine.result import steps_of as steps_of_machine
+from tribodyn.study.machine.run import MeshWarning, balanced_machine, run_load, structure_of
 from tribodyn.study.pipeline.assembly import whole_system
 from tribodyn.study.pipeline.motion import steps_of
 from tribodyn.study.pipeline.tooth_contact import mesh_of
@@ -33,7 +38,6 @@ from tribodyn.study.studies.sweep_result import SweepPoint
 if TYPE_CHECKING:
     from tribodyn.dynamics import Response, System
     from tribodyn.study.case.case import Case
-    from tribodyn.study.machine.case import MachineCase
 
 Value = TypeVar("Value")
 
@@ -177,12 +181,73 @@ def points_of_parts(
 _COARSER, _FEWEST = 4, 512
 
 
-def build_system(case: Case, *, progress: Progress = SILENT) -> tuple[System, float]:
+class Moving(NamedTuple):
+    """Structure of a case that moves, for studies of many motions."""
+
+    system: System
+    frequency: float  #: mesh cycles in a second, of a machine periods of its clock [Hz]
+    steps: int  #: per cycle of the fastest mesh
+    contact: int = 0  #: contact of the mesh that is followed
+
+
+def moving(case: Case | MachineCase, mesh: str | None = None) -> Moving:
+    """Structure of a case under its load; ``mesh`` is that of a machine that is followed."""
+    if case.lumped:
+        member = built(case)
+        frequency = member.mesh.mesh_frequency
+        return Moving(member.system, frequency, study_steps(case, member.system, frequency))
+    balanced = balanced_machine(case, case.operating_point)
+    structure = structure_of(case, balanced.static.linearized())
+    if supports := clearance_supports(structure):
+        name = next(iter(supports))
+        why = "Its force follows the motion, and its springs are not those of a contact"
+        remedy = f"Remove bearings.{name}.clearance, or use run"
+        raise InputError(f"bearing {name} has a clearance", Argument("case"), why, remedy)
+    machine, system = structure.machine, system_of(structure)
+    if system.phases:
+        why = "A motion that repeats needs a clock that all meshes follow"
+        remedy = "Use run, or numbers of teeth with common factors"
+        raise InputError("the meshes have no common period", Argument("case"), why, remedy)
+    counts = {name: max(len(each.contacts), 1) for name, each in machine.meshes.items()}
+    names = list(counts)
+    first = sum(counts[name] for name in names[: names.index(mesh)]) if mesh in names else 0
+    return Moving(system, machine.clock.frequency, steps_of_machine(structure), first)
+
+
+def moving_members(
+    case: MachineCase, over: str, values: Sequence[float], mesh: str, progress: Progress
+) -> list[Moving]:
+    """Structure of a machine for each value of a key, in their order."""
+    members: dict[int, Moving] = {}
+    progress.start("Machines", len(values))
+    at = partial(moving_at, case, over, mesh)
+    over_cases(at, values, members, progress)
+    progress.finish()
+    return [members[index] for index in range(len(values))]
+
+
+def moving_at(case: Case | MachineCase, over: str, mesh: str, value: float) -> Moving:
+    """Structure of a case at a value of a key."""
+    return moving(case.replace({over: float(value)}), mesh)
+
+
+@contextmanager
+def many_motions(case: Case | MachineCase) -> Iterator[None]:
+    """Context of a study of many motions: errors with their place in the case, no warnings."""
+    if not case.lumped:
+        with collected(), single_blas_thread():
+            yield
+    else:
+        with locate_errors(case), collected(), compile_in_parallel(case, "bifurcation"):
+            yield
+
+
+def build_system(case: Case | MachineCase, *, progress: Progress = SILENT) -> tuple[System, float]:
     """Build the structure of a case with its tooth contact, ready for every nonlinear method.
 
     Parameters
     ----------
-    case : Case
+    case : Case or MachineCase
         From :func:`tribodyn.load_case`.
     progress : Progress
         Receives the progress of the tooth contact; silent by default.
@@ -190,7 +255,8 @@ def build_system(case: Case, *, progress: Progress = SILENT) -> tuple[System, fl
     Returns
     -------
     tuple of System and float
-        The structure under the load of the case, and its mesh frequency [Hz].
+        The structure under the load of the case, and its mesh frequency [Hz]; of a machine the
+        periods of its clock in a second.
 
     Raises
     ------
@@ -204,11 +270,11 @@ def build_system(case: Case, *, progress: Progress = SILENT) -> tuple[System, fl
     >>> system.size, round(mesh_frequency, 1)
     (6, 240.0)
     """
-    with locate_errors(case), collected():
+    with many_motions(case):
         progress.start("Tooth contact")
-        member = built(case)
+        built_case = moving(case)
         progress.finish()
-    return member.system, member.mesh.mesh_frequency
+    return built_case.system, built_case.frequency
 
 
 def study_steps(case: Case, system: System, mesh_frequency: float) -> int:

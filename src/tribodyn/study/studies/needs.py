@@ -6,6 +6,7 @@ from :data:`STUDIES`.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from tribodyn.errors import Argument, InputError, did_you_mean
@@ -36,12 +37,13 @@ _ANY = Need("a case")
 _TEETH = Need("a pair of gears with computed teeth", _TOOTHED, "", True)
 _PLANE = Need("a pair of cylindrical gears with computed teeth", _CYLINDRICAL, "", True)
 _PAIR = "the case of one pair of gears"
-_IN_TIME = Need(_PAIR, PAIRS, "Its motions are integrated in time, many at once")
+_MOTION = Need("a structure that moves", of_mesh=True)
 
 #: What the studies need, by the names of their commands.
 STUDIES: dict[str, Need] = {
     **dict.fromkeys(("run", "sweep", "ensemble", "sobol", "study", "modes", "run-up"), _ANY),
-    **dict.fromkeys(("bifurcation", "continuation", "basins", "lyapunov"), _IN_TIME),
+    **dict.fromkeys(("bifurcation", "continuation", "basins"), _MOTION),
+    "lyapunov": _ANY,
     **dict.fromkeys(("harris", "losses", "film"), _TEETH),
     "relief": _PLANE._replace(why="Flanks of hypoid gears are relieved by their cutter"),
     "experiment": Need(_PAIR, _CYLINDRICAL, "Its claims are about spur gears on their supports"),
@@ -112,19 +114,11 @@ def mesh_pair(study: str, case: Case | MachineCase, mesh: str | None = None) -> 
     require(study, case)
     parts: Any = case
     names = mesh_names(case)
-    known = ", ".join(names)
     if not names:
         why, remedy = "The stiffness of all meshes is given", "Remove the stiffness of a mesh"
         raise InputError("no mesh has computed teeth", Argument("case"), why, remedy)
-    if mesh is None and len(names) > 1:
-        remedy = f'Name it: mesh = "{names[0]}", of a command --mesh {names[0]}'
-        why = f"Meshes with computed teeth: {known}"
-        raise InputError(f"{study} is about one mesh", Argument("mesh"), why, remedy)
-    if mesh not in (None, *names, *getattr(parts, "meshes_with_teeth", ())):
-        remedy = did_you_mean(str(mesh), names, "Name one of these")
-        what = f'there is no mesh "{mesh}" with computed teeth'
-        raise InputError(what, Argument("mesh"), f"Meshes with computed teeth: {known}", remedy)
-    name = mesh or names[0]
+    every = (*names, *getattr(parts, "meshes_with_teeth", ()))
+    name = _named_mesh(study, mesh, names, every, " with computed teeth")
     if kind_of(case) in PAIRS:
         return MeshPair(parts, ("gears.pinion", "gears.wheel"))
     if (stage := parts.lone_stage) is not None:
@@ -137,6 +131,34 @@ def mesh_pair(study: str, case: Case | MachineCase, mesh: str | None = None) -> 
         what, remedy = f"mesh {name} is a {kind}", "Name a mesh of another kind"
         raise InputError(what, Argument("mesh"), f"It needs {need.what}. {need.why}", remedy)
     return MeshPair(_deflected(parts, name, pair), (f"gears.{gears[0]}", f"gears.{gears[1]}"))
+
+
+def _named_mesh(
+    study: str, mesh: str | None, names: Sequence[str], every: Sequence[str], kind: str = ""
+) -> str:
+    """Mesh that a study is about: the only one of ``names``, or one of ``every`` by its name."""
+    known = f"Meshes{kind}: {', '.join(names)}"
+    if mesh is None and len(names) > 1:
+        remedy = f'Name it: mesh = "{names[0]}", of a command --mesh {names[0]}'
+        raise InputError(f"{study} is about one mesh", Argument("mesh"), known, remedy)
+    if mesh not in (None, *every):
+        remedy = did_you_mean(str(mesh), names, "Name one of these")
+        raise InputError(f'there is no mesh "{mesh}"{kind}', Argument("mesh"), known, remedy)
+    return mesh or names[0]
+
+
+def mesh_in_motion(study: str, case: Case | MachineCase, mesh: str | None = None) -> str:
+    """Mesh of a case that a study of its motions is about, by its name in the machine."""
+    require(study, case)
+    parts: Any = case
+    if kind_of(case) in PAIRS:
+        return _named_mesh(study, mesh, (PAIR_MESH,), (PAIR_MESH,))
+    machine = parts.machine()
+    equal = {} if parts.lone_stage is None else machine.planets[parts.lone_stage].mesh_names(
+        parts.lone_stage)  # fmt: skip
+    names = tuple(equal) or tuple(machine.meshes)
+    name = _named_mesh(study, mesh, names, (*names, *machine.meshes))
+    return str(equal.get(name, (name,))[0])
 
 
 def _deflected(case: Any, mesh: str, pair: Case) -> Case:

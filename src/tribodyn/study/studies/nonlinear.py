@@ -3,21 +3,29 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from functools import partial
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from tribodyn.errors import InputError, collected
+from tribodyn.dynamics.orbits.solution_branch import of_contact
+from tribodyn.dynamics.orbits.system_family import family_of
+from tribodyn.errors import InputError
 from tribodyn.progress import SILENT, Progress
-from tribodyn.study.case.to_models import locate_errors
-from tribodyn.study.first_use import compile_in_parallel
-from tribodyn.study.studies.case_grid import build_system, built, contact_without_speed, study_steps
-from tribodyn.study.studies.needs import require
+from tribodyn.study.machine.case import MachineCase
+from tribodyn.study.studies.case_grid import (
+    Moving,
+    contact_without_speed,
+    many_motions,
+    moving,
+    moving_at,
+)
+from tribodyn.study.studies.needs import mesh_in_motion, require
 from tribodyn.study.studies.study_axes import ends_of
 
 if TYPE_CHECKING:
     from tribodyn.analysis import Basins, LyapunovExponents
-    from tribodyn.dynamics import Branch, System
+    from tribodyn.dynamics import Branch
     from tribodyn.study.case.case import Case
 
 #: Half width of the plane of initial states, relative to the static deflection of the mesh.
@@ -25,7 +33,7 @@ _WIDE = 5.0
 
 
 def lyapunov_exponents(
-    case: Case,
+    case: Case | MachineCase,
     *,
     cycles: int = 1000,
     transient: int = 300,
@@ -37,7 +45,7 @@ def lyapunov_exponents(
 
     Parameters
     ----------
-    case : Case
+    case : Case or MachineCase
         From :func:`tribodyn.load_case`. The motion starts at its static equilibrium.
     cycles : int
         Mesh cycles over which to average.
@@ -74,25 +82,28 @@ def lyapunov_exponents(
     from tribodyn.analysis import lyapunov_exponents as compute
 
     require("lyapunov", case)
-    system, frequency = build_system(case, progress=progress)
-    with locate_errors(case), compile_in_parallel(case, "bifurcation"):
+    with many_motions(case):
+        progress.start("Tooth contact")
+        structure = moving(case)
+        progress.finish()
         return compute(
-            system,
-            frequency,
+            structure.system,
+            structure.frequency,
             cycles=cycles,
             transient=transient,
-            steps=steps or study_steps(case, system, frequency),
+            steps=steps or structure.steps,
             verdict=verdict,
             progress=progress,
         )
 
 
 def basins(
-    case: Case,
+    case: Case | MachineCase,
     transmission_error: tuple[Any, Any] | None = None,
     rate: tuple[Any, Any] | None = None,
     *,
     points: int | Sequence[int] = 41,
+    mesh: str | None = None,
     cycles: int = 400,
     steps: int | None = None,
     verdict: bool = True,
@@ -103,7 +114,7 @@ def basins(
 
     Parameters
     ----------
-    case : Case
+    case : Case or MachineCase
         From :func:`tribodyn.load_case`.
     transmission_error : tuple, optional
         Range of the dynamic transmission error at the start, counted from where the driving flank
@@ -114,6 +125,8 @@ def basins(
         vibration as large as the other range reaches.
     points : int or two int
         Values of each.
+    mesh : str, optional
+        Mesh of a machine or a stage whose transmission error it is, where there are several.
     cycles : int
         Largest number of mesh cycles for a start to approach its steady motion.
     steps : int, optional
@@ -139,7 +152,7 @@ def basins(
     from tribodyn.analysis import basins as compute
     from tribodyn.nonlinear.start_plane import MESH_PLANE
 
-    require("basins", case)
+    name = mesh_in_motion("basins", case, mesh)
     counts = (points, points) if isinstance(points, int) else tuple(points)
     ends = [
         None if ends_of_range is None else _read_ends(name, ends_of_range, unit)
@@ -148,19 +161,22 @@ def basins(
             ("rate", rate, "m/s"),
         )
     ]
-    system, frequency = build_system(case, progress=progress)
-    with locate_errors(case), compile_in_parallel(case, "bifurcation"):
-        count = steps or study_steps(case, system, frequency)
-        default_ends = _plane_about_equilibrium(system, frequency, count)
+    with many_motions(case):
+        progress.start("Tooth contact")
+        structure = moving(case, name)
+        progress.finish()
+        structure = structure._replace(steps=steps or structure.steps)
+        default_ends = _plane_about_equilibrium(structure)
         first, second = (chosen or other for chosen, other in zip(ends, default_ends, strict=True))
         return compute(
-            system,
-            frequency,
+            structure.system,
+            structure.frequency,
             between=(first, second),
             coordinates=MESH_PLANE,
             points=counts,  # type: ignore[arg-type]
             cycles=cycles,
-            steps=count,
+            steps=structure.steps,
+            signal=structure.contact,
             verdict=verdict,
             keep_partial=keep_partial,
             progress=progress,
@@ -182,17 +198,23 @@ def _read_ends(name: str, ends: Sequence[Any], unit: str) -> tuple[float, float]
 
 
 def _plane_about_equilibrium(
-    system: System, mesh_frequency: float, steps: int
+    structure: Moving,
 ) -> tuple[tuple[float, float], tuple[float, float]]:
     """Ranges of transmission error and rate about the static equilibrium."""
-    from tribodyn.dynamics.equations.compiled import compile_for
     from tribodyn.dynamics.equations.orbit_coordinates import static_start
+    from tribodyn.dynamics.modal.modal_march import compile_motion
     from tribodyn.nonlinear.start_plane import MESH_PLANE, start_plane
 
-    compiled = compile_for(system, mesh_frequency, steps)
-    equilibrium = start_plane(compiled, mesh_frequency, MESH_PLANE).section(static_start(compiled))
-    nodes, along = compiled.nodes, compiled.nodes.direction[0, 0, 0]
-    stiffness = float(np.einsum("rs,rsc->", nodes.weight, nodes.stiffness))
+    system, frequency, steps, contact = structure
+    compiled = compile_motion(system, frequency, steps)
+    plane = start_plane(compiled, frequency, MESH_PLANE, contact)
+    equilibrium = plane.section(static_start(compiled))
+    nodes, along = compiled.nodes, compiled.nodes.direction[0, 0, contact]
+    # The teeth of a pair are one contact or several; those of a mesh of a machine are one.
+    every = (
+        nodes.stiffness.sum(axis=-1) if compiled.engine is None else nodes.stiffness[..., contact]
+    )
+    stiffness = float(np.einsum("rs,rs->", nodes.weight, every))
     mass = 1.0 / float(along @ np.linalg.solve(np.asarray(system.mass), along))
     width = _WIDE * abs(float(equilibrium[0]))
     swing = width * float(np.sqrt(stiffness / mass))
@@ -200,10 +222,11 @@ def _plane_about_equilibrium(
 
 
 def continuation(
-    case: Case,
+    case: Case | MachineCase,
     over: str = "operation.speed",
     between: tuple[Any, Any] | None = None,
     *,
+    mesh: str | None = None,
     periods: int = 1,
     steps: int | None = None,
     longest_step: float = 0.02,
@@ -215,14 +238,17 @@ def continuation(
 
     Parameters
     ----------
-    case : Case
+    case : Case or MachineCase
         From :func:`tribodyn.load_case`.
     over : str
         Dotted key of the value that varies.
     between : tuple
         Its two ends: floats in SI, or text with a unit. The branch begins at the first.
+    mesh : str, optional
+        Mesh of a machine or a stage whose compression and force are measured, where there are
+        several.
     periods : int
-        Mesh cycles after which the motion repeats.
+        Mesh cycles after which the motion repeats; of a machine periods of its clock.
     steps : int, optional
         As of :func:`lyapunov_exponents`, at the end with the slower mesh.
     longest_step : float
@@ -254,7 +280,7 @@ def continuation(
     """
     from tribodyn.dynamics import continuation as compute
 
-    require("continuation", case)
+    name = mesh_in_motion("continuation", case, mesh)
     if between is None or len(between) != 2:
         remedy = 'Write, for example, between=("400 rpm", "3500 rpm")'
         why = "A branch goes from one value to another"
@@ -264,26 +290,37 @@ def continuation(
         why, remedy = "A branch goes from one value to another", "Give two different ones"
         raise InputError(f"{over} goes from {between[0]} to {between[1]}", by or "argument between",
                          why, remedy)  # fmt: skip
-    same = over == "operation.speed" and contact_without_speed(case)
-    if same:
-        system, frequency = build_system(case, progress=progress)
+    pair = case if case.lumped else None
+    with many_motions(case):
+        every = partial(moving_at, case, over, name)
+        known = {value: every(value) for value in (first, last)}
+        start, count = known[first], steps or max(each.steps for each in known.values())
+        same = over == "operation.speed" and pair is not None and contact_without_speed(pair)
+        smooth = None if pair is not None else family_of(every, (first, last), count)
 
-    def at(value: float) -> tuple[System, float]:
-        if same:
-            return system, frequency * value / case.operation.speed
-        member = built(case.replace({over: value}))
-        return member.system, member.mesh.mesh_frequency
+        def at(value: float) -> tuple[Any, float]:
+            if same:
+                return start.system, start.frequency * value / first
+            if smooth is not None:
+                return smooth(value)
+            each = every(value)
+            return each.system, each.frequency
 
-    with locate_errors(case), collected(), compile_in_parallel(case, "bifurcation"):
-        counts = [study_steps(case.replace({over: value}), *at(value)) for value in (first, last)]
         progress.start("Branch")
-        return compute(
+        branch = compute(
             at,
             parameter=over,
             between=(first, last),
             periods=periods,
-            steps=steps or max(counts),
+            steps=count,
             longest_step=longest_step,
             points=points,
+            signals=None if pair is not None else [_deflection(start.contact)],
             progress=progress,
         )
+    return branch if pair is not None else of_contact(branch, start.contact)
+
+
+def _deflection(contact: int) -> str:
+    """Name of the compression of a contact in a branch."""
+    return f"deflection {contact}" if contact else "deflection"

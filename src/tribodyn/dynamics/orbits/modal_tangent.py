@@ -1,0 +1,272 @@
+"""Derivative of a motion in modal coordinates by its start, over one period of the clock.
+
+Between two changes of side the disturbance of a motion obeys linear equations: each step of the
+engine is exact for a parabola of the forces, which follow from the disturbance at three nodes.
+Where a contact opens or closes its damping force jumps, and the disturbance with it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from tribodyn.dynamics.equations.nodes import carried_load, friction_tangent
+from tribodyn.dynamics.modal.modal_march import ModalMotion
+from tribodyn.types import Array, ComplexArray, Mask
+
+#: Changes of side in a period that are logged at first.
+_LOGGED = 1024
+
+
+class Tangent(NamedTuple):
+    """A motion at the end of a period and its derivatives by the start."""
+
+    state: Array  #: at the end (m,)
+    products: Array  #: derivative of the state at the end of each section (sections, m, m)
+    sums: Array  #: derivative of the integral of the forces over each section (sections, s, m)
+
+    @property
+    def matrix(self) -> Array:
+        """Derivative of the state at the end of the period (m, m)."""
+        matrix: Array = np.eye(self.state.size)
+        for product in self.products:
+            matrix = product @ matrix
+        return matrix
+
+
+class _Weights(NamedTuple):
+    """Weights of a step: of modes and forces in modes and in motions at the contacts."""
+
+    decay: ComplexArray  #: (m,)
+    signals: (
+        Array  #: of real and imaginary parts of modes in motion and rate at the nodes (6 r, 2 m)
+    )
+    direct: Array  #: of forces at the nodes in motion and rate at the middle and end (4 r, 3 s)
+    force: ComplexArray  #: of forces at the nodes in modes (m, 3 s)
+
+
+class _Part(NamedTuple):
+    """A step or a part of one, with fixed sides."""
+
+    step: int
+    begin: float
+    end: float
+    side: Array  #: of the springs (contacts, springs)
+    entries: range  #: of the log at its end
+
+
+class ModalTangent:
+    """Derivatives of the motions of one system under one force at one frequency."""
+
+    def __init__(self, motion: ModalMotion, frequency: float, extra: Array) -> None:
+        self.motion, self.frequency, self.extra = motion, frequency, extra
+        self.modes, self.rows = motion.modes, motion.rows(frequency, extra)
+        self.width = motion.compiled.grid.width / frequency
+        output = self.modes.output
+        self._output = np.concatenate((output, output * self.modes.values))
+        self._known: dict[float, _Weights] = {}
+
+    def at(self, state: Array, sections: int = 1) -> Tangent:
+        """Integrate a period from a state (m,), and its derivatives over sections of the period."""
+        log, nodes, end = self._marched(state)
+        parts = list(self._parts(log))
+        tangents = self._tangents(parts, nodes)
+        ends = np.linspace(0, self.width.size, sections + 1).astype(np.int64)[1:]
+        first = self.motion.split(np.eye(state.size))
+        z, sums = first, np.zeros((self.modes.input.shape[1], state.size))
+        square = (sections, state.size, state.size)
+        tangent = Tangent(end, np.empty(square), np.empty((sections, *sums.shape)))
+        number = 0
+        for part, slopes in zip(parts, tangents, strict=True):
+            h = (part.end - part.begin) * float(self.width[part.step])
+            z, force = _advanced(z, self._weights(h, part), slopes)
+            left, middle, right = np.split(force, 3)
+            sums = sums + h * (left + 4.0 * middle + right) / 6.0
+            for entry in part.entries:
+                impulse = self._impulse(log[entry], part, z)
+                z, sums = z + self.modes.input @ impulse, sums + impulse
+            if part.end == 1.0 and part.step + 1 == ends[number]:
+                tangent.products[number], tangent.sums[number] = self.motion.joined(z), sums
+                z, sums, number = first, 0.0 * sums, number + 1
+        return tangent
+
+    def _marched(self, state: Array) -> tuple[Array, Array, Array]:
+        """Changes of side, motion and rate at the nodes (steps, 3, 2 r), and state at the end."""
+        entries = _LOGGED
+        while True:
+            forces = self.frequency, 1, self.extra, False, entries
+            ends, _, trace = self.motion.advance(state, *forces)
+            if trace.report[5] <= entries:
+                break
+            entries = int(trace.report[5])
+        first = (self._output @ self.motion.split(state[:, None])).real[:, 0]
+        begin = np.concatenate((first[None], trace.contacts[:-1, 1]))
+        nodes = np.concatenate((begin[:, None], trace.contacts), axis=1)
+        return trace.log[: int(trace.report[5])], nodes, ends[-1]
+
+    def _parts(self, log: Array) -> Iterator[_Part]:
+        """Parts of the period between changes of side."""
+        side = np.ones(self.motion.contacts.dead.shape)
+        steps, entry = log[:, 0].astype(np.int64), 0
+        for step in range(self.width.size):
+            begin = 0.0
+            while entry < len(log) and steps[entry] == step:
+                at, before = float(log[entry, 1]), side.copy()
+                together = (steps[entry:] == step) & (log[entry:, 1] == at)
+                same = entry + int(np.count_nonzero(together))
+                for _, _, contact, spring, new in log[entry:same, :5]:
+                    side[int(contact), int(spring)] = new
+                if at > begin:
+                    yield _Part(step, begin, at, before, range(entry, same))
+                    begin = at
+                entry = same
+            if begin < 1.0:
+                yield _Part(step, begin, 1.0, side.copy(), range(0))
+
+    def _tangents(self, parts: list[_Part], nodes: Array) -> Array:
+        """Forces per motion and rate at the nodes of parts, (parts, 3, s, 2 r)."""
+        step = np.array([part.step for part in parts])
+        fraction = np.array([(p.begin, 0.5 * (p.begin + p.end), p.end) for p in parts])
+        at = _parabola(fraction)
+        rows = np.einsum("pnk,pki->pni", at, self.rows[step])
+        entries = self._entries(rows)
+        side = np.stack([part.side for part in parts])[:, None]
+        return self._slope(entries, side, np.einsum("pnk,pki->pni", at, nodes[step]))
+
+    def _entries(self, rows: Array) -> list[Array]:
+        """Entries of rows (..., row) by kind."""
+        shapes = self.motion.shapes
+        ends = np.cumsum([int(np.prod(shape)) for shape in shapes])[:-1]
+        parts = np.split(rows, ends, axis=-1)
+        return [
+            part.reshape(*rows.shape[:-1], *shape)
+            for part, shape in zip(parts, shapes, strict=True)
+        ]
+
+    def _slope(self, entries: list[Array], side: Array, nodes: Array) -> Array:
+        """Minus forces per motion and rate, from motions and rates ``nodes`` (..., 2 r)."""
+        modes = self.modes
+        spring, damper = self._springs(entries, side)
+        along, turning = entries[5], entries[6]
+        push = self._push(entries, spring, damper, side, nodes)
+        place = spring[..., None] * along + damper[..., None] * turning
+        each = np.concatenate((place, damper[..., None] * along), axis=-1)
+        mean = np.concatenate((modes.stiffness, modes.damping), axis=1)
+        return np.asarray(mean - np.swapaxes(push, -1, -2) @ each)
+
+    def _springs(self, entries: list[Array], side: Array) -> tuple[Array, Array]:
+        """Stiffness and damping of the contacts in force."""
+        spring = (np.abs(side) * entries[0]).sum(axis=-1)
+        touching = (side[..., 0] != 0.0) | (self.motion.contacts.damped_in_gap != 0.0)
+        return spring, np.where(touching, entries[1], 0.0)
+
+    def _push(
+        self, entries: list[Array], spring: Array, damper: Array, side: Array, nodes: Array
+    ) -> Array:
+        """Generalized force per change of each contact force, with friction."""
+        system, push = self.motion.compiled.system, entries[7]
+        if not system.frictions:
+            return push
+        stiffness, _, error, slope, gap, along, turning = entries[:7]
+        y, rate = np.split(nodes, 2, axis=-1)
+        d = (along @ y[..., None])[..., 0] - error
+        speed = (along @ rate[..., None] + turning @ y[..., None])[..., 0] - slope
+        force = (np.abs(side) * stiffness * (d[..., None] - side * gap)).sum(axis=-1)
+        load = carried_load(system, force + damper * speed)
+        ratio = friction_tangent(system, entries[10], load)
+        members = self.motion.contacts.members
+        return np.asarray(push + np.einsum("...f,fj,...fs->...js", ratio, members, entries[9]))
+
+    def _weights(self, h: float, part: _Part) -> _Weights:
+        """Weights of a part of ``h`` seconds; those of whole steps are kept."""
+        key = round(h, 18)
+        if key in self._known:
+            return self._known[key]
+        weights = _step_weights(self.modes, self._output, h)
+        if part.end - part.begin == 1.0:
+            self._known[key] = weights
+        return weights
+
+    def _impulse(self, entry: Array, part: _Part, z: ComplexArray) -> Array:
+        """Forces of the delay of a disturbance where the first spring of a contact changes."""
+        tau, contact, spring = float(entry[1]), int(entry[2]), int(entry[3])
+        contacts = self.motion.contacts
+        r, none = self.modes.output.shape[0], np.zeros((self.modes.input.shape[1], z.shape[1]))
+        if spring or contacts.damped_in_gap[contact]:
+            return none
+        table = self.rows[part.step]
+        entries = self._entries(_parabola(np.array(tau)) @ table)
+        slope = np.array([4.0 * tau - 3.0, 4.0 - 8.0 * tau, 4.0 * tau - 1.0])
+        gap_rate = (slope @ self._entries(table)[4][:, contact, 0]) / self.width[part.step]
+        y, rate = entry[5 : 5 + r], entry[5 + r :]
+        along, turning = entries[5][contact], entries[6][contact]
+        speed = float(along @ rate + turning @ y - entries[3][contact])
+        flank = 1.0 if float(along @ y) > entries[2][contact] else -1.0
+        relative = speed - flank * float(gap_rate)
+        if relative == 0.0:
+            return none
+        closing = 1.0 if part.side[contact, 0] == 0.0 else -1.0
+        strength = closing * entries[1][contact] * speed / relative
+        damped = self._springs(entries, part.side)
+        push = self._push(entries, *damped, part.side, entry[5:])[contact]
+        felt = along @ (self._output[:r] @ z).real
+        return np.asarray(-strength * np.outer(push, felt))
+
+
+def _parabola(tau: Array) -> Array:
+    """Weights of three nodes at fractions of a step (..., 3)."""
+    return np.stack(
+        ((1.0 - tau) * (1.0 - 2.0 * tau), 4.0 * tau * (1.0 - tau), tau * (2.0 * tau - 1.0)), axis=-1
+    )
+
+
+def _advanced(z: ComplexArray, weights: _Weights, tangent: Array) -> tuple[ComplexArray, Array]:
+    """Disturbance of the modes (m, k) at the end of a part, and of the forces (3 s, k)."""
+    seen = weights.signals @ np.concatenate((z.real, z.imag))
+    r2, s = tangent.shape[2], tangent.shape[1]
+    first = tangent[0] @ seen[:r2]
+    later = np.zeros((2 * s, 2 * r2))
+    later[:s, :r2], later[s:, r2:] = tangent[1], tangent[2]
+    direct = later @ weights.direct
+    right = later @ seen[r2:] + direct[:, :s] @ first
+    forces = np.concatenate((first, np.linalg.solve(np.eye(2 * s) - direct[:, s:], right)))
+    return weights.decay[:, None] * z + weights.force @ forces, forces
+
+
+def _step_weights(modes: Any, output: ComplexArray, h: float) -> _Weights:
+    """Weights of a step of ``h`` seconds, as those of the engine."""
+    values = modes.values
+    full_step, full = _integrals(values * h)
+    half_step, half = _integrals(0.5 * values * h)
+    first, second, third = full
+    whole = h * np.stack((first - 3.0 * second + 4.0 * third, 4.0 * second - 8.0 * third,
+                          4.0 * third - second))  # fmt: skip
+    begin, middle, end = half
+    part = h * np.stack((0.5 * (begin - 1.5 * middle + end), middle - end,
+                         0.5 * (end - 0.5 * middle)))  # fmt: skip
+    force, inner = (
+        np.concatenate([each[:, None] * modes.input for each in parts], axis=1)
+        for parts in (whole, part)
+    )
+    signals = np.concatenate((output, output * half_step, output * full_step))
+    direct = np.concatenate(((output @ inner).real, (output @ force).real))
+    return _Weights(full_step, np.hstack((signals.real, -signals.imag)), direct, force)
+
+
+def _integrals(x: ComplexArray) -> tuple[ComplexArray, tuple[ComplexArray, ...]]:
+    """``exp(x)`` and the integrals of ``exp((1 - s) x) s^k/k!`` for k = 0, 1, 2."""
+    series, term = np.zeros_like(x), np.full_like(x, 1.0 / 6.0)
+    for k in range(4, 22):
+        series, term = series + term, term * x / k
+    small: Mask = np.abs(x) < 1.0
+    divisor = np.where(small, 1.0, x)
+    second = 0.5 + x * series
+    near = (1.0 + x * (1.0 + x * second), 1.0 + x * second, second, series)
+    step = np.exp(x)
+    first = (step - 1.0) / divisor
+    far_second = (first - 1.0) / divisor
+    far = (step, first, far_second, (far_second - 0.5) / divisor)
+    exponential, *parts = (np.where(small, a, b) for a, b in zip(near, far, strict=True))
+    return exponential, tuple(parts)

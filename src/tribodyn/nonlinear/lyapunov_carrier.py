@@ -1,0 +1,198 @@
+"""Motions with small disturbances that are made orthogonal again before they become parallel."""
+
+from __future__ import annotations
+
+import math
+from collections import deque
+from collections.abc import Iterator
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from tribodyn.dynamics._engine.blocks import march
+from tribodyn.dynamics.equations.compiled import Compiled
+from tribodyn.dynamics.equations.motion import sides
+from tribodyn.dynamics.equations.orbit_coordinates import OrbitCoordinates, orbit_coordinates
+from tribodyn.dynamics.orbits.modal_tangent import ModalTangent
+from tribodyn.dynamics.orbits.orbit_map import engine_scaling
+from tribodyn.nonlinear.lyapunov_products import (
+    SPREAD,
+    grouped_products,
+    repeats_after,
+    safe_length,
+    share_in,
+)
+from tribodyn.nonlinear.lyapunov_tangent import TangentTables, carry_over_crossings
+from tribodyn.progress import Progress
+from tribodyn.types import Array
+
+#: Largest number of stored values while disturbances are integrated.
+_MOST_VALUES = 6_000_000
+#: Mesh cycles of the transient over which disturbances already turn into their directions, and
+#: those whose matrices are compared to see whether they repeat.
+ALIGN, _COMPARED = 200, 32
+#: Difference of matrices that repeat for good.
+_EXACTLY = 1e-10
+
+
+class Carrier:
+    """A motion with its orthogonal disturbances."""
+
+    def __init__(self, tables: Any, state: Array, extra: Array) -> None:
+        self.tables = tables
+        self.extra = extra
+        self.state = state[None, :]
+        k = tables.size
+        self.frame = np.linalg.qr(np.random.default_rng(0).standard_normal((k, k)))[0]
+        braked = tables.coordinates.braked
+        #: Directions of the speeds of braked free rotations, and how far disturbances lie in them.
+        self.braked = np.vstack((np.zeros((k - len(braked), braked.shape[1])), braked))
+        self.share = np.zeros(k)
+        self.length = self.elapsed = 0
+        self.last: deque[Array] = deque(maxlen=_COMPARED)
+
+    def settle(self, cycles: int) -> None:
+        """March without disturbances."""
+        for first in range(0, cycles, ALIGN):
+            self._march(min(ALIGN, cycles - first), None)
+
+    def _march(self, cycles: int, record: Array | None) -> None:
+        frequency = self.tables.mesh_frequency
+        state = march(
+            self.tables.compiled,
+            np.array([1.0 / frequency]),
+            self.state,
+            cycles,
+            extra_force=self.extra[None, :],
+            record=record,
+            elapsed=self.elapsed,
+        )
+        self.elapsed += cycles
+        # The free rotation runs away and nothing depends on it.
+        coordinates = self.tables.coordinates
+        self.state = coordinates.expand(coordinates.reduce(state))
+
+    def carry(self, cycles: int, progress: Progress) -> tuple[Array, Array]:
+        """Growth of every disturbance and mean trace in each mesh cycle [1/s]."""
+        k, done = self.tables.size, 0
+        growth, divergence, share = np.zeros((cycles, k)), np.zeros(cycles), np.zeros(k)
+        while done < cycles:
+            first = done
+            for products, trace in self._cycles(cycles - first):
+                for product in products:
+                    self.frame, upper = np.linalg.qr(product @ self.frame)
+                    growth[done] += np.log(np.abs(np.diag(upper)))
+                share += share_in(self.braked, self.frame)
+                self.last.append(products.copy())
+                divergence[done], done = trace, done + 1
+            progress.advance(done - first)
+            if self.ended:
+                break
+        self.share = share / max(1, done)
+        frequency = self.tables.mesh_frequency
+        return growth[:done] * frequency, divergence[:done] * frequency
+
+    @property
+    def ended(self) -> bool:
+        """Whether further mesh cycles show nothing new."""
+        return False
+
+    def _cycles(self, cycles: int) -> Iterator[tuple[Array, float]]:
+        """Products of the matrices of some mesh cycles at most, and the integral of the trace."""
+        k, steps = self.tables.size, self.tables.compiled.grid.steps
+        chunk = max(1, _MOST_VALUES // (steps * (k * k + self.state.shape[1])))
+        count = min(chunk, cycles)
+        record = np.empty((count * steps + 1, self.state.shape[1], 1))
+        self._march(count, record)
+        matrices, traces = self._matrices(record[:, :, 0])
+        matrices = matrices.reshape(count, steps, k, k)
+        self.length = self.length or safe_length(matrices[0])
+        yield from zip(
+            grouped_products(matrices, self.length),
+            traces.reshape(count, steps).sum(axis=1),
+            strict=True,
+        )
+
+    def _matrices(self, states: Array) -> tuple[Array, Array]:
+        """Matrix of every step along recorded states, and the integral of the trace."""
+        tables, nodes = self.tables, self.tables.compiled.nodes
+        size, steps = self.extra.size, tables.compiled.grid.steps
+        place = states[:, :size].reshape(-1, size)
+
+        def sides_at(q: Array, node: int) -> Array:
+            q = q.reshape(-1, steps, size)
+            d = np.einsum("rji,cri->crj", nodes.direction[:, node], q) - nodes.error[:, node]
+            side = sides(d, nodes.gap[:, node], tables.dead)
+            return side.reshape(len(q) * steps, d.shape[-1])
+
+        left, right = sides_at(place[:-1], 0), sides_at(place[1:], 2)
+        number = np.tile(np.arange(steps), len(left) // steps)
+        crossed = np.any(left != right, axis=1)
+        touching = left != 0.0
+        matrices = np.empty((len(left), tables.size, tables.size))
+        traces = np.empty(len(left))
+        patterns = touching @ 2.0 ** np.arange(touching.shape[1])
+        for pattern, first in zip(*np.unique(patterns, return_index=True), strict=True):
+            which = np.flatnonzero(~crossed & (patterns == pattern))
+            step_tables = tables.whole_steps(touching[first])
+            matrices[which], traces[which] = (
+                step_tables[0][number[which]],
+                step_tables[1][number[which]],
+            )
+        which = np.flatnonzero(crossed)
+        if which.size:
+            matrices[which], traces[which] = carry_over_crossings(
+                tables, self.extra, number[which], states[which], left[which]
+            )
+        return matrices, traces
+
+
+class ModalTables(NamedTuple):
+    """A system that is integrated in modal coordinates."""
+
+    compiled: Compiled
+    mesh_frequency: float
+    coordinates: OrbitCoordinates
+
+    @property
+    def size(self) -> int:
+        """Number of reduced coordinates."""
+        return int(self.coordinates.reducing.shape[1])
+
+
+class ModalCarrier(Carrier):
+    """A motion in modal coordinates with its orthogonal disturbances."""
+
+    def __init__(self, tables: ModalTables, state: Array, extra: Array) -> None:
+        super().__init__(tables, state, extra)
+        compiled, frequency = tables.compiled, tables.mesh_frequency
+        self._tangent = ModalTangent(compiled.engine.motion, frequency, np.array(extra))
+        self._scale = engine_scaling(compiled, tables.coordinates)
+        fastest = float(np.abs(compiled.engine.motion.modes.values.real).max())
+        most = max(1, compiled.grid.steps // 2)
+        self._sections = min(most, math.ceil(fastest / frequency / math.log(SPREAD)))
+        self._place: Array | None = None
+
+    @property
+    def ended(self) -> bool:
+        """Whether the matrices repeat."""
+        # Motions that still approach may repeat after several periods by chance, less closely.
+        full = len(self.last) == self.last.maxlen
+        return full and repeats_after(self.last)[1] <= _EXACTLY
+
+    def _cycles(self, cycles: int) -> Iterator[tuple[Array, float]]:
+        if self._place is None:
+            motion = self.tables.compiled.engine.motion
+            self._place = motion.state(*np.split(self.state[0], 2))[0]
+        tangent = self._tangent.at(self._place, self._sections)
+        self._place = tangent.state
+        products = np.linalg.solve(self._scale, tangent.products @ self._scale)
+        yield np.asarray(products), float(np.linalg.slogdet(products)[1].sum())
+
+
+def carrier_of(compiled: Compiled, mesh_frequency: float, state: Array, extra: Array) -> Carrier:
+    """Carrier of the disturbances of a motion."""
+    if compiled.engine is None:
+        return Carrier(TangentTables(compiled, mesh_frequency), state, extra)
+    coordinates = orbit_coordinates(compiled, mesh_frequency)
+    return ModalCarrier(ModalTables(compiled, mesh_frequency, coordinates), state, extra)

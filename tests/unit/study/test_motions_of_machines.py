@@ -1,0 +1,108 @@
+"""Diagrams, branches, exponents and basins of machines and stages, against single runs of them."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import pytest
+from test_machine_case import SMALL
+
+import tribodyn as td
+from tribodyn.dynamics.orbits.system_family import family_of
+from tribodyn.errors import InputError
+from tribodyn.study.machine.read import read_any_case
+from tribodyn.study.studies.case_grid import moving, moving_at
+from tribodyn.study.studies.needs import STUDIES, needs_table, takes
+
+pytestmark = pytest.mark.filterwarnings("ignore::tribodyn.errors.ModelWarning")
+
+
+@pytest.fixture(scope="module")
+def small() -> Any:
+    return read_any_case(SMALL, "small.toml")
+
+
+@pytest.fixture(scope="module")
+def stage() -> Any:
+    return td.load_case("planetary-stage")
+
+
+def compression_rms(result: Any, contact: int) -> float:
+    fine = result.response.fine
+    values = fine.deflection[:, contact]
+    return float(np.sqrt(fine.mean((values - fine.mean(values)) ** 2)))
+
+
+@pytest.mark.parametrize("study", ["bifurcation", "continuation", "basins"])
+def test_a_study_of_several_meshes_asks_for_one(small: Any, study: str) -> None:
+    ranges = ("1000 rpm", "1100 rpm")
+    options = {} if study == "basins" else {"between": ranges}
+    with pytest.raises(InputError, match=f"{study} is about one mesh") as caught:
+        getattr(td, study)(small, **options)
+    assert "--mesh first" in str(caught.value)
+    with pytest.raises(InputError, match='no mesh "third"'):
+        getattr(td, study)(small, mesh="third", **options)
+
+
+def test_every_kind_of_case_moves(small: Any, stage: Any) -> None:
+    for study in ("bifurcation", "continuation", "basins", "lyapunov"):
+        assert takes(study, small)
+        assert takes(study, stage)
+    assert "bifurcation" in STUDIES
+    assert (
+        "| `bifurcation` | a structure that moves | yes | yes | yes | `--mesh NAME`"
+        in needs_table()
+    )
+
+
+def test_contacts_of_meshes_are_counted_in_the_order_of_the_machine(small: Any, stage: Any) -> None:
+    assert [moving(small, mesh).contact for mesh in small.meshes] == [0, 1]
+    names = [f"low_{kind}{number}" for number in (1, 2, 3) for kind in ("sun", "ring")]
+    assert [moving(stage, mesh).contact for mesh in names] == list(range(6))
+
+
+def test_motion_of_a_small_machine_is_that_of_its_run(small: Any) -> None:
+    diagram = td.bifurcation(small, between=("1200 rpm", "1234 rpm"), points=2, mesh="second",
+                             cycles=4, keep=4, steps=128, verdict=False)  # fmt: skip
+    assert diagram.signal == "mesh second"
+    assert diagram.period.tolist() == [[1, 1]]
+    assert diagram.rms[0, 1] == pytest.approx(0.0, abs=1e-10)  # nothing excites constant springs
+    spectrum = td.lyapunov_exponents(small, cycles=4, transient=4, steps=128, verdict=False)
+    assert spectrum.largest < 0.0
+
+
+@pytest.mark.slow
+def test_motions_of_a_stage_are_those_of_its_run(stage: Any) -> None:
+    ends, mesh = ("1500 rpm", "1530 rpm"), "sun"
+    exact = [
+        compression_rms(td.run(stage.replace({"operation.speed": speed})), 0) for speed in ends
+    ]
+    diagram = td.bifurcation(stage, between=ends, points=2, mesh=mesh, cycles=4, keep=4)
+    assert diagram.signal == "mesh low_sun1"
+    assert diagram.verdicts() == {"physical": 2}
+    assert diagram.rms[0] == pytest.approx(exact, rel=1e-4)
+    branch = td.continuation(stage, between=ends, mesh=mesh, longest_step=0.5)
+    assert branch.contact_loss.shape[1] == 1
+    assert [branch.rms[0, 0], branch.rms[-1, 0]] == pytest.approx(exact, rel=1e-4)
+    spectrum = td.lyapunov_exponents(stage.replace({"operation.speed": ends[0]}), cycles=40,
+                                     transient=160, verdict=False)  # fmt: skip
+    growth = np.log(np.abs(branch.floquet_multipliers[0, 0])) * branch.mesh_frequency[0]
+    assert spectrum.largest == pytest.approx(growth, rel=1e-4)
+
+
+@pytest.mark.slow
+def test_a_family_of_machines_is_the_machine_at_each_speed(stage: Any) -> None:
+    def at(value: float) -> Any:
+        return moving_at(stage, "operation.speed", "low_sun1", value)
+
+    ends = (150.0, 165.0)
+    family = family_of(at, ends, 64)
+    assert family is not None
+    value = 153.3
+    compiled, frequency = family(value)
+    exact = at(value)
+    assert frequency == pytest.approx(exact.frequency, rel=1e-12)
+    for name in ("stiffness", "gyroscopic"):
+        matrix = np.asarray(getattr(exact.system, name))
+        assert np.abs(getattr(compiled.system, name) - matrix).max() <= 1e-8 * np.abs(matrix).max()
