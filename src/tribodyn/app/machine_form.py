@@ -29,6 +29,7 @@ _GROUPS = {
     "couplings": "Couplings",
     "faults": "Faults",
     "dynamics": "Motion",
+    "solver": "Solution",
 }
 _PARTS = ("planets", "meshes", "gears", "bearings", "shafts", "couplings", "faults")
 _MEANINGS = {

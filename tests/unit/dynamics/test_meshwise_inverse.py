@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 
 from tribodyn.dynamics import Contact, System
-from tribodyn.dynamics.harmonic.meshwise_inverse import MeshwiseInverse
 from tribodyn.dynamics.harmonic.newton import solve_linear
-from tribodyn.dynamics.harmonic.phase_balance import _Search
+from tribodyn.dynamics.harmonic.phase_balance import _Points, _Search
+from tribodyn.dynamics.harmonic.phase_response import phase_response
 
 FREQUENCIES = np.array([1000.0, 313.0])
 JUMPS = (0.0, 0.6)
@@ -20,8 +20,8 @@ def square(high):
     return lambda x: np.where(np.asarray(x) % 1.0 < 0.6, high, 2e8)
 
 
-def state_of(first, second, shape=(16, 12)):
-    """Two meshes in a row with stiffnesses over a cycle, on a grid, at rest."""
+def search_of(first, second):
+    """Two meshes in a row with stiffnesses over a cycle."""
     contacts = [
         Contact([1.0, 1.0, 0.0, 0.0], first, 300.0, 0.0, 0.0, cycles=(1, 0), events=JUMPS),
         Contact(
@@ -33,17 +33,32 @@ def state_of(first, second, shape=(16, 12)):
         np.diag([1.0, 2.0, 1.5, 3.0]), 20.0 * np.outer(twist, twist), 4e7 * np.outer(twist, twist),
         [2000.0, 0.0, 0.0, -2800.0], contacts,
     )  # fmt: skip
-    search = _Search.of(system, FREQUENCIES)
-    residual = search.residual(shape)
-    return residual, residual.at(np.tile(search.still, (residual.grid.size, 1)))
+    return _Search.of(system, FREQUENCIES)
 
 
-def motion(residual, state):
+def search_motion(points):
+    """Motion with smooth stiffnesses on grids of the meshes."""
+    search = search_of(*(lambda x, a=a: 2e8 * (1 + a * np.cos(2 * np.pi * x)) for a in (0.2, 0.3)))
+    residual = search.residual(points)
+    solution = search.solve(residual, None, 1e-8)
+    return phase_response(search.rows, residual, solution.state, points=points.fine)
+
+
+def state_of(first, second, shape=(16, 12)):
+    """The two meshes on grids with the same points, at rest."""
+    search = search_of(first, second)
+    residual = search.residual(_Points(shape, shape))
+    return residual, residual.at(search.still(residual))
+
+
+def motion(residual):
     """Motion of the lines that have a phase."""
-    y = np.random.default_rng(2).normal(size=state.y.shape)
-    lines = residual.grid.spectrum(y)
-    lines[residual.grid.unpaired] = 0.0
-    return residual.grid.values(lines)
+    random, parts = np.random.default_rng(2), []
+    for part in residual.parts:
+        lines = part.grid.spectrum(random.normal(size=(part.grid.size, part.loaded.shape[1])))
+        lines[part.grid.unpaired] = 0.0
+        parts.append(part.grid.values(lines))
+    return residual.joined(parts)
 
 
 @pytest.mark.parametrize("shape", [(16, 12), (12, 16), (10, 7)])
@@ -52,17 +67,32 @@ def test_it_inverts_what_varies_over_one_phase(number, shape):
     laws = [2e8, 2e8]
     laws[number] = lambda x: 2e8 * (1 + 0.4 * np.cos(2 * np.pi * x) + 0.2 * np.sin(4 * np.pi * x))
     residual, state = state_of(*laws, shape=shape)
-    y = motion(residual, state)
+    y = motion(residual)
     image = residual.derivative(state)(y)
     assert np.linalg.norm(image - y) > 0.1 * np.linalg.norm(y)
-    np.testing.assert_allclose(MeshwiseInverse(residual, state)(image), y, atol=1e-9)
+    inverse = residual.nearly(state)(image)
+    np.testing.assert_allclose(
+        residual.split(inverse)[number], residual.split(y)[number], atol=1e-9
+    )
 
 
 def test_few_vectors_solve_for_meshes_that_jump():
     residual, state = state_of(square(4e8), square(4.5e8))
-    right = motion(residual, state)
-    product, nearly = residual.derivative(state), MeshwiseInverse(residual, state)
+    right = motion(residual)
+    product, nearly = residual.derivative(state), residual.nearly(state)
     plain, many = solve_linear(product, right, 1e-8, 200)
     solved, few = solve_linear(lambda x: product(nearly(x)), right, 1e-8, 200)
     np.testing.assert_allclose(nearly(solved), plain, atol=1e-5 * np.abs(plain).max())
     assert few < 0.5 * many
+
+
+def test_a_mesh_needs_few_points_over_the_phases_of_others():
+    fine, few = (
+        search_motion(points) for points in (_Points((32, 32), (32, 32)), _Points((32, 32), (8, 8)))
+    )
+    lines = fine.lines(), few.lines()
+    for each in lines:
+        assert each.frequency == pytest.approx(each.numbers @ FREQUENCIES, abs=1e-9)
+    at = np.linspace(0.0, 0.05, 300)
+    forces = [each.at(at).contact_force for each in (fine, few)]
+    assert np.abs(forces[1] - forces[0]).max() < 1e-3 * np.ptp(forces[0])

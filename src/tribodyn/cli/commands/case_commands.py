@@ -72,13 +72,13 @@ def check(case: CaseName, /, *, set_: Settings = None, json: Flag = False) -> No
 def _check_machine(case: MachineCase, json: bool) -> None:
     """Show speeds, torques and power of a machine, after rehearsing its teeth."""
     from tribodyn.errors import collected
-    from tribodyn.study.machine.first_look import kinematic_figures, warn_of_period
+    from tribodyn.study.machine.first_look import kinematic_figures, warn_of_motion
     from tribodyn.study.machine.run import rehearse_machine
     from tribodyn.study.pipeline.summary_figures import summary_rows
 
     with collected() as warnings:
         rehearse_machine(case)
-        warn_of_period(case.machine())
+        cost = warn_of_motion(case.solver, case.machine())
         values = kinematic_figures(case)
     if json:
         say_json(values)
@@ -88,6 +88,8 @@ def _check_machine(case: MachineCase, json: bool) -> None:
         text = ", ".join(filter(None, (assumption.value, assumption.reason)))
         tell(f"assumed: {assumption.key}: {text}")
     show_warnings(warnings)
+    if cost is not None:
+        tell(f"{cost}.")
     tell("The case is in order.")
 
 

@@ -8,7 +8,7 @@ through the structure, so that a few Krylov vectors remain.
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
@@ -16,18 +16,19 @@ from tribodyn.dynamics.harmonic.newton import State
 from tribodyn.types import Array, ComplexArray, Index
 
 if TYPE_CHECKING:
-    from tribodyn.dynamics.harmonic.phase_grid import PhaseResidual
+    from tribodyn.dynamics.harmonic.phase_residual import OnGrid
 
 #: Part of the largest variation of a stiffness that is too small to matter.
 _SMALL = 0.02
-#: Bytes of the inverses of one phase; with more, only its lowest lines are coupled.
-_MEMORY = 2**28
+#: Bytes of the inverse of the lines of one phase alone, and of those that others shift; with more,
+#: only its lowest lines are coupled.
+_CENTRAL, _OTHERS = 2**24, 2**26
 
 
 class MeshwiseInverse:
     """Product with the approximate inverse of the derivative of a residual at a state."""
 
-    def __init__(self, residual: PhaseResidual, state: State) -> None:
+    def __init__(self, residual: OnGrid, state: State) -> None:
         self.shape = residual.grid.shape
         structure, breaks = residual.structure, state.breaks
         stiffness: Any = structure.contact_stiffness - state.law.stiffness
@@ -61,11 +62,45 @@ class MeshwiseInverse:
         return y
 
 
+class _Block(NamedTuple):
+    """Inverse for some rows of lines: those of different numbers of the other phases."""
+
+    rows: Index
+    low: Index  #: lines of the row that are coupled
+    gain: ComplexArray  #: motion per force (m, n, r, a)
+    rate: ComplexArray
+    inverse: ComplexArray
+    spring: ComplexArray
+    damper: ComplexArray
+
+    @classmethod
+    def of(
+        cls, rows: Index, low: Index, gain: ComplexArray, rate: ComplexArray, along: Array,
+        waves: list[Array],
+    ) -> _Block:  # fmt: skip
+        """Solve the equations of some rows."""
+        gain, size = gain[np.ix_(rows, low)], len(low) * len(along)
+        rate = np.repeat(rate[np.ix_(rows, low)], len(along), axis=1)
+        forces = [_between_lines(wave, low) for wave in waves]
+        felt = along @ gain  # motion felt per force of the same line (m, l, w, a)
+        loop, damped = ((felt @ force).reshape(-1, size, size) for force in forces)
+        inverse = np.asarray(np.linalg.inv(np.eye(size) - loop - damped * rate[:, None]), complex)
+        spring, damper = (force.reshape(-1, size).T for force in forces)
+        return cls(rows, low, gain, rate, inverse, spring, damper)
+
+    def moved(self, felt: ComplexArray) -> ComplexArray:
+        """Change of the lines with the motion that is felt (m, l w, 1)."""
+        motion = (self.inverse @ felt)[..., 0]
+        force = motion @ self.spring + (self.rate * motion) @ self.damper
+        force = force.reshape(*self.gain.shape[:2], -1, 1)
+        return np.asarray((self.gain @ force)[..., 0])
+
+
 class _OnePhase:
     """Inverse with the stiffness that varies over one phase."""
 
     def __init__(
-        self, residual: PhaseResidual, axis: int, mean: list[Array], varying: list[Array]
+        self, residual: OnGrid, axis: int, mean: list[Array], varying: list[Array]
     ) -> None:
         grid = residual.grid
         self.shape, self.axis = grid.shape, axis
@@ -81,28 +116,26 @@ class _OnePhase:
         still = receptances @ (mean[0] + rate[..., None, None] * mean[1])
         self.base = np.linalg.inv(np.eye(still.shape[-1]) - still)
         varying = [varying[0], varying[1] * np.abs(omega).max()]
-        push, along = _bases(varying)
-        self.gain, self.along = self.base @ receptances @ push, along  # (m, n, r, a)
-        count, width = grid.shape[axis], len(along)
-        self.low = _lowest(count, _MEMORY / (16.0 * len(omega) * width**2))
-        self.gain, size = self.gain[:, self.low], len(self.low) * width
-        self.rate = np.repeat(rate[:, self.low] / np.abs(omega).max(), width, axis=1)
-        waves = [_between_lines(push.T @ part @ along.T, self.low) for part in varying]
-        felt = along @ self.gain  # motion felt per force of the same line (m, l, w, a)
-        loop, damped = ((felt @ wave).reshape(-1, size, size) for wave in waves)
-        self.inverse = np.linalg.inv(np.eye(size) - loop - damped * self.rate[:, None])
-        self.spring, self.damper = (wave.reshape(-1, size).T for wave in waves)
+        push, self.along = _bases(varying)
+        waves = [push.T @ part @ self.along.T for part in varying]
+        gain = self.base @ receptances @ push  # (m, n, r, a)
+        rate /= np.abs(omega).max()
+        others = np.delete(numbers[:, 0], axis, axis=1).any(axis=1)
+        # Most of a motion has this phase alone: its lines are all coupled, of others the lowest.
+        self.blocks = []
+        for rows, most in ((np.flatnonzero(~others), _CENTRAL), (np.flatnonzero(others), _OTHERS)):
+            low = _lowest(grid.shape[axis], most / len(rows), len(self.along))
+            self.blocks.append(_Block.of(rows, low, gain, rate, self.along, waves))
 
     def solved(self, y: Array, *, first: bool) -> Array:
         """Solution (p, r) for the right-hand side, or for one that the mean has solved already."""
         lines = self._lines(y)
         if first:
             lines = (self.base @ lines[..., None])[..., 0]
-        felt = (lines[:, self.low] @ self.along.T).reshape(len(lines), -1, 1)
-        moved = (self.inverse @ felt)[..., 0]
-        force = moved @ self.spring + (self.rate * moved) @ self.damper
-        force = force.reshape(*self.gain.shape[:2], -1, 1)
-        lines[:, self.low] += (self.gain @ force)[..., 0]
+        for block in self.blocks:
+            place = np.ix_(block.rows, block.low)
+            felt = (lines[place] @ self.along.T).reshape(len(block.rows), -1, 1)
+            lines[place] += block.moved(felt)
         return self._values(lines)
 
     def _axes(self) -> list[int]:
@@ -156,8 +189,8 @@ def _between_lines(part: Array, low: Index) -> ComplexArray:
     return np.asarray(np.moveaxis(waves, 2, 1).reshape(len(low), part.shape[1], -1), dtype=complex)
 
 
-def _lowest(count: int, most: float) -> Index:
-    """Places of the lines of a phase with the lowest numbers, so many that n^2 is at most this."""
+def _lowest(count: int, most: float, width: int) -> Index:
+    """Places of the lines of a phase with the lowest numbers, whose matrix has so many bytes."""
     numbers = np.abs(np.rint(np.fft.fftfreq(count) * count))
-    highest = max(1, (int(np.sqrt(most)) - 1) // 2)
+    highest = max(1, (int(np.sqrt(most / 16.0) / width) - 1) // 2)
     return np.flatnonzero(numbers <= highest)

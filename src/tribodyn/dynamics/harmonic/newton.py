@@ -33,6 +33,7 @@ class State(NamedTuple):
     breaks: Breaks
     force: Array  #: components of the force on the closed structure (steps, s)
     residual: Array  #: (steps, r)
+    parts: tuple[State, ...] = ()  #: of contacts on grids of their own
 
     @property
     def size(self) -> float:
@@ -88,19 +89,10 @@ class Residual:
 
     def derivative(self, state: State) -> Callable[[Array], Array]:
         """Product of the derivative of the residual with a motion."""
-        stiffness = self.structure.contact_stiffness - state.law.stiffness
-        damping = self.structure.contact_damping - state.law.damping
-        breaks, damped = state.breaks, bool(np.any(damping))
-        spread: Any = breaks.spread(len(state.y)) if breaks.step.size else None
-        gather: Any = None if spread is None else spread.T.tocsr()
+        change = force_change(self.structure, state)
 
         def product(motion: Array) -> Array:
-            force = (stiffness @ motion[..., None])[..., 0]
-            if damped:
-                force += (damping @ self.rate(motion)[..., None])[..., 0]
-            if spread is not None:
-                force += spread @ np.einsum("bsr,br->bs", breaks.tangent, gather @ motion)
-            return np.asarray(motion - self.response(force))
+            return np.asarray(motion - self.response(change(motion, self.rate)))
 
         return product
 
@@ -119,6 +111,25 @@ class Residual:
         nearly = TangentMarch(self, state)
         solution, count = solve_linear(lambda x: product(nearly(x)), -state.residual, accuracy)
         return nearly(solution), count
+
+
+def force_change(closed: Any, state: State) -> Callable[[Array, Callable[[Array], Array]], Array]:
+    """Change of the force on the closed structure with a motion, and a function for its rate."""
+    stiffness = closed.contact_stiffness - state.law.stiffness
+    damping = closed.contact_damping - state.law.damping
+    breaks, damped = state.breaks, bool(np.any(damping))
+    spread: Any = breaks.spread(len(state.y)) if breaks.step.size else None
+    gather: Any = None if spread is None else spread.T.tocsr()
+
+    def change(motion: Array, rate: Callable[[Array], Array]) -> Array:
+        force = (stiffness @ motion[..., None])[..., 0]
+        if damped:
+            force += (damping @ rate(motion)[..., None])[..., 0]
+        if spread is not None:
+            force += spread @ np.einsum("bsr,br->bs", breaks.tangent, gather @ motion)
+        return np.asarray(force)
+
+    return change
 
 
 def solve_linear(

@@ -81,7 +81,7 @@ def orbit_response(compiled: Compiled, residual: Residual, state: State, **facts
     """Evaluate a motion at the ends and in the middle of the steps of a grid."""
     structure, jumps, steps = residual.structure, _Jumps.of(state), len(state.y)
     spectrum, pulses = _spectrum(state, jumps)
-    force, torque = structure.balanced(spectrum, state.y.mean(axis=0))
+    force, torque = structure.balanced(spectrum, structure.contact_stiffness @ state.y.mean(axis=0))
     phase, shape = compiled.nodes.phase.reshape(-1), (1, compiled.grid.steps, 3, -1)
     into_motion = structure.push.T @ structure.coordinates.inverse
     amplitudes, jumped = [], []
@@ -121,7 +121,8 @@ def _spectrum(state: State, jumps: _Jumps) -> tuple[ComplexArray, ComplexArray]:
 def starting_state(residual: Residual, state: State) -> tuple[Array, Array]:
     """State of the closed structure (m,) when the clock starts, and the balancing torque (n,)."""
     structure = residual.structure
-    force, torque = structure.balanced(_spectrum(state, _Jumps.of(state))[0], state.y.mean(axis=0))
+    closing = structure.contact_stiffness @ state.y.mean(axis=0)
+    force, torque = structure.balanced(_spectrum(state, _Jumps.of(state))[0], closing)
     amplitudes = structure.respond(residual.omega, force)
     return amplitudes[0].real + 2.0 * amplitudes[1:].real.sum(axis=0), torque
 

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -15,9 +16,11 @@ from tribodyn.dynamics.equations.orbit_coordinates import (
 )
 from tribodyn.dynamics.equations.phases import read_frequencies
 from tribodyn.dynamics.equations.system import System
+from tribodyn.dynamics.harmonic.meshwise_inverse import MeshwiseInverse
 from tribodyn.dynamics.harmonic.newton import Solution, newton
-from tribodyn.dynamics.harmonic.phase_grid import PhaseContacts, PhaseGrid, PhaseResidual
-from tribodyn.dynamics.harmonic.phase_response import PhaseResponse, phase_response
+from tribodyn.dynamics.harmonic.phase_grid import PhaseGrid
+from tribodyn.dynamics.harmonic.phase_residual import Part, PhaseResidual, parts_of
+from tribodyn.dynamics.harmonic.phase_response import PhaseResponse, phase_response, sum_lines
 from tribodyn.dynamics.harmonic.phase_rows import PhaseRows
 from tribodyn.dynamics.modal.closed_structure import ClosedStructure
 from tribodyn.dynamics.modal.contact_equations import close_contacts
@@ -27,28 +30,58 @@ from tribodyn.types import Array, Index, Mask
 #: Points over a phase of meshes, and over one that only turns shafts, with which an automatic
 #: choice starts, and those with which it tries at last to find a motion.
 _MESH, _SHAFT, _LAST = 16, 8, 64
+#: Points of the first grids over phases that a part does not follow, fewer of more than so many.
+_OTHERS, _FEW = 8, 4
 #: Change of the motion with twice the points at which an automatic choice stops: the first while it
 #: falls to less than this part from grid to grid, the second where forces that bend or jump make it
-#: fall slowly or the points are many; and the most points.
-_ACCURATE, _FALLING, _ENOUGH, _MANY, _MOST = 2e-7, 0.1, 1e-3, 2**14, 2**17
+#: fall slowly; and the most unknowns of both.
+_ACCURATE, _FALLING, _ENOUGH, _MANY, _MOST = 2e-7, 0.1, 5e-3, 2**17, 3 * 2**14
 #: Step error that causes a warning; part of the largest change with which a phase is refined too.
 _LIMIT, _WORST = 1e-2, 0.2
 #: Damping added at first where Newton's method does not converge, over the critical damping at
 #: the highest mesh frequency, and the factors by which it is reduced; Newton steps with each.
 _ADDED, _TRIES = (0.3, 0.1, 0.03, 0.01, 0.003), 12
-#: Newton steps in which the error halves if the points suffice, and part of the largest change with
-#: twice the points from which a phase matters.
-_PATIENCE, _MATTER = 5, 0.01
+#: Newton steps in which the error halves if the points suffice, and accuracy of an estimate.
+_PATIENCE, _ROUGH = 5, 0.1
+
+
+def phase_cost(frequencies: int, contacts: Sequence[int]) -> tuple[int, float, float]:
+    """Unknowns, memory [byte] and time [s] of a motion by the contacts that follow each phase."""
+    others = _OTHERS if frequencies <= _FEW else _OTHERS // 2
+    unknowns = sum(count * _MESH * others ** (frequencies - 1) for count in contacts)
+    unknowns = max(unknowns, min(2 * unknowns, _MOST))
+    memory = 2e8 + 1.4e8 * frequencies + 1.5e3 * unknowns
+    return unknowns, memory, 0.3 + 2e-4 * unknowns
+
+
+class _Points(NamedTuple):
+    """Points over each phase: of the parts that follow it, and of all others."""
+
+    fine: tuple[int, ...]
+    coarse: tuple[int, ...]
+
+    def shape(self, axes: frozenset[int]) -> tuple[int, ...]:
+        """Points of the grid of a part that follows these phases."""
+        return tuple(
+            fine if axis in axes else min(fine, coarse)
+            for axis, (fine, coarse) in enumerate(zip(*self, strict=True))
+        )
+
+    def doubled(self, which: Mask) -> _Points:
+        """Twice the points over some phases: of the parts that follow them, and of others."""
+        counts = np.array([*self.fine, *self.coarse]) * np.where(which, 2, 1)
+        fine, coarse = np.split(counts, 2)
+        return _Points(tuple(fine.tolist()), tuple(coarse.tolist()))
 
 
 @dataclass
 class _Search:
-    """A system over several phases with what does not depend on the grid."""
+    """A system over several phases with what does not depend on the grids."""
 
     rows: PhaseRows
     structure: ClosedStructure
-    closed: Mask
-    still: Array  #: motion at the contacts at rest (r,)
+    parts: list[Part]
+    start: Array  #: static equilibrium (n,)
 
     @classmethod
     def of(cls, system: System, frequency: Array) -> _Search:
@@ -57,81 +90,77 @@ class _Search:
         refuse_disconnected(means)
         orbit_coordinates(means, float(frequency.max()))  # warns of forces that do not balance
         start = static_start(means)[: system.size]
-        structure, closed = close_contacts(means, rows.sampled_forces(), start)
-        along = structure.coordinates.lower @ structure.along
-        return cls(rows, structure, closed, start @ along)
+        structure, _ = close_contacts(means, rows.sampled_forces(), start)
+        return cls(rows, structure, parts_of(system, frequency, structure, start), start)
 
-    def residual(self, shape: tuple[int, ...]) -> PhaseResidual:
-        """Residual on a grid with so many points over each phase."""
-        grid = PhaseGrid(shape, self.rows.frequency)
-        return PhaseResidual(self.structure, PhaseContacts.of(self.rows, self.structure, grid))
+    def residual(self, points: _Points, known: PhaseResidual | None = None) -> PhaseResidual:
+        """Residual on grids with so many points over each phase."""
+        grids = [PhaseGrid(points.shape(part.axes), self.rows.frequency) for part in self.parts]
+        return PhaseResidual(self.parts, grids, self.rows.force, known)
+
+    def still(self, residual: PhaseResidual) -> Array:
+        """Motion of the parts at rest."""
+        x = self.start @ self.structure.coordinates.lower
+        return residual.joined(
+            [np.tile(x @ part.structure.along, (part.grid.size, 1)) for part in residual.parts]
+        )
 
     def solve(self, residual: PhaseResidual, y: Array | None, tolerance: float) -> Solution:
         """Newton's method; where it fails, with damping at the contacts that is removed again."""
         if y is None:
-            rest = np.tile(self.still, (residual.grid.size, 1))
-            state = residual.at(rest, self.closed)  # linear equations: one step solves them
-            y = rest + residual.correction(state)[0]
+            rest = self.still(residual)
+            y = rest + residual.correction(residual.at(rest, closed=True))[0]  # linear equations
         best = newton(residual, y, 0.01 * tolerance, patience=_PATIENCE)
         if best.error <= tolerance:
             return best
-        critical = residual.contacts.rows.stiffness.sum(axis=-1).mean(axis=0)
+        stiffness = self.rows.means.nodes.stiffness
+        critical = stiffness.reshape(-1, stiffness.shape[-1]).mean(axis=0)
         fastest = max(abs(self.rows.rate(mesh.cycles)) for mesh in self.rows.meshes)
         for part in (*_ADDED, 0.0):
             residual.excess = part * critical / (np.pi * fastest)
             trial = newton(residual, y, 0.01 * tolerance, _TRIES)
             if trial.error < 1e-3:
                 y = trial.state.y
-        residual.excess = 0.0 * critical
         return min(best, trial, key=lambda solution: solution.error)
 
     def first(
-        self, shape: tuple[int, ...], start: PhaseResponse | None, tolerance: float, free: bool
-    ) -> tuple[PhaseResidual, Solution]:
-        """Motion on the first grid, with more points if they are free and it is not found."""
+        self, points: _Points, start: PhaseResponse | None, tolerance: float, free: bool
+    ) -> tuple[_Points, PhaseResidual, Solution]:
+        """Motion on the first grids, with more points if they are free and it is not found."""
         while True:
-            residual = self.residual(shape)
-            y = None if start is None else _resampled(start, residual.grid)
+            residual = self.residual(points)
+            y = None if start is None else self._resampled(start, residual)
             solution = self.solve(residual, y, tolerance)
-            if solution.error <= tolerance or not free or max(shape) >= _LAST:
-                return residual, solution
-            shape = _doubled(shape, range(len(shape)))
+            if solution.error <= tolerance or not free or max(points.fine) >= _LAST:
+                return points, residual, solution
+            points = points.doubled(np.ones(2 * len(points.fine), dtype=bool))
 
-    def finer(
-        self,
-        residual: PhaseResidual,
-        solution: Solution,
-        errors: Array,
-        poor: Index,
-        tolerance: float,
-    ) -> tuple[PhaseResidual, Solution] | None:
-        """Motion with twice the points over the poor phases, or more; None if it is not found."""
-        shape = _doubled(residual.grid.shape, poor)
-        while np.prod(shape) <= _MOST:
-            finer = self.residual(shape)
-            refined = residual.grid.refined(solution.state.y, finer.grid)
-            better = newton(finer, refined, 0.01 * tolerance, patience=_PATIENCE)
-            if better.error <= tolerance:
-                return finer, better
-            # Flanks that part for less than a step need more points over all phases that matter.
-            matter = errors > _MATTER * errors.max()
-            fewer = matter & (np.array(shape) < max(shape))
-            shape = _doubled(shape, np.flatnonzero(fewer if fewer.any() else matter))
-        return None
+    def _resampled(self, start: PhaseResponse, residual: PhaseResidual) -> Array:
+        """Motion of the parts of another solution."""
+        numbers, values = start._all_lines
+        position = values[:, : len(start.names)]
+        return residual.joined([
+            sum_lines(
+                part.grid.points, numbers,
+                position @ (self.structure.coordinates.lower @ part.structure.along),
+            )
+            for part in residual.parts
+        ])  # fmt: skip
 
-    def changes(self, residual: PhaseResidual, y: Array) -> Array:
-        """Change of a motion with twice the points over each phase, over its size."""
-        grid, size, errors = residual.grid, residual.at(y).size, []
-        for axis in range(len(grid.shape)):
-            finer = self.residual(_doubled(grid.shape, [axis]))
-            trial = finer.at(grid.refined(y, finer.grid))
-            change = finer.correction(trial, 1e-3)[0]
-            errors.append(float(np.linalg.norm(change, axis=1).max()) / size)
-        return np.array(errors)
-
-
-def _doubled(shape: tuple[int, ...], axes: Any) -> tuple[int, ...]:
-    return tuple(count * (2 if axis in axes else 1) for axis, count in enumerate(shape))
+    def changes(self, points: _Points, residual: PhaseResidual, y: Array) -> Array:
+        """Change of a motion with twice the points over each phase and over those of others."""
+        state, count = residual.at(y), len(points.fine)
+        pairs = zip(residual.parts, state.parts, strict=True)
+        inverses = {id(part): MeshwiseInverse(part, each) for part, each in pairs}
+        errors = np.concatenate((np.zeros(count), residual.unfelt(state)))
+        for place in range(2 * count):
+            finer = self.residual(points.doubled(np.arange(2 * count) == place), residual)
+            if finer.size > residual.size:
+                finer.inverses = inverses
+                trial = finer.at(residual.refined(y, finer))
+                change = float(np.abs(finer.correction(trial, _ROUGH)[0]).max()) / state.size
+                errors[place] = max(errors[place], change)
+        return errors
 
 
 def phase_balance(
@@ -144,88 +173,89 @@ def phase_balance(
         remedy = "Give the Response of another frequency of the same system, or leave it out"
         raise InputError(what, "start", why, remedy)
     search = _Search.of(system, frequency)
-    shape = _first_shape(search.rows) if steps is None else _read_steps(steps, system.phases)
-    residual, solution = search.first(shape, start, tolerance, steps is None)
+    points = _first_points(search.rows) if steps is None else _read_steps(steps, system.phases)
+    points, residual, solution = search.first(points, start, tolerance, steps is None)
     step_error, smooth = float("nan"), True
+    poor, before = np.zeros(2 * system.phases, dtype=bool), np.zeros(2 * system.phases)
     while solution.error <= tolerance:
-        errors = search.changes(residual, solution.state.y)
-        smooth &= not errors.sum() > _FALLING * step_error  # the first one has none before it
+        errors = search.changes(points, residual, solution.state.y)
+        smooth &= bool(errors[poor].sum() <= _FALLING * before[poor].sum())
         step_error = float(errors.sum())
-        limit = _ACCURATE if smooth and residual.grid.size <= _MANY else _ENOUGH
-        poor = np.flatnonzero(errors > max(limit / errors.size, _WORST * errors.max()))
-        if steps is not None or not poor.size:
+        limit, most = (_ACCURATE, _MANY) if smooth else (_ENOUGH, _MOST)
+        poor = errors > max(limit / errors.size, _WORST * errors.max())
+        if steps is not None or step_error <= limit:
             break
-        better = search.finer(residual, solution, errors, poor, tolerance)
-        if better is None:
+        more, before = points.doubled(poor), errors
+        finer = search.residual(more, residual)
+        if finer.size > most:
             break
-        residual, solution = better
+        start_y = residual.refined(solution.state.y, finer)
+        better = newton(finer, start_y, 0.01 * tolerance, patience=_PATIENCE)
+        if not better.error <= tolerance:
+            break
+        points, residual, solution = more, finer, better
     converged = bool(solution.error <= tolerance)
     if not converged:
-        warn(
-            "steady-state", _not_converged(search.rows, residual, solution, tolerance), stacklevel=3
-        )
+        warn("steady-state", _not_converged(residual, solution, tolerance), stacklevel=3)
     elif step_error > _LIMIT:
-        warn("step-size", _coarse(residual.grid, step_error), stacklevel=3)
+        warn("step-size", _coarse(points, step_error, steps is None), stacklevel=3)
     error = max(solution.error, float(np.finfo(float).eps))
     facts = {"error": error, "step_error": step_error, "converged": converged}
-    return phase_response(search.rows, residual, solution.state, **facts)
+    return phase_response(search.rows, residual, solution.state, points=points.fine, **facts)
 
 
-def _first_shape(rows: PhaseRows) -> tuple[int, ...]:
+def _first_points(rows: PhaseRows) -> _Points:
     """Points over each phase with which an automatic choice starts."""
     cycles = np.abs([mesh.cycles for mesh in rows.meshes]).max(axis=0)
     turns = [np.abs(term.cycles) for each in rows.system.contacts for term in each.turning]
     shafts = np.max(turns, axis=0) if turns else np.ones_like(cycles)
     counts = np.where(cycles > 0.0, _MESH * cycles, _SHAFT * np.maximum(shafts, 1.0))
-    return tuple(int(count) for count in counts)
+    fine = tuple(int(count) for count in counts)
+    others = _OTHERS if len(fine) <= _FEW else _OTHERS // 2
+    return _Points(fine, tuple(min(count, others) for count in fine))
 
 
-def _read_steps(steps: Any, phases: int) -> tuple[int, ...]:
+def _read_steps(steps: Any, phases: int) -> _Points:
     """Points over each phase: one whole number for all, or one for each."""
     counts: Index = np.atleast_1d(np.asarray(steps))
     if counts.size not in (1, phases):
         what, why = f"steps = {steps}", f"There are {phases} phases"
         raise InputError(what, "steps", why, "Give a whole number for each, or one for all")
-    return tuple(
+    listed = tuple(
         require_whole("steps", count, 4) for count in np.broadcast_to(counts, (phases,)).tolist()
     )
+    return _Points(listed, listed)
 
 
-def _resampled(start: PhaseResponse, grid: PhaseGrid) -> Array:
-    """Motion at the contacts of another solution on a grid."""
-    numbers, values = start._contact_lines
-    y = np.zeros((grid.size, values.shape[1]))
-    step = max(1, 2**22 // max(len(numbers), 1))
-    for begin in range(0, grid.size, step):
-        turns = grid.points[begin : begin + step] @ numbers.T
-        y[begin : begin + step] = (np.exp(2j * np.pi * turns) @ values).real
-    return y
-
-
-def _coarse(grid: PhaseGrid, step_error: float) -> str:
-    counts = " x ".join(map(str, grid.shape))
+def _coarse(points: _Points, step_error: float, automatic: bool) -> str:
+    counts = " x ".join(map(str, points.fine))
+    remedy = "Give more steps, or omit them for an automatic choice"
+    if automatic:
+        remedy = "Forces that jump or bend with the teeth need more; give steps for more points"
     return (
         f"the motion changes by {100.0 * step_error:.2g} % of its size with twice the points, "
-        f"limit {100.0 * _LIMIT:g} %: {counts} points over the phases. Give more steps, or omit "
-        "them for an automatic choice"
+        f"limit {100.0 * _LIMIT:g} %: {counts} points over the phases. {remedy}"
     )
 
 
-def _not_converged(
-    rows: PhaseRows, residual: PhaseResidual, solution: Solution, tolerance: float
-) -> str:
+def _not_converged(residual: PhaseResidual, solution: Solution, tolerance: float) -> str:
     """Message that names the contact with the largest residual."""
-    state = solution.state
-    along = np.broadcast_to(
-        residual.contacts.rows.along, (len(state.y), *residual.contacts.rows.along.shape[1:])
-    )
-    distance = np.abs(np.einsum("pjr,pr->pj", along, state.residual)).max(axis=0)
-    worst = int(np.argmax(distance))
-    open_share = float(np.mean(state.law.side[:, worst] == 0.0))
-    mesh = next(mesh for mesh in rows.meshes if worst in mesh.contacts)
+    worst: tuple[float, str] = (-1.0, "")
+    for part, state in zip(residual.parts, solution.state.parts, strict=True):
+        along = np.broadcast_to(
+            part.contacts.rows.along, (len(state.y), *part.contacts.rows.along.shape[1:])
+        )
+        distance = np.abs(np.einsum("pjr,pr->pj", along, state.residual)).max(axis=0)
+        number = int(np.argmax(distance))
+        rows, share = part.structure.rows, np.mean(state.law.side[:, number] == 0.0)
+        mesh = next(mesh for mesh in rows.meshes if number in mesh.contacts)
+        text = (
+            f"Contact {part.structure.members[number]}, whose mesh runs at "
+            f"{abs(rows.rate(mesh.cycles)):.6g} Hz, has the largest residual, "
+            f"{1e6 * distance[number]:.3g} um; it is open for {100.0 * share:.3g} % of the motion"
+        )
+        worst = max(worst, (float(distance[number]), text))
     return (
         f"no motion over the phases was found: certified error {solution.error:.2e}, limit "
-        f"{tolerance:.0e}. Contact {worst}, whose mesh runs at {abs(rows.rate(mesh.cycles)):.6g} "
-        f"Hz, has the largest residual, {1e6 * distance[worst]:.3g} um; it is open for "
-        f"{100.0 * open_share:.3g} % of the motion. Try another start, more steps or more damping"
+        f"{tolerance:.0e}. {worst[1]}. Try another start, more steps or more damping"
     )

@@ -1,4 +1,4 @@
-"""Motion on a grid of several phases: its transforms, its contacts, and the residual of it.
+"""Motion on a grid of several phases: its transforms and its contacts.
 
 A motion over phases ``phi_d`` with the frequencies ``f_d`` is a Fourier series over all of them.
 The line of the whole numbers ``k`` has the frequency ``k.f``; a derivative over time is the sum of
@@ -15,17 +15,12 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from tribodyn.dynamics.harmonic.meshwise_inverse import MeshwiseInverse
-from tribodyn.dynamics.harmonic.newton import VECTORS, Residual, State, solve_linear
 from tribodyn.dynamics.harmonic.phase_rows import Mesh, PhaseRows
-from tribodyn.dynamics.modal.closed_structure import ClosedStructure
 from tribodyn.dynamics.modal.contact_equations import ContactEquations, with_dead_zone
 from tribodyn.types import Array, ComplexArray, Index, Mask
 
 #: Part of the largest frequency that is none.
 _STILL = 1e-12
-#: Bytes of the vectors of a linear solution, and the fewest of them.
-_MEMORY, _FEWEST = 2**30, 30
 
 
 @dataclass(frozen=True)
@@ -73,18 +68,30 @@ class PhaseGrid:
 
     def values(self, spectrum: ComplexArray) -> Array:
         """Values (p, c) of a half spectrum (k, c)."""
-        half = (*self.shape[:-1], self.shape[-1] // 2 + 1)
-        lines, axes = spectrum.reshape(*half, -1), tuple(range(len(self.shape)))
+        lines, axes = spectrum.reshape(*self.half, -1), tuple(range(len(self.shape)))
         return np.asarray(np.fft.irfftn(lines, self.shape, axes).reshape(self.size, -1))
 
+    @property
+    def half(self) -> tuple[int, ...]:
+        """Shape of the half spectrum."""
+        return (*self.shape[:-1], self.shape[-1] // 2 + 1)
+
+    def places(self, numbers: Index) -> Index:
+        """Places of lines (k, phases) of the half spectrum."""
+        at = numbers % np.array(self.shape)
+        return np.asarray(np.ravel_multi_index(tuple(at.T), self.half))
+
+    def common(self, other: PhaseGrid) -> Index:
+        """Numbers of the lines that two grids have (k, phases), the mean first."""
+        pairs = zip(self.shape, other.shape, strict=True)
+        both = PhaseGrid(tuple(min(pair) for pair in pairs), self.frequency)
+        return np.asarray(both.numbers[~both.unpaired])
+
     def refined(self, values: Array, finer: PhaseGrid) -> Array:
-        """Values (p, c) on a grid with no fewer points over any phase."""
-        lines = self.spectrum(values)
-        lines[self.unpaired] = 0.0
-        places = self.numbers % np.array(finer.shape)
-        half = (*finer.shape[:-1], finer.shape[-1] // 2 + 1)
-        padded = np.zeros((math.prod(half), values.shape[1]), dtype=complex)
-        padded[np.ravel_multi_index(tuple(places.T), half)] = lines
+        """Values (p, c) on another grid: with the lines that both have."""
+        numbers = self.common(finer)
+        padded = np.zeros((math.prod(finer.half), values.shape[1]), dtype=complex)
+        padded[finer.places(numbers)] = self.spectrum(values)[self.places(numbers)]
         padded *= finer.size / self.size
         return finer.values(padded)
 
@@ -116,7 +123,7 @@ class PhaseContacts(ContactEquations):
     jumps: _Jumps  #: places of the rows of ``before`` and ``after``
 
     @classmethod
-    def of(cls, rows: PhaseRows, structure: ClosedStructure, grid: PhaseGrid) -> PhaseContacts:
+    def of(cls, rows: PhaseRows, structure: Any, grid: PhaseGrid) -> PhaseContacts:
         """Sample the contacts of a system."""
         inverse = structure.coordinates.inverse
         bases = inverse.T @ structure.along, inverse.T @ structure.push
@@ -196,33 +203,3 @@ def _stacked(parts: list[Any], counts: list[int]) -> Any:
         return type(parts[0])(*(_stacked(list(part), counts) for part in zip(*parts, strict=True)))
     pairs = zip(parts, counts, strict=True)
     return np.concatenate([np.broadcast_to(part, (n, *part.shape[1:])) for part, n in pairs])
-
-
-class PhaseResidual(Residual):
-    """Residual of a motion over several phases."""
-
-    def __init__(self, structure: ClosedStructure, contacts: PhaseContacts) -> None:
-        self.structure, self.contacts, self.frequency = structure, contacts, 1.0
-        self.grid, self.omega = contacts.grid, contacts.grid.omega
-        numbers = self.grid.numbers
-        structure.refuse_resonance(self.omega, lambda k: f"the line {numbers[k]} of the phases")
-        self.receptances = structure.receptances(self.omega)
-        self.receptances[self.grid.unpaired] = 0.0
-        self._differentiate = np.where(self.grid.unpaired, 0.0, 1j * self.omega)[:, None]
-        self.excess = np.zeros(len(contacts.dead))
-
-    def rate(self, y: Array) -> Array:
-        """Derivative of a motion (p, r) by time."""
-        return self.grid.values(self._differentiate * self.grid.spectrum(y))
-
-    def response(self, force: Array) -> Array:
-        """Motion at the contacts under forces (p, s)."""
-        return self.grid.values((self.receptances @ self.grid.spectrum(force)[..., None])[..., 0])
-
-    def _corrected(self, state: State, accuracy: float) -> tuple[Array, int]:
-        vectors = int(np.clip(_MEMORY // state.y.nbytes, _FEWEST, VECTORS))
-        product, nearly = self.derivative(state), MeshwiseInverse(self, state)
-        solution, count = solve_linear(
-            lambda x: product(nearly(x)), -state.residual, accuracy, vectors
-        )
-        return nearly(solution), count

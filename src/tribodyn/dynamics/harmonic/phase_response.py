@@ -9,12 +9,12 @@ import numpy as np
 
 from tribodyn.dynamics.equations.motion import forces
 from tribodyn.dynamics.harmonic.newton import State
-from tribodyn.dynamics.harmonic.phase_grid import PhaseGrid, PhaseResidual
+from tribodyn.dynamics.harmonic.phase_residual import PhaseResidual
 from tribodyn.dynamics.harmonic.phase_rows import PhaseRows
 from tribodyn.dynamics.time.response import FineSamples, Response
 from tribodyn.errors import real_numbers, require_one_of
 from tribodyn.record import record
-from tribodyn.types import Array, ComplexArray, Index
+from tribodyn.types import Array, ComplexArray, Index, Mask
 
 #: Lines below this part of the strongest one are rounding.
 _ROUNDING = 1e-14
@@ -22,6 +22,11 @@ _ROUNDING = 1e-14
 _RECORDED, _MOST = 64, 4096
 #: Numbers that are held at once while lines are summed up.
 _TOGETHER = 2**22
+#: Samples per cycle of the fastest phase along the closed line, most cycles of it, and cycles over
+#: which no two phases fall into step on it.
+_SAMPLED, _LONGEST, _APART = 64, 1024, 12
+#: What has lines, in the order of their columns.
+_QUANTITIES = ("position", "velocity", "acceleration", "deflection", "contact_force")
 
 
 class Lines(NamedTuple):
@@ -37,8 +42,9 @@ class PhaseResponse(Response):
     """Motion over several independent phases.
 
     The record is a piece of the time history, which :meth:`at` continues to any time. Means and
-    extremes over the whole motion are those of ``fine``, whose samples are the points of the grid
-    over all phases, each with the same weight; their times count within a cycle of the first phase.
+    extremes over the whole motion are those of ``fine``: even samples along a line that closes
+    after whole numbers of cycles of all phases, nearly in the ratio of their frequencies, and so
+    comes near every state of the motion. ``fine.phase`` runs from 0 to 1 along it.
 
     Parameters
     ----------
@@ -46,13 +52,15 @@ class PhaseResponse(Response):
         Frequency of each phase [Hz].
     points : tuple of int
         Points over each phase with which the motion was found.
+    turns : tuple of int
+        Cycles of each phase along the closed line of ``fine``.
     """
 
     frequencies: Array = field(default_factory=lambda: np.zeros(0))
     points: tuple[int, ...] = ()
-    _contact_lines: tuple[Index, ComplexArray] = field(default=None, repr=False)  # type: ignore[assignment]
+    turns: tuple[int, ...] = ()
     _rows: PhaseRows = field(default=None, repr=False)  # type: ignore[assignment]
-    _lines: tuple[Index, ComplexArray] = field(default=None, repr=False)  # type: ignore[assignment]
+    _all_lines: tuple[Index, ComplexArray] = field(default=None, repr=False)  # type: ignore[assignment]
 
     def at(self, time: Any) -> Response:
         """Motion at given times.
@@ -76,31 +84,40 @@ class PhaseResponse(Response):
         """
         times = real_numbers("time", time).reshape(-1)
         points = times[:, None] * self.frequencies % 1.0
-        numbers, values = self._lines
-        motion = sum_lines(points, numbers, values)
+        numbers, values = self._all_lines
+        motion = sum_lines(points, numbers, values[:, : 2 * len(self.names)])
+        samples = self._samples(points, motion)
+        weight = np.full(times.size, 1.0 / max(times.size, 1))
+        phase = times * self.frequencies[0]
+        span = float(np.ptp(phase)) if times.size else 0.0
+        return Response(
+            time=times, phase=phase % 1.0, names=self.names, mesh_frequency=self.mesh_frequency,
+            periods=max(1, round(span)), fine=FineSamples(phase, times, weight, **samples),
+            step_number=self.step_number, extra_force=self.extra_force, engine=self.engine,
+            **samples,
+        )  # fmt: skip
+
+    def _samples(self, points: Array, motion: Array) -> dict[str, Any]:
+        """Positions, forces and so on at points, from positions and velocities (p, 2 n)."""
         q, v = np.split(motion, 2, axis=1)
-        moved = [np.zeros((0, width)) for width in (q.shape[1], *2 * (len(self._contacts),))]
-        step = max(1, _TOGETHER // max(1, q.shape[1] * len(self._contacts)))
+        count = len(self._rows.system.contacts)
+        moved = [np.zeros((0, width)) for width in (q.shape[1], count, count)]
+        step = max(1, _TOGETHER // max(1, q.shape[1] * count))
         parts = [
             forces(
                 self._rows.system, self._rows.nodes(points[at]), 1.0, q[at, None], v[at, None],
                 extra=self.extra_force,
             )
-            for at in (slice(begin, begin + step) for begin in range(0, len(times), step))
+            for at in (slice(begin, begin + step) for begin in range(0, len(points), step))
         ]  # fmt: skip
-        accelerated, deflected, pressed = (
-            np.concatenate([getattr(part, name)[:, 0] for part in parts]) if parts else empty
-            for name, empty in zip(("acceleration", "deflection", "contact"), moved, strict=True)
-        )
-        weight = np.full(times.size, 1.0 / max(times.size, 1))
-        phase = times * self.frequencies[0]
-        samples = (q, v, accelerated, deflected, pressed)
-        span = float(np.ptp(phase)) if times.size else 0.0
-        return Response(
-            times, phase % 1.0, *samples, self.names, self.mesh_frequency, max(1, round(span)),
-            FineSamples(phase, times, weight, *samples), self.step_number,
-            extra_force=self.extra_force, engine=self.engine,
-        )  # fmt: skip
+        names = {"acceleration": "acceleration", "deflection": "deflection",
+                 "contact_force": "contact"}  # fmt: skip
+        return {"position": q, "velocity": v} | {
+            name: np.concatenate([getattr(part, of_part)[:, 0] for part in parts])
+            if parts
+            else empty
+            for (name, of_part), empty in zip(names.items(), moved, strict=True)
+        }
 
     def lines(self, quantity: str = "contact_force") -> Lines:
         """Spectral lines of a quantity.
@@ -123,17 +140,17 @@ class PhaseResponse(Response):
         InputError
             If the quantity is unknown.
         """
-        known = ("contact_force", "deflection", "position", "velocity", "acceleration")
-        require_one_of("quantity", quantity, known)
-        grid = PhaseGrid(self.points, self.frequencies)
-        numbers, values = cosines(grid, getattr(self.fine, quantity))
+        require_one_of("quantity", quantity, _QUANTITIES)
+        numbers, values = self._all_lines
+        size, count = len(self.names), self.deflection.shape[1]
+        ends = np.cumsum([0, size, size, size, count, count])
+        place = _QUANTITIES.index(quantity)
+        chosen = values[:, ends[place] : ends[place + 1]]
+        strong = _strong(chosen)
+        numbers, chosen = numbers[strong], chosen[strong]
         frequency = np.asarray(numbers @ self.frequencies)
         order = np.argsort(frequency, kind="stable")
-        return Lines(frequency[order], values[order], numbers[order])
-
-    @property
-    def _contacts(self) -> Any:
-        return self._rows.system.contacts
+        return Lines(frequency[order], chosen[order], numbers[order])
 
     def __repr__(self) -> str:
         """One line."""
@@ -146,27 +163,27 @@ class PhaseResponse(Response):
         )
 
 
-def cosines(grid: PhaseGrid, values: Array) -> tuple[Index, ComplexArray]:
-    """Whole numbers and amplitudes of the lines of values (p, c), each once, the mean first."""
-    return _paired(grid, grid.spectrum(values) / grid.size)
-
-
-def _paired(grid: PhaseGrid, spectrum: ComplexArray) -> tuple[Index, ComplexArray]:
-    numbers = grid.numbers
-    # Lines whose last number is zero are in the half spectrum with both signs.
+def _cosines(numbers: Index, lines: ComplexArray, frequency: Array) -> tuple[Index, ComplexArray]:
+    """Lines of cosines with positive frequencies, each once, the mean first, from amplitudes."""
+    # Lines whose last number is zero are in a half spectrum with both signs.
     nonzero = numbers != 0
     first = numbers[np.arange(len(numbers)), nonzero.argmax(axis=1)]
     once = (numbers[:, -1] > 0) | (first > 0) | ~nonzero.any(axis=1)
-    once &= ~grid.unpaired
-    numbers, lines = numbers[once], 2.0 * spectrum[once]
+    numbers, lines = numbers[once], 2.0 * lines[once]
     lines[0] /= 2.0
-    back = grid.omega[once] < 0.0
+    back = numbers @ frequency < 0.0
     numbers = np.where(back[:, None], -numbers, numbers)
     lines = np.where(back[:, None], lines.conj(), lines)
+    strong = _strong(lines)
+    return numbers[strong], lines[strong]
+
+
+def _strong(lines: ComplexArray) -> Mask:
+    """Lines (k, c) that are more than rounding in a column, and the mean, which is the first."""
     size = np.abs(lines).max(axis=0, initial=0.0)
     strong = (np.abs(lines) > _ROUNDING * size).any(axis=1)
     strong[0] = True
-    return numbers[strong], lines[strong]
+    return np.asarray(strong)
 
 
 def sum_lines(points: Array, numbers: Index, values: ComplexArray) -> Array:
@@ -179,42 +196,112 @@ def sum_lines(points: Array, numbers: Index, values: ComplexArray) -> Array:
     return total
 
 
+def closed_line(frequency: Array) -> tuple[int, ...]:
+    """Cycles of each phase, nearly in the ratio of the frequencies, that cover all phases."""
+    slowest, fastest = float(frequency.min()), float(frequency.max())
+    reach = _APART if frequency.size < 4 else _APART // 3
+    axes = [np.arange(0 if axis == 0 else -reach, reach + 1) for axis in range(frequency.size)]
+    small = np.stack(np.meshgrid(*axes, indexing="ij"), axis=-1).reshape(-1, frequency.size)
+    small = small[small.any(axis=1)]
+    best, nearest = np.ones(frequency.size, dtype=np.int64), np.inf
+    for count in range(1, max(2, int(_LONGEST * slowest / fastest)) + 1):
+        turns = np.maximum(np.rint(count * frequency / slowest), 1.0).astype(np.int64)
+        distance = float(np.abs(turns * slowest / (count * frequency) - 1.0).max())
+        if distance < nearest and np.all(small @ turns):
+            best, nearest = turns, distance
+    return tuple(best.tolist())
+
+
+def _along(line: tuple[int, ...], response: PhaseResponse) -> FineSamples:
+    """Even samples of a motion along a closed line, each with the same weight."""
+    from scipy.fft import next_fast_len
+
+    numbers, values = response._all_lines
+    orders = numbers @ np.array(line)
+    highest = max(_SAMPLED * max(line), 2 * int(np.abs(orders).max(initial=0)) + 2)
+    count = int(next_fast_len(highest, real=True))
+    width = 2 * len(response.names)
+    lines = np.zeros((count // 2 + 1, width), dtype=complex)
+    amplitudes = np.where((orders < 0)[:, None], values[:, :width].conj(), values[:, :width])
+    np.add.at(lines, np.abs(orders), 0.5 * count * amplitudes)
+    lines[0] = 2.0 * lines[0].real
+    phase = np.arange(count) / count
+    points = phase[:, None] * np.array(line) % 1.0
+    samples = response._samples(points, np.fft.irfft(lines, count, axis=0))
+    fastest = int(np.argmax(line))
+    time = phase * line[fastest] / response.frequencies[fastest]
+    return FineSamples(phase, time, np.full(count, 1.0 / count), **samples)
+
+
 def phase_response(
     rows: PhaseRows, residual: PhaseResidual, state: State, **facts: Any
 ) -> PhaseResponse:
-    """Evaluate a motion at the points of its grid, and over a piece of time."""
-    structure, grid, system = residual.structure, residual.grid, rows.system
-    spectrum = grid.spectrum(state.force) / grid.size
-    spectrum[grid.unpaired] = 0.0
-    force, torque = structure.balanced(spectrum, state.y.mean(axis=0))
-    amplitudes = structure.motion(grid.omega, force)
-    q, v = (grid.values(part * grid.size) for part in amplitudes)
-    (stiffness, damping), inverse = system.over_mass, structure.coordinates.inverse
-    pushed = state.law.force @ structure.push.T @ inverse
-    acceleration = pushed - q @ stiffness.T - v @ damping.T + system.inverse_mass @ torque
-    fine = FineSamples(
-        phase=grid.points[:, 0],
-        time=grid.points[:, 0] / grid.frequency[0],
-        weight=np.full(grid.size, 1.0 / grid.size),
-        position=q,
-        velocity=v,
-        acceleration=acceleration,
-        deflection=state.law.compression,
-        contact_force=state.law.contact,
-    )
-    numbers, lines = _paired(grid, np.concatenate(amplitudes, axis=1))
-    facts |= {"extra_force": torque, "period": 0, "engine": "harmonic-balance"}
-    empty, step = np.zeros(0), structure.rate / float((grid.frequency * grid.shape).max())
-    whole = PhaseResponse(
-        empty, empty, q[:0], v[:0], q[:0], fine.deflection[:0], fine.contact_force[:0],
-        tuple(system.names), float(grid.frequency[0]), 1, fine, step,
-        frequencies=grid.frequency, points=grid.shape, _contact_lines=cosines(grid, state.y),
-        _rows=rows, _lines=(numbers, lines), **facts,
+    """Evaluate a motion along a closed line through all phases, and over a piece of time."""
+    structure, system, frequency = residual.structure, rows.system, rows.frequency
+    numbers, force, others = _all_forces(rows, residual, state)
+    parts = zip(residual.parts, state.parts, strict=True)
+    closing = sum(
+        structure.push.T @ part.structure.push @ part.structure.contact_stiffness
+        @ each.y.mean(axis=0)
+        for part, each in parts
     )  # fmt: skip
+    force, torque = structure.balanced(force, np.asarray(closing))
+    omega = 2.0 * np.pi * (numbers @ frequency)
+    q, v = structure.motion(omega, force)
+    lines = np.concatenate((q, v, 1j * omega[:, None] * v, others), axis=1)
+    facts |= {"extra_force": torque, "period": 0, "engine": "harmonic-balance"}
+    size, count, empty = system.size, len(system.contacts), np.zeros(0)
+    widths = zip(_QUANTITIES, (size, size, size, count, count), strict=True)
+    none: dict[str, Any] = {name: np.zeros((0, width)) for name, width in widths}
+    fastest = max(float((part.grid.frequency * part.grid.shape).max()) for part in residual.parts)
+    whole = PhaseResponse(
+        time=empty, phase=empty, names=tuple(system.names), mesh_frequency=float(frequency[0]),
+        periods=1, fine=FineSamples(empty, empty, empty, **none),
+        step_number=structure.rate / fastest, frequencies=frequency, turns=closed_line(frequency),
+        _rows=rows, _all_lines=_cosines(numbers, lines, frequency), **none, **facts,
+    )  # fmt: skip
+    whole = replace(whole, fine=_along(whole.turns, whole))
     # The record: a cycle of the slowest phase if that is short enough.
-    fastest = _RECORDED * float(grid.frequency.max())
-    count = min(int(np.ceil(fastest / float(grid.frequency.min()))), _MOST)
+    fastest = _RECORDED * float(frequency.max())
+    count = min(int(np.ceil(fastest / float(frequency.min()))), _MOST)
     history = whole.at(np.arange(count) / fastest)
     names = ("time", "phase", "position", "velocity", "acceleration", "deflection", "contact_force")
     columns = {name: getattr(history, name) for name in names}
     return replace(whole, **columns, periods=history.periods)
+
+
+def _all_forces(
+    rows: PhaseRows, residual: PhaseResidual, state: State
+) -> tuple[Index, ComplexArray, ComplexArray]:
+    """Lines of all parts: numbers, forces (k, s), and compressions and forces of the contacts."""
+    structure, count = residual.structure, len(rows.system.contacts)
+    listed, forces, others = [], [], []
+    for part, each in zip(residual.parts, state.parts, strict=True):
+        kept, grid = ~part.grid.unpaired, part.grid
+        listed.append(grid.numbers[kept])
+        lines = (grid.spectrum(each.force) / grid.size)[kept]
+        forces.append(lines @ (part.structure.push.T @ structure.push))
+        columns = np.zeros((len(lines), 2 * count), dtype=complex)
+        members = part.structure.members
+        columns[:, members] = (grid.spectrum(each.law.compression) / grid.size)[kept]
+        columns[:, count + members] = (grid.spectrum(each.law.contact) / grid.size)[kept]
+        others.append(columns)
+    grid = max((part.grid for part in residual.parts), key=lambda grid: min(grid.shape))
+    loads = rows.force(grid.points) @ structure.coordinates.inverse.T @ structure.push
+    if len(loads) > 1:
+        kept = ~grid.unpaired
+        listed.append(grid.numbers[kept])
+        forces.append((grid.spectrum(loads) / grid.size)[kept])
+    else:
+        listed.append(np.zeros((1, len(grid.shape)), dtype=np.int64))
+        forces.append(loads.astype(complex))
+    others.append(np.zeros((len(forces[-1]), 2 * count), dtype=complex))
+    numbers, place = np.unique(np.concatenate(listed), axis=0, return_inverse=True)
+    mean = int(np.flatnonzero(~numbers.any(axis=1))[0])
+    order = np.concatenate(([mean], np.delete(np.arange(len(numbers)), mean)))
+    totals = []
+    for columns in (np.concatenate(forces), np.concatenate(others)):
+        total = np.zeros((len(numbers), columns.shape[1]), dtype=complex)
+        np.add.at(total, place.reshape(-1), columns)
+        totals.append(total[order])
+    return numbers[order], totals[0], totals[1]

@@ -114,23 +114,40 @@ class ClosedStructure:
                 remedy = "Give System.damping or Contact.damping, or another frequency"
                 raise ComputationError(Problem(what, "System.damping", why, remedy))
 
-    def receptances(self, omega: Array) -> ComplexArray:
+    def receptances(
+        self, omega: Array, along: Array | None = None, push: Array | None = None
+    ) -> ComplexArray:
         """Motions at the contacts per force there, (k, r, s) [s^2]; the first frequency is zero."""
-        if self.modes is None:
-            matrices = self.output @ self._solve(omega, self.input[None].astype(complex))
-        else:
-            values, right, left = self.modes
-            shares = (self.output @ right).T[:, :, None] * (left @ self.input)[:, None, :]
-            flat = (1.0 / (1j * omega[:, None] - values)) @ shares.reshape(values.size, -1)
-            matrices = flat.reshape(omega.size, *shares.shape[1:])
+        # along, push: directions within those of all contacts and loads, all by default.
+        output, into = self.output, self.input
+        if along is not None:
+            output = along.T @ self.along @ self.output
+        if push is not None:
+            into = self.input @ (self.push.T @ push)
+        matrices = self._receptances(omega, output, into)
         if self.balance is not None:
-            torque, gain = self._balancing()
-            still = np.eye(len(gain)) - np.outer(torque, gain)
-            # The torque balances all forces on the drive, those of the closed contacts included.
-            mean = matrices[0] @ still
-            loop = matrices[0] @ np.outer(torque, gain @ self.contact_stiffness)
-            matrices[0] = np.linalg.solve(np.eye(len(loop)) - loop, mean)
-        return np.asarray(matrices, dtype=complex)
+            still = self._at_rest
+            still = still if along is None else along.T @ self.along @ still
+            matrices[0] = still if push is None else still @ (self.push.T @ push)
+        return matrices
+
+    def _receptances(self, omega: Array, output: Array, into: Array) -> ComplexArray:
+        if self.modes is None:
+            return np.asarray(output @ self._solve(omega, into[None].astype(complex)))
+        values, right, left = self.modes
+        shares = (output @ right).T[:, :, None] * (left @ into)[:, None, :]
+        flat = (1.0 / (1j * omega[:, None] - values)) @ shares.reshape(values.size, -1)
+        return np.asarray(flat.reshape(omega.size, *shares.shape[1:]), dtype=complex)
+
+    @cached_property
+    def _at_rest(self) -> ComplexArray:
+        """Motions at all contacts per constant force (r, s) with the balancing torque."""
+        torque, gain = self._balancing()
+        still = np.eye(len(gain)) - np.outer(torque, gain)
+        # The torque balances all forces on the drive, those of the closed contacts included.
+        matrix = self._receptances(np.zeros(1), self.output, self.input)[0]
+        loop = matrix @ np.outer(torque, gain @ self.contact_stiffness)
+        return np.asarray(np.linalg.solve(np.eye(len(loop)) - loop, matrix @ still))
 
     def _balancing(self) -> tuple[Array, Array]:
         """Components of the balancing torque for a unit gain, and the gain by forces (s,)."""
@@ -139,12 +156,13 @@ class ClosedStructure:
         torque = self.push.T @ (coordinates.inverse @ self.balance.force)
         return torque, self.balance.direction @ coordinates.free.T @ self.push
 
-    def balanced(self, force: ComplexArray, mean: Array) -> tuple[ComplexArray, Array]:
+    def balanced(self, force: ComplexArray, closing: Array) -> tuple[ComplexArray, Array]:
         """Amplitudes of forces (k, s) with the balancing torque, and this torque (n,)."""
+        # closing (s,): mean force of the closed contacts in opposite sense, a part of the first.
         if self.balance is None:
             return force, np.zeros(len(self.push))
         torque, gain = self._balancing()
-        size = -float(gain @ (force[0].real - self.contact_stiffness @ mean))
+        size = -float(gain @ (force[0].real - closing))
         total = force.copy()
         total[0] += size * torque
         return total, size * self.balance.force

@@ -32,8 +32,16 @@ def _caption(motion: MachineMotion) -> str:
     bearings = ", and the radial force on each bearing" if motion.bearing else ""
     return (
         f"Force of each mesh along its line of action{bearings}, without its mean, each to its own "
-        "scale; those that vary most come first. The period is the shortest after which all meshes "
-        f"repeat.{rest}"
+        "scale; those that vary most come first. " + _period(motion) + rest
+    )
+
+
+def _period(motion: MachineMotion) -> str:
+    if motion.phase_turns is None:
+        return "The period is the shortest after which all meshes repeat."
+    return (
+        "The meshes have no common period: the record comes near all positions that they take to "
+        "each other."
     )
 
 
@@ -89,5 +97,6 @@ def machine_forces(motion: MachineMotion) -> Any:
     if swing[worst] <= ROUNDING * np.abs(mean).max():
         title = "No mesh force varies"
     part = f", its first {motion.clock[_SAMPLES]:.2%}" if motion.clock.size > _SAMPLES else ""
-    label = f"Phase of the clock, 1 = {1e3 / motion.frequency:.4g} ms{part}"
+    name = "Phase of the clock" if motion.phase_turns is None else "Part of the record"
+    label = f"{name}, 1 = {1e3 / motion.frequency:.4g} ms{part}"
     return stack(title, label, panels)

@@ -31,7 +31,8 @@ def _lines(motion: MachineMotion, quantity: str, amplitudes: Array) -> list[Trac
         group = meshes[0][0] if len(meshes) == 1 else "several meshes"
         groups[group].append(place)
         labels[place] = ", ".join(f"{name} harmonic {number}" for name, number in meshes)
-    hertz = displayed("frequency", motion.frequency * np.array(list(orders)))
+    exact = [motion.line_frequency(meshes) for meshes in orders.values()]
+    hertz = displayed("frequency", np.array(exact))
     values, unit = displayed(quantity, amplitudes), display_unit(quantity)
     traces = []
     for number, (name, places) in enumerate(groups.items()):
@@ -97,7 +98,7 @@ def machine_orders(motion: MachineMotion) -> Any:
     quantity, label, values = rows[-1]
     orders = motion.mesh_orders(_HARMONICS)
     top = int(np.argmax(values))
-    order, meshes = list(orders.items())[top]
+    meshes = list(orders.values())[top]
     harmonics: dict[int, list[str]] = {}
     for name, number in meshes:
         harmonics.setdefault(number, []).append(name)
@@ -106,7 +107,7 @@ def machine_orders(motion: MachineMotion) -> Any:
     )
     title = (
         f"{label}: the largest line, {rounded(quantity, float(values[top]))}, is {cause} at "
-        f"{rounded('frequency', order * motion.frequency)}"
+        f"{rounded('frequency', motion.line_frequency(meshes))}"
     )
     if not values[top]:
         title = f"{label}: no line at a mesh harmonic"

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
+from tribodyn.errors import InputError
 from tribodyn.faults import BearingForce, BearingImpacts, Fault, Waviness
 from tribodyn.interrupt import single_blas_thread
 from tribodyn.machine.planetary.ring_sensor import passing_weights
@@ -198,6 +199,13 @@ def machine_turning_motion(
     case: MachineCase, sound: LoadResult, progress: Progress = SILENT
 ) -> MachineTurningMotion:
     """Compute the steady motion over whole turns; with equal teeth it is that of the result."""
+    if sound.motion.phase_turns is not None:
+        what, why = "the motion has no common period", "A recording repeats the period of a motion"
+        remedy = (
+            "Use result.operation.response.at(time), or compute the stage by itself or with "
+            'solver.phases = "off"'
+        )
+        raise InputError(what, "solver.phases", why, remedy)
     with single_blas_thread():
         progress.start("Teeth over whole turns")
         machine = turning_machine(case, sound)

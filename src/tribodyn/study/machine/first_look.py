@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import os
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 from tribodyn.errors import ComputationError, Problem, warn
 from tribodyn.machine import machine_structure
@@ -14,6 +14,7 @@ from tribodyn.study.planetary.machine_stages import motion_of_stage
 if TYPE_CHECKING:
     from tribodyn.machine import Machine
     from tribodyn.study.machine.case import MachineCase
+    from tribodyn.study.machine.tables import SolverTable
 
 #: Mesh cycles of a period above which a warning says what they cost, steps per cycle, and bytes of
 #: a step for each coordinate: three samples of position, velocity and acceleration.
@@ -22,8 +23,66 @@ _LONG_PERIOD, _STEPS, _BYTES = 400, 128, 72
 _FEWEST = 60
 
 
-def warn_of_period(machine: Machine) -> None:
-    """Warn of a period with so many mesh cycles that it takes much time and memory."""
+def over_phases(solver: SolverTable, machine: Machine) -> bool:
+    """Whether the motion of a machine is found over independent phases of its meshes."""
+    bearings = machine.bearings.values()
+    if len(machine.phases.frequency) == 1 or solver.phases == "off":
+        return False
+    if any(bearing.unloaded is not None for bearing in bearings):
+        return False  # supports with clearance act on one clock
+    return solver.phases == "on" or max(machine.clock.cycles.values()) > _LONG_PERIOD
+
+
+class PhaseCost(NamedTuple):
+    """What a motion over independent phases takes, before it is computed."""
+
+    phases: dict[str, float]  #: frequency of each phase by the names of its meshes [Hz]
+    unknowns: int
+    memory: float  #: [byte]
+    time: float  #: of this computer's processor, once all is compiled [s]
+
+    def __str__(self) -> str:
+        """One line."""
+        listed = ", ".join(f"{name} {value:.6g} Hz" for name, value in self.phases.items())
+        return (
+            f"The motion is found over {len(self.phases)} phases without a common period "
+            f"({listed}): about {self.unknowns} unknowns, {1e-9 * self.memory:.2g} GB and "
+            f"{self.time:.1g} s for each load"
+        )
+
+
+def phase_cost_of(solver: SolverTable, machine: Machine) -> PhaseCost:
+    """Cost of the motion of a machine over phases; refuse what needs too much memory."""
+    from tribodyn.dynamics.harmonic.phase_balance import phase_cost
+
+    phases, names, counts = machine.phases, {}, []
+    for axis, frequency in enumerate(phases.frequency):
+        meshes = [name for name, cycles in phases.cycles.items() if cycles[axis]]
+        more = f" and {len(meshes) - 1} others" if len(meshes) > 1 else ""
+        names[f"{meshes[0]}{more}"] = frequency
+        counts.append(sum(max(len(machine.meshes[name].contacts), 1) for name in meshes))
+    cost = PhaseCost(names, *phase_cost(len(counts), counts))
+    if cost.memory > solver.memory:
+        what = f"the motion over {len(names)} phases takes about {1e-9 * cost.memory:.3g} GB"
+        why = f"At most {1e-9 * solver.memory:.3g} GB are allowed by solver.memory"
+        remedy = (
+            "Raise solver.memory, compute a part of the machine, or give two stages teeth whose "
+            "mesh frequencies are in a ratio of small whole numbers, so that they share a phase"
+        )
+        raise ComputationError(Problem(what, "solver.memory", why, remedy))
+    return cost
+
+
+def warn_of_motion(solver: SolverTable, machine: Machine) -> PhaseCost | None:
+    """Warn of a long period, or return the cost of the motion over phases; refuse too much."""
+    if over_phases(solver, machine):
+        return phase_cost_of(solver, machine)
+    warn_of_period(machine, solver.memory)
+    return None
+
+
+def warn_of_period(machine: Machine, memory: float = math.inf) -> None:
+    """Warn of a period with so many mesh cycles that it takes much time and memory [byte]."""
     clock = machine.clock
     fastest = max(clock.cycles, key=lambda name: clock.cycles[name])
     cycles = clock.cycles[fastest]
@@ -37,8 +96,8 @@ def warn_of_period(machine: Machine) -> None:
     reason, remedy = (
         "the teeth have few common factors",
         (
-            "In Python, harmonic_balance(system(structure, phases=True), machine.phases.frequency) "
-            "finds the motion without a common period"
+            'Set solver.phases = "auto", which finds the motion without a common period; bearings '
+            "with a clearance need the period"
         ),
     )
     if turning:
@@ -50,6 +109,7 @@ def warn_of_period(machine: Machine) -> None:
         f"({1.0 / clock.frequency:.4g} s), because {reason} ({', '.join(pairs)})",
         remedy,
         machine_structure(machine).size,
+        memory,
     )
 
 
@@ -65,14 +125,19 @@ def warn_of_orders(cycles: int, seconds: float) -> None:
         )
 
 
-def warn_of_steps(cycles: int, period: str, remedy: str, coordinates: int = 100) -> None:
-    """Warn of what a long period costs; refuse what this computer has no memory for."""
+def warn_of_steps(
+    cycles: int, period: str, remedy: str, coordinates: int = 100, memory: float = math.inf
+) -> None:
+    """Warn of what a long period costs; refuse what there is no memory [byte] for."""
     steps, least = _STEPS * cycles, min(coordinates, _FEWEST)
     gigabytes = 1e-9 * _BYTES * steps
     cost = f"{steps} steps and about {gigabytes * coordinates:.2g} GB for {coordinates} coordinates"
-    if gigabytes * least > _memory():
+    if gigabytes * least > min(_memory(), 1e-9 * memory):
         what = f"the motion takes {steps} steps and at least {gigabytes * least:.2g} GB"
+        allowed = f"solver.memory allows {1e-9 * memory:.3g} GB"
         where = f"This computer has {_memory():.3g} GB, and {period}"
+        if 1e-9 * memory < _memory():
+            where = f"{allowed}, and {period}"
         raise ComputationError(Problem(what, "meshes", where, remedy))
     warn("long-period", f"{period}. Each motion takes {cost}. {remedy}")
 

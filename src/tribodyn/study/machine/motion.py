@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from functools import cached_property
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
@@ -14,8 +14,11 @@ from tribodyn.types import Array, ComplexArray
 
 if TYPE_CHECKING:
     from tribodyn.dynamics import Response
-    from tribodyn.machine import MachineStructure
+    from tribodyn.machine import Machine, MachineStructure
 
+#: Highest harmonic of the fastest mesh among the lines, least size of one over the largest, and
+#: highest number of a phase in a line.
+_HIGHEST, _LEAST, _NUMBERS = 20, 1e-9, (4096, 160, 24, 8)
 #: Directions of forces and moments of a bearing.
 DIRECTIONS = ("x", "y", "z", "theta_x", "theta_y", "theta_z")
 
@@ -56,14 +59,70 @@ class PeriodicSamples(Record):
         return np.asarray(np.sqrt(np.maximum(self.mean((signal - self.mean(signal)) ** 2), 0.0)))
 
 
+class MotionLine(NamedTuple):
+    """A spectral line of a motion."""
+
+    frequency: float  #: [Hz]
+    amplitude: complex  #: of a cosine
+    numbers: tuple[int, ...]  #: cycles of each phase in it; on one clock its order
+    cause: str  #: in words: ``2 x first - 1 x second``
+
+
+def line_numbers(turns: Array, orders: Sequence[int]) -> dict[int, tuple[int, ...]]:
+    """Whole numbers of the phases, as small as possible, of orders along a closed line."""
+    turns = np.asarray(turns, dtype=np.int64)
+    reach = _NUMBERS[min(turns.size, len(_NUMBERS)) - 1]
+    if turns.size == 1:
+        return {order: (order // int(turns[0]),) for order in orders}
+    # All phases but that with the most turns; its number follows from the order.
+    first = int(np.argmax(turns))
+    axes = [np.zeros(1, np.int64) if d == first else np.arange(-reach, reach + 1)
+            for d in range(turns.size)]  # fmt: skip
+    others = np.stack(np.meshgrid(*axes, indexing="ij"), axis=-1).reshape(-1, turns.size)
+    sums, sizes = others @ turns, np.abs(others).sum(axis=1)
+    numbers = {}
+    for order in orders:
+        number, rest = np.divmod(order - sums, turns[first])
+        place = int(np.argmin(np.where(rest == 0, sizes + np.abs(number), 2**40)))
+        if rest[place] == 0:
+            line = others[place].tolist()
+            line[first] = int(number[place])
+            numbers[order] = tuple(line)
+    return numbers
+
+
+def line_cause(numbers: Sequence[int], meshes: Mapping[str, Sequence[int]]) -> str:
+    """Cause of a line in words: multiples of a mesh, or of meshes of several phases."""
+    for name, cycles in meshes.items():
+        axis = int(np.argmax(np.abs(cycles)))
+        count, rest = divmod(numbers[axis], cycles[axis])
+        if not rest and tuple(count * each for each in cycles) == tuple(numbers):
+            return f"{count} x {name}"
+    terms = []
+    for axis, number in enumerate(numbers):
+        if number:
+            name, cycles = min(
+                ((n, c) for n, c in meshes.items() if c[axis]), key=lambda pair: abs(pair[1][axis])
+            )
+            part = name if abs(cycles[axis]) == 1 else f"{name} / {abs(cycles[axis])}"
+            terms.append((" - " if number < 0 else " + ") + f"{abs(number)} x {part}")
+    text = "".join(terms)
+    return text[3:] if text.startswith(" + ") else f"-{text[3:]}"
+
+
 @record
 class MachineMotion(PeriodicSamples):
-    """Periodic motion of a machine over one period of its clock.
+    """Steady motion of a machine: over one period of its clock, or over independent phases.
+
+    Over phases the samples follow a line that closes after whole numbers of cycles of all phases,
+    nearly in the ratio of their frequencies, so that means, extremes and lines are those of all the
+    motion. Orders and cycles count along this line, ``lines`` has the exact frequencies.
 
     Parameters
     ----------
     clock : (s,) array
-        Phase of the clock; both ends and the middle of every step.
+        Phase of the clock, both ends and the middle of every step; over phases the part of the
+        closed line.
     weight : (s,) array
         Weights of the samples for means over the period.
     mesh : tuple of str
@@ -88,6 +147,12 @@ class MachineMotion(PeriodicSamples):
         Mesh cycles of each mesh in a period.
     frequency : float
         Periods of the clock per second [Hz].
+    phase_frequency : (phases,) array, optional
+        Frequency of each independent phase [Hz]; None on one clock.
+    phase_turns : (phases,) array, optional
+        Cycles of each phase along the closed line.
+    mesh_phases : (meshes, phases) array, optional
+        Mesh cycles of each mesh over each phase.
     """
 
     clock: Array = quantity("clock", unit="1", axis=True)
@@ -103,6 +168,22 @@ class MachineMotion(PeriodicSamples):
     acceleration: Array = quantity("clock", "node", "axis", unit="m/s^2")
     cycles: Array = quantity("mesh", unit="1")
     frequency: float = fact()
+    phase_frequency: Array | None = quantity("phase", unit="Hz", default=None)
+    phase_turns: Array | None = quantity("phase", unit="1", default=None)
+    mesh_phases: Array | None = quantity("mesh", "phase", unit="1", default=None)
+
+    @property
+    def mesh_frequency(self) -> Array:
+        """Mesh cycles of each mesh per second (meshes,) [Hz]."""
+        phases, frequency = self._phases
+        return np.asarray(phases @ frequency)
+
+    @property
+    def _phases(self) -> tuple[Array, Array]:
+        """Mesh cycles over each phase (meshes, phases), and frequencies; one clock is a phase."""
+        if self.phase_frequency is None or self.mesh_phases is None:
+            return self.cycles[:, None], np.array([self.frequency])
+        return self.mesh_phases, self.phase_frequency
 
     def harmonics(self, signal: Array, orders: Array) -> ComplexArray:
         """Complex amplitudes at orders of the clock.
@@ -119,8 +200,41 @@ class MachineMotion(PeriodicSamples):
         (k, ...) complex array
             In the unit of the signal.
         """
+        if self.phase_turns is not None:  # even samples
+            lines = np.fft.rfft(signal, axis=0)[np.asarray(orders, dtype=np.int64)]
+            return np.asarray(2.0 * lines / len(signal))
         waves = self.weight * np.exp(-2j * np.pi * np.multiply.outer(orders, self.clock))
         return np.asarray(2.0 * np.tensordot(waves, signal, axes=1))
+
+    def lines(self, signal: Array, count: int = 20) -> list[MotionLine]:
+        """Strongest spectral lines of a signal, with their exact frequencies and their causes.
+
+        Parameters
+        ----------
+        signal : (s,) array
+            On the samples.
+        count : int
+            Most lines.
+
+        Returns
+        -------
+        list of MotionLine
+            By rising frequency; amplitudes in the unit of the signal.
+        """
+        phases, frequency = self._phases
+        turns = np.ones(1) if self.phase_turns is None else self.phase_turns
+        highest = min(len(signal) // 2 - 1, _HIGHEST * int(self.cycles.max()))
+        waves = self.harmonics(signal, np.arange(1.0, highest + 1))
+        sizes = np.abs(waves)
+        least = _LEAST * sizes.max(initial=0.0)
+        chosen = np.argsort(-sizes, kind="stable")[:count]
+        numbers = line_numbers(turns, [int(n) + 1 for n in chosen if sizes[n] > least])
+        labels = dict(zip(self.mesh, phases.astype(int).tolist(), strict=True))
+        lines = [
+            MotionLine(float(np.dot(k, frequency)), waves[order - 1], k, line_cause(k, labels))
+            for order, k in numbers.items()
+        ]
+        return sorted(lines, key=lambda line: line.frequency)
 
     def mesh_orders(self, count: int) -> dict[int, list[tuple[str, int]]]:
         """Orders of the clock that meshes excite.
@@ -140,6 +254,22 @@ class MachineMotion(PeriodicSamples):
             for harmonic in range(1, count + 1):
                 orders.setdefault(int(cycles) * harmonic, []).append((name, harmonic))
         return dict(sorted(orders.items()))
+
+    def line_frequency(self, meshes: Sequence[tuple[str, int]]) -> float:
+        """Exact frequency of a line of :meth:`mesh_orders`.
+
+        Parameters
+        ----------
+        meshes : sequence of (str, int)
+            Meshes and their harmonics.
+
+        Returns
+        -------
+        float
+            [Hz]
+        """
+        name, harmonic = meshes[0]
+        return float(harmonic * self.mesh_frequency[self.mesh.index(name)])
 
     def mesh_spectra(self, mesh: str, harmonics: int = 20) -> Any:
         """Peak amplitudes of all signals over the order of one mesh, as those of a pair.
@@ -189,7 +319,7 @@ class MachineMotion(PeriodicSamples):
             )
             for k, name in enumerate(signals)
         }
-        attributes = {"mesh_frequency": cycles * self.frequency}
+        attributes = {"mesh_frequency": float(self.mesh_frequency[self.mesh.index(mesh)])}
         return xarray.Dataset(columns, {"order": orders / cycles}, attributes)
 
     @cached_property
@@ -222,6 +352,7 @@ def machine_motion(structure: MachineStructure, response: Response) -> MachineMo
         name: structure.bearing_load(name, fine.position, fine.velocity)
         for name in machine.bearings
     }
+    over = _over_phases(machine, response)
     nodes = machine.housing.nodes if machine.housing is not None else {}
     accelerations = {n: fine.acceleration @ structure.housing_node(n)[:3].T for n in nodes or {}}
     return MachineMotion(
@@ -236,8 +367,13 @@ def machine_motion(structure: MachineStructure, response: Response) -> MachineMo
         open=joined(separated, samples),
         bearing_force=joined(bearings, samples, (6,)),
         acceleration=joined(accelerations, samples, (3,)),
-        cycles=np.array([machine.clock.cycles[name] for name in force]),
-        frequency=machine.clock.frequency,
+        **(
+            over
+            or {
+                "cycles": np.array([machine.clock.cycles[name] for name in force]),
+                "frequency": machine.clock.frequency,
+            }
+        ),
     )
 
 
@@ -249,9 +385,27 @@ def motion_from(data: Any) -> MachineMotion:
             values[name] = float(data.attrs[name])
         elif name in ("mesh", "bearing", "node"):
             values[name] = tuple(map(str, data[name].values)) if name in data else ()
-        else:
+        elif name in data:  # phases are those of motions over phases
             values[name] = np.asarray(data[name].values)
     return MachineMotion(**values)
+
+
+def _over_phases(machine: Machine, response: Response) -> dict[str, Any]:
+    """Facts of a motion over independent phases; none on one clock."""
+    from tribodyn.dynamics import PhaseResponse
+
+    if not isinstance(response, PhaseResponse):
+        return {}
+    turns, frequency = np.array(response.turns), np.asarray(response.frequencies)
+    phases = np.array([machine.phases.cycles[name] for name in machine.meshes])
+    fastest = int(np.argmax(frequency))
+    return {
+        "cycles": phases @ turns,
+        "frequency": float(frequency[fastest] / turns[fastest]),
+        "phase_frequency": frequency,
+        "phase_turns": turns.astype(float),
+        "mesh_phases": phases.astype(float),
+    }
 
 
 def mesh_rotation(structure: MachineStructure, mesh: str) -> Array:

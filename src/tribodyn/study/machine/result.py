@@ -53,9 +53,15 @@ STEPS, _OF_STAGE = 128, 240
 def steady_motion(
     structure: MachineStructure, system: System, start: Response | None = None
 ) -> Response:
-    """Motion of a machine over one period of its clock; a start fits if its coordinates do."""
-    from tribodyn.dynamics import clearance_motion, harmonic_balance
+    """Motion of a machine on one clock or over phases; a start fits if its coordinates do."""
+    from tribodyn.dynamics import PhaseResponse, clearance_motion, harmonic_balance
 
+    if system.phases:
+        start = start if isinstance(start, PhaseResponse) else None
+        if start is not None and start.names != tuple(system.names):
+            start = None
+        frequencies = structure.machine.phases.frequency
+        return harmonic_balance(system, frequencies, start=start)
     if start is not None and start.names != tuple(system.names):
         start = None
     supports, frequency = clearance_supports(structure), structure.machine.clock.frequency

@@ -35,7 +35,7 @@ from tribodyn.progress import SILENT, Progress
 from tribodyn.study.coupling import load_of_torque, mesh_under_load, settled
 from tribodyn.study.heat_balance import HeatBalance, Temperatures, balanced
 from tribodyn.study.machine.case import MachineCase
-from tribodyn.study.machine.first_look import warn_of_period
+from tribodyn.study.machine.first_look import over_phases, warn_of_motion
 from tribodyn.study.machine.load_cases import LoadCase
 from tribodyn.study.machine.motion import machine_motion, motion_from
 from tribodyn.study.machine.pair_cases import inputs_under, read_teeth, teeth_under
@@ -91,7 +91,7 @@ def run_machine(
     """Compute a machine at its operating point and under its load cases."""
     # The matrices of a machine are small: threads of the linear algebra only wait for each other.
     with collected() as caught, single_blas_thread():
-        warn_of_period(case.machine())
+        warn_of_motion(case.solver, case.machine())
         of_meshes: list[MeshWarning] = []
         results: list[LoadResult] = []
         for load in (case.operating_point, *case.load_cases):
@@ -120,7 +120,7 @@ def run_load(
     of_meshes += rest.warnings
     progress.start(f"Motion: {load.name}")
     structure = structure_of(case, rest.static.linearized())
-    system = system_of(structure)
+    system = system_of(structure, phases=over_phases(case.solver, structure.machine))
     response = steady_motion(structure, system, start)
     progress.finish()
     motion = machine_motion(structure, response)
@@ -358,7 +358,8 @@ def _restored_load(case: MachineCase, load: LoadCase, stored: StoredLoad) -> Loa
         load = replace(load, temperature=oil, gear_temperature=gears)
     static = _balance(case, load, tables, misalignment)
     structure = structure_of(case, static.linearized())
-    system, motion = system_of(structure), motion_from(data)
+    phases = over_phases(case.solver, structure.machine)
+    system, motion = system_of(structure, phases=phases), motion_from(data)
     at_rest = load, structure, static, tables, misalignment
     return LoadResult(*at_rest, system, motion, heat=heat)
 

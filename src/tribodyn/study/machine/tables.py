@@ -38,13 +38,10 @@ class ShaftTable(MaterialData):
 
     density: float = number(STEEL.density, 500.0, 25000.0, "polymers to tungsten", of="density")
     moment_of_inertia: float = number(
-        0.0,
-        0.0,
-        1e7,
-        _GUARD,
+        0.0, 0.0, 1e7, _GUARD,
         of="moment_of_inertia",
         meaning="moment of inertia of what turns with its beginning, such as an engine",
-    )
+    )  # fmt: skip
 
 
 class BearingTable(Section):
@@ -108,25 +105,18 @@ class GearTable(gears.Gear):
         "position of its mid face on the shaft; of a rigid shaft at its node if not given", None
     )
     transverse_moment_of_inertia: float | None = number(
-        None,
-        1e-14,
-        1e7,
-        _GUARD,
+        None, 1e-14, 1e7, _GUARD,
         of="moment_of_inertia",
         meaning="moment of inertia about an axis across the shaft",
         basis="the solid gear",
-    )
+    )  # fmt: skip
 
 
 #: Keys of ``[gears]`` of a pair that belong to one mesh of a machine.
 _OF_PAIR = (
-    "normal_module",
-    "center_distance",
-    "composite_roughness",
-    "addendum_coefficient",
-    "dedendum_coefficient",
-    "rack_tip_radius_coefficient",
-)
+    "normal_module", "center_distance", "composite_roughness", "addendum_coefficient",
+    "dedendum_coefficient", "rack_tip_radius_coefficient",
+)  # fmt: skip
 
 
 _KINDS = {
@@ -147,42 +137,31 @@ class MeshTable(Section):
     kind: str = _kind_of_mesh("spur")
 
     normal_pressure_angle: float = number(
-        math.radians(20.0),
-        math.radians(10.0),
-        math.radians(35.0),
+        math.radians(20.0), math.radians(10.0), math.radians(35.0),
         "basic racks lie between 14.5 and 30 deg",
         of="normal_pressure_angle",
-    )
+    )  # fmt: skip
     helix_angle: float = number(
-        0.0,
-        0.0,
-        math.radians(60.0),
-        "the hand gives its sign",
+        0.0, 0.0, math.radians(60.0), "the hand gives its sign",
         unit="rad",
         display_unit="deg",
         example='"21 deg"',
         meaning="helix angle at the reference circle; 0 for spur gears",
-    )
+    )  # fmt: skip
     hand: str = choice("right", ("right", "left"), meaning="hand of the teeth of the first gear")
     angle: float = number(
-        0.0,
-        -_TURN,
-        _TURN,
-        "one turn",
+        0.0, -_TURN, _TURN, "one turn",
         unit="rad",
         display_unit="deg",
         example='"30 deg"',
         meaning="direction from the axis of the first gear to that of the second, from y towards z",
-    )
+    )  # fmt: skip
     stiffness: float | None = number(
-        None,
-        1e3,
-        1e13,
-        _GUARD,
+        None, 1e3, 1e13, _GUARD,
         unit="N/m",
         example='"5.2e8 N/m"',
         meaning="constant along the transverse line of action, in place of the model",
-    )
+    )  # fmt: skip
     offset: float = number(
         0.0, 0.0, 1.0, "a part of the mesh cycle", meaning="mesh phase when the clock begins"
     )
@@ -309,15 +288,10 @@ class MotionTable(Section):
         20, 1, 64, "more only cost time", meaning="harmonics of a mesh in its spectra", example="20"
     )
     frequency_limit: float | None = number(
-        None,
-        1.0,
-        1e6,
-        _GUARD,
-        unit="Hz",
-        example='"12 kHz"',
+        None, 1.0, 1e6, _GUARD, unit="Hz", example='"12 kHz"',
         meaning="highest frequency that the reduced structure meets",
         basis="six times the highest mesh frequency, at least 5 kHz",
-    )
+    )  # fmt: skip
     seat_mass: float | None = number(
         None, 1e-6, 1e6, _GUARD, of="mass", meaning="mass of a bearing seat with its sensor"
     )
@@ -340,6 +314,19 @@ class SolverTable(Section):
 
     coupling: str = Solver.fields["coupling"]  # type: ignore[assignment]
     coupling_tolerance: float = Solver.fields["coupling_tolerance"]  # type: ignore[assignment]
+    phases: str = choice(
+        "auto",
+        {
+            "auto": "over phases where the common period is long",
+            "on": "over phases whatever the common period",
+            "off": "over the common period of all meshes",
+        },
+        meaning="whether the motion is found over phases of the meshes, without a common period",
+    )
+    memory: float = number(
+        4e9, 1e7, 1e13, _GUARD, unit="byte", display_unit="GB", example='"4 GB"',
+        meaning="most memory of a motion; what needs more is refused before it is computed",
+    )  # fmt: skip
 
 
 SOLVER_OF_PAIRS = tuple(name for name in Solver.fields if name not in SolverTable.fields)
@@ -347,16 +334,10 @@ SOLVER_OF_PAIRS = tuple(name for name in Solver.fields if name not in SolverTabl
 
 #: Keys of a mesh that both meshes of a stage share.
 _OF_STAGE = (
-    "normal_module",
-    "center_distance",
-    "addendum_coefficient",
-    "dedendum_coefficient",
-    "rack_tip_radius_coefficient",
-    "composite_roughness",
-    "normal_pressure_angle",
-    "helix_angle",
+    "normal_module", "center_distance", "addendum_coefficient", "dedendum_coefficient",
+    "rack_tip_radius_coefficient", "composite_roughness", "normal_pressure_angle", "helix_angle",
     "hand",
-)
+)  # fmt: skip
 #: Stiffness of a support that is not given [N/m].
 STIFF = 1e9
 

@@ -146,8 +146,9 @@ def _constant_meshes(data: Mapping[str, Any]) -> KeyedProblems:
         why = "Bevel and hypoid gears are not rated"
         yield from _refused("", data, ("rating", "materials"), why, "Remove it")
     elif meshes and not (crossed or plane):
-        teeth = ("lubricant", "film", "stiffness", "friction", "solver")
-        shared = (*teeth, "materials", "rating")
-        yield from _refused("", data, shared, why, remedy)
+        teeth = ("lubricant", "film", "stiffness", "friction", "materials", "rating")
+        yield from _refused("", data, teeth, why, remedy)
+        coupling = ("coupling", "coupling_tolerance")
+        yield from _refused("solver", data.get("solver"), coupling, why, remedy)
         keys = [name for name in _OF_TEETH if name in MESH_KEYS]
         yield from _refused("dynamics", data.get("dynamics"), keys, why, remedy)

@@ -143,7 +143,7 @@ class StageResult:
             ring_mesh_force=motion.mesh_force[:, columns["ring"]],
             pin_force=motion.bearing_force[:, pins, 1:3],
             displacement=np.stack([position @ rows[member].T for member in members], axis=1),
-            mesh_frequency=cycles * motion.frequency,
+            mesh_frequency=float(motion.mesh_frequency[columns["sun"][0]]),
         )
 
     def excitation_text(self) -> str:

@@ -155,17 +155,14 @@ def resonances(
 def levels_of(motions: Iterable[MachineMotion | None], speed: Array, **more: Any) -> MachineLevels:
     """Levels of motions over the speed, which are needed one at a time; None has none."""
     rows: list[list[Array] | None] = []
-    first, orders, lines, turning = None, np.zeros(0), {}, 1.0
+    first, orders, lines = None, np.zeros(0), []
     for motion in motions:
         if motion is not None and first is None:
             first, turning = motion, abs(float(speed[len(rows)])) / (2.0 * np.pi)
-            lines = {
-                f"{name} x {harmonic}": int(cycles) * harmonic
-                for name, cycles in zip(motion.mesh, motion.cycles, strict=True)
-                for harmonic in range(1, _HARMONICS + 1)
-            }
-            orders = np.array(list(lines.values()))
-        rows.append(None if motion is None else _levels(motion, orders))
+            harmonics = np.arange(1, _HARMONICS + 1)
+            lines = [f"{name} x {harmonic}" for name in motion.mesh for harmonic in harmonics]
+            orders = np.outer(motion.mesh_frequency, harmonics).reshape(-1) / turning
+        rows.append(None if motion is None else _levels(motion))
     if first is None:
         what, why = "no speed of the range has a motion", "Each of them failed"
         remedy = "Run the case at one of them, which says why"
@@ -174,12 +171,13 @@ def levels_of(motions: Iterable[MachineMotion | None], speed: Array, **more: Any
     columns = [np.stack(part) for part in zip(*(row or blank for row in rows), strict=True)]
     more = {"failed": np.full(speed.size, "", dtype=object), **more}
     parts = first.mesh, first.bearing, first.node, tuple(lines)
-    fields: list[Any] = [*parts, orders * first.frequency / turning, *columns]
+    fields: list[Any] = [*parts, orders, *columns]
     return MachineLevels(speed, *fields, **more)
 
 
-def _levels(motion: MachineMotion, orders: Array) -> list[Array]:
-    """Levels of one motion and amplitudes at its orders, in the order of the fields."""
+def _levels(motion: MachineMotion) -> list[Array]:
+    """Levels of one motion and amplitudes at its mesh harmonics, in the order of the fields."""
+    orders = np.outer(motion.cycles, np.arange(1, _HARMONICS + 1)).reshape(-1)
     radial = motion.bearing_force[..., 1:3]
     signals = (motion.mesh_force, motion.transmission_error, radial, motion.acceleration)
     force, _, bearing, acceleration = (motion.rms(signal) for signal in signals)

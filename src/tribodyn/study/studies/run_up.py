@@ -327,6 +327,10 @@ def parts_run_up(
     middle = case.replace({"operation.speed": float(np.sqrt(ends[0] * ends[1]))})
     with collected(), single_blas_thread():
         result = result_under(middle, progress, [])
+    if result.system.phases:
+        what, why = "the meshes have no common period", "A run-up rises from period to period"
+        remedy = 'Sweep operation.speed, or set solver.phases = "off"'
+        raise InputError(what, "solver.phases", why, remedy)
     per_speed = result.clock_frequency / middle.operating_point.speed
     speed, time = _periods(per_speed, ends, duration, hold, down)
     with collected(), single_blas_thread():

@@ -1,0 +1,285 @@
+"""Residual of a motion over several phases, in which the contacts of each mesh have their own grid.
+
+A mesh needs many points over its own phase, at which its teeth change, but few over the phases of
+others, which reach it through the structure. Contacts that follow the same phases are a part, with
+a grid that is fine over these and coarse over the others. Parts are coupled by the lines that both
+of their grids have.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from tribodyn.dynamics.equations.system import System
+from tribodyn.dynamics.harmonic.meshwise_inverse import MeshwiseInverse
+from tribodyn.dynamics.harmonic.newton import (
+    VECTORS,
+    Residual,
+    State,
+    force_change,
+    solve_linear,
+)
+from tribodyn.dynamics.harmonic.phase_grid import PhaseContacts, PhaseGrid
+from tribodyn.dynamics.harmonic.phase_rows import PhaseRows
+from tribodyn.dynamics.modal.closed_structure import ClosedStructure
+from tribodyn.dynamics.modal.contact_equations import close_contacts
+from tribodyn.types import Array, ComplexArray, Index, Mask
+
+#: Bytes of the vectors of a linear solution, and the fewest of them.
+_MEMORY, _FEWEST = 2**29, 30
+
+
+@dataclass(frozen=True, eq=False)
+class Part:
+    """Contacts that follow the same phases, in a structure with all contacts closed."""
+
+    rows: PhaseRows
+    members: Index  #: numbers of the contacts in the system
+    axes: frozenset[int]  #: phases that they follow
+    structure: ClosedStructure
+    along: Array  #: basis of compressions in coordinates of unit mass (n, r)
+    push: Array  #: basis of forces (n, s)
+    contact_stiffness: Array  #: means of these contacts (s, r) [1/s^2]
+    contact_damping: Array
+    closed: Mask  #: springs that are closed at rest
+
+    @property
+    def coordinates(self) -> Any:
+        """Coordinates of the structure."""
+        return self.structure.coordinates
+
+    def receptances(self, omega: Array, push: Array | None = None) -> ComplexArray:
+        """Motions of the part per force, its own by default (k, r, s); the first line is zero."""
+        return self.structure.receptances(omega, self.along, self.push if push is None else push)
+
+
+def parts_of(
+    system: System, frequency: Array, structure: ClosedStructure, start: Array
+) -> list[Part]:
+    """Divide a system into the contacts that follow the same phases."""
+    groups: dict[frozenset[int], list[int]] = {}
+    for number, contact in enumerate(system.contacts):
+        cycles = [contact.cycles, *(term.cycles for term in contact.turning)]
+        axes = frozenset(np.flatnonzero(np.any(np.array(cycles) != 0, axis=0)).tolist())
+        groups.setdefault(axes, []).append(number)
+    parts = []
+    for axes, numbers in groups.items():
+        place = {number: at for at, number in enumerate(numbers)}
+        frictions = [
+            replace(each, contacts=tuple(place[j] for j in each.contacts))
+            for each in system.frictions
+            if each.contacts[0] in place
+        ]
+        contacts = [system.contacts[number] for number in numbers]
+        alone = replace(
+            system, contacts=contacts, frictions=frictions, force=np.zeros(system.size),
+            balance=None,
+        )  # fmt: skip
+        rows = PhaseRows.of(alone, frequency)
+        none = np.zeros((0, system.size))
+        law, closed = close_contacts(rows.means, none, start, structure.coordinates)
+        means = law.along, law.push, law.contact_stiffness, law.contact_damping
+        parts.append(Part(rows, np.array(numbers), axes, structure, *means, closed))
+    return parts
+
+
+class OnGrid(NamedTuple):
+    """A part on its grid."""
+
+    structure: Part
+    grid: PhaseGrid
+    contacts: PhaseContacts
+    receptances: ComplexArray  #: of its own forces (k, r, s); zero where lines have no sign
+    slope: ComplexArray  #: derivative of each line by time (k, 1)
+    loaded: ComplexArray  #: lines of the motion under the external force (k, r)
+
+    @classmethod
+    def of(cls, part: Part, grid: PhaseGrid, force: Callable[[Array], Array]) -> OnGrid:
+        """Sample a part under external forces, a function of the points."""
+        contacts = PhaseContacts.of(part.rows, part, grid)
+        structure, numbers = part.structure, grid.numbers
+        structure.refuse_resonance(grid.omega, lambda k: f"the line {numbers[k]} of the phases")
+        receptances = part.receptances(grid.omega)
+        receptances[grid.unpaired] = 0.0
+        slope = np.where(grid.unpaired, 0.0, 1j * grid.omega)[:, None]
+        loads = force(grid.points) @ structure.coordinates.inverse.T @ structure.push
+        loaded = np.zeros((len(grid.omega), part.along.shape[1]), dtype=complex)
+        count = 1 if len(loads) == 1 else len(loaded)
+        lines = loads.astype(complex) if count == 1 else grid.spectrum(loads) / grid.size
+        answers = part.receptances(grid.omega[:count], structure.push)
+        loaded[:count] = (answers @ lines[..., None])[..., 0]
+        loaded[grid.unpaired] = 0.0
+        return cls(part, grid, contacts, receptances, slope, loaded)
+
+    def rate(self, y: Array) -> Array:
+        """Derivative of a motion (p, r) by time."""
+        return self.grid.values(self.slope * self.grid.spectrum(y))
+
+    def at(self, y: Array, excess: Array, closed: bool) -> State:
+        """Forces of a motion (p, r), without its residual."""
+        motion = 1.0, y, self.rate(y), excess, self.structure.closed if closed else None
+        law = self.contacts.law(self.contacts.rows, *motion)
+        breaks = self.contacts.breaks(law, *motion)
+        force = law.force + y @ self.structure.contact_stiffness.T
+        force += motion[2] @ self.structure.contact_damping.T
+        breaks.scatter(force, breaks.correction)
+        return State(y, motion[2], law, breaks, force, y)
+
+
+class _Link(NamedTuple):
+    """How the forces of a part move another one."""
+
+    to: int
+    by: int
+    into: Index  #: places of the common lines in the grid of the first
+    of: Index  #: and of the second
+    receptances: ComplexArray
+
+
+class PhaseResidual(Residual):
+    """Residual of a motion over several phases, whose parts are joined in one column."""
+
+    def __init__(
+        self,
+        parts: Sequence[Part],
+        grids: Sequence[PhaseGrid],
+        force: Callable[[Array], Array],
+        known: PhaseResidual | None = None,
+    ) -> None:
+        self.structure = parts[0].structure
+        self.frequency = 1.0
+        same = {} if known is None else {(id(p.structure), p.grid.shape): p for p in known.parts}
+        self.parts: list[OnGrid] = [
+            same.get((id(part), grid.shape)) or OnGrid.of(part, grid, force)
+            for part, grid in zip(parts, grids, strict=True)
+        ]
+        self.links = [
+            self._link(to, by) for to in range(len(parts)) for by in range(len(parts)) if to != by
+        ]
+        widths = [grid.size * part.along.shape[1] for part, grid in zip(parts, grids, strict=True)]
+        self.ends = np.cumsum([0, *widths])
+        #: Approximate inverses of parts whose states do not change.
+        self.inverses: dict[int, MeshwiseInverse] = {}
+        self.excess = np.zeros(1)  #: additional damping of all contacts [N*s/m]
+
+    def _link(self, to: int, by: int) -> _Link:
+        first, second = self.parts[to], self.parts[by]
+        numbers = first.grid.common(second.grid)
+        into, of = first.grid.places(numbers), second.grid.places(numbers)
+        matrices = first.structure.receptances(first.grid.omega[into], second.structure.push)
+        return _Link(to, by, into, of, matrices)
+
+    @property
+    def size(self) -> int:
+        """Number of unknowns."""
+        return int(self.ends[-1])
+
+    def split(self, y: Array) -> list[Array]:
+        """Motions (p, r) of the parts."""
+        pieces = np.split(y.reshape(-1), self.ends[1:-1])
+        return [piece.reshape(part.grid.size, -1)
+                for piece, part in zip(pieces, self.parts, strict=True)]  # fmt: skip
+
+    @staticmethod
+    def joined(parts: Sequence[Array]) -> Array:
+        """Motions of the parts in one column."""
+        return np.concatenate([part.reshape(-1) for part in parts])[:, None]
+
+    def refined(self, y: Array, finer: PhaseResidual) -> Array:
+        """A motion on the grids of another residual of the same parts."""
+        return self.joined([
+            part.grid.refined(piece, other.grid)
+            for part, other, piece in zip(self.parts, finer.parts, self.split(y), strict=True)
+        ])  # fmt: skip
+
+    def responses(self, forces: Sequence[Array], loaded: bool = False) -> list[Array]:
+        """Motions of the parts under forces (p, s), and the external force where it acts."""
+        pairs = list(zip(self.parts, forces, strict=True))
+        lines = [part.grid.spectrum(force) / part.grid.size for part, force in pairs]
+        moved = [
+            (part.receptances @ line[..., None])[..., 0] + (part.loaded if loaded else 0.0)
+            for part, line in zip(self.parts, lines, strict=True)
+        ]
+        for link in self.links:
+            pushed = lines[link.by][link.of]
+            moved[link.to][link.into] += (link.receptances @ pushed[..., None])[..., 0]
+        return [part.grid.values(line * part.grid.size)
+                for part, line in zip(self.parts, moved, strict=True)]  # fmt: skip
+
+    def at(self, y: Array, closed: Any = None) -> State:
+        """Evaluate a motion; ``closed`` fixes the springs to those that are closed at rest."""
+        excess = np.broadcast_to(self.excess, sum(len(p.structure.members) for p in self.parts))
+        states = [
+            part.at(piece, excess[part.structure.members], bool(closed))
+            for part, piece in zip(self.parts, self.split(y), strict=True)
+        ]
+        moved = self.responses([state.force for state in states], loaded=True)
+        states = [
+            state._replace(residual=state.y - motion)
+            for state, motion in zip(states, moved, strict=True)
+        ]
+        residual = self.joined([state.residual for state in states])
+        first = states[0]
+        return State(
+            y, first.rate, first.law, first.breaks, first.force, residual, tuple(states)
+        )  # fmt: skip
+
+    def derivative(self, state: State) -> Callable[[Array], Array]:
+        """Product of the derivative of the residual with a motion."""
+        pairs = list(zip(self.parts, state.parts, strict=True))
+        changes = [force_change(part.structure, each) for part, each in pairs]
+
+        def product(motion: Array) -> Array:
+            triples = zip(changes, self.split(motion), self.parts, strict=True)
+            forces = [change(piece, part.rate) for change, piece, part in triples]
+            return motion - self.joined(self.responses(forces))
+
+        return product
+
+    def unfelt(self, state: State) -> Array:
+        """Motion of contacts that grids of other parts leave out, by phase, over its size."""
+        # Such lines of a part move the contacts of others through the structure; only that part of
+        # their force is missing which the stiffness varies about its mean.
+        left_out = np.zeros(len(self.parts[0].grid.shape))
+        for by, pushing in zip(self.parts, state.parts, strict=True):
+            lines = by.grid.spectrum(pushing.force) / by.grid.size
+            lines[by.grid.unpaired] = 0.0
+            for to, moving in zip(self.parts, state.parts, strict=True):
+                beyond = 2 * np.abs(by.grid.numbers) >= np.array(to.grid.shape)
+                if to is by or not beyond.any():
+                    continue
+                rows = np.flatnonzero(beyond.any(axis=1))
+                rows = np.concatenate(([0], rows))
+                answers = to.structure.receptances(by.grid.omega[rows], by.structure.push)
+                size = np.abs((answers @ lines[rows][..., None])[1:, :, 0]).max(axis=1)
+                mean = to.structure.contact_stiffness
+                varies = np.abs(mean - moving.law.stiffness).max() / np.abs(mean).max()
+                for axis in np.flatnonzero(beyond.any(axis=0)):
+                    total = 2.0 * np.sqrt(np.sum(size[beyond[rows[1:], axis]] ** 2))
+                    left_out[axis] = max(left_out[axis], varies * total)
+        return left_out / state.size
+
+    def nearly(self, state: State) -> Callable[[Array], Array]:
+        """Product with an approximate inverse of the derivative: that of each part alone."""
+        pairs = zip(self.parts, state.parts, strict=True)
+        known = self.inverses
+        inverses = [known.get(id(part)) or MeshwiseInverse(part, each) for part, each in pairs]
+
+        def product(right: Array) -> Array:
+            return self.joined(
+                [inverse(piece) for inverse, piece in zip(inverses, self.split(right), strict=True)]
+            )
+
+        return product
+
+    def _corrected(self, state: State, accuracy: float) -> tuple[Array, int]:
+        vectors = int(np.clip(_MEMORY // state.y.nbytes, _FEWEST, VECTORS))
+        product, nearly = self.derivative(state), self.nearly(state)
+        solution, count = solve_linear(
+            lambda x: product(nearly(x)), -state.residual, accuracy, vectors
+        )
+        return nearly(solution), count

@@ -1,0 +1,137 @@
+"""Machines whose teeth have no short common period: motion over independent phases."""
+
+from __future__ import annotations
+
+from functools import cache
+from typing import Any
+
+import numpy as np
+import pytest
+
+import tribodyn as td
+from tribodyn.dynamics import PhaseResponse
+from tribodyn.study.machine.first_look import over_phases, phase_cost_of, warn_of_motion
+from tribodyn.study.machine.motion import line_cause, line_numbers
+
+TEETH = {"z1": 29, "z2": 71, "z3": 23, "z4": 67, "z5": 19, "z6": 61}
+
+
+def case(teeth: dict[str, int] = TEETH, **solver: Any) -> Any:
+    """Stages in a row with a wave of the transmission error each."""
+    rows = list(teeth)
+    shafts = ["in", *(f"shaft{n}" for n in range(1, len(rows) // 2) for _ in range(2)), "out"]
+    gears = {
+        name: {"shaft": shaft, "position": 0.1 * (n % 2), "teeth": teeth[name], "face_width": 0.03}
+        for n, (name, shaft) in enumerate(zip(rows, shafts, strict=True))
+    }
+    meshes = {
+        f"mesh{n + 1}": {
+            "gears": rows[2 * n : 2 * n + 2], "normal_module": 3e-3, "stiffness": 4e8,
+            "transmission_error_amplitude": 2e-6,
+        }
+        for n in range(len(rows) // 2)
+    }  # fmt: skip
+    run = {"input": "in", "output": "out", "speed": "1000 rpm", "torque": 100.0}
+    return td.study.MachineCase(gears=gears, meshes=meshes, operation=run, solver=solver)
+
+
+@cache
+def three() -> Any:
+    return td.run(case())
+
+
+def two(**solver: Any) -> Any:
+    return td.run(case({"z1": 19, "z2": 23, "z3": 17, "z4": 31}, **solver))
+
+
+def test_hunting_teeth_run_over_phases_by_themselves() -> None:
+    result = three()
+    response, motion = result.operation.response, result.motion
+    assert isinstance(response, PhaseResponse)
+    assert response.converged
+    assert response.step_error < 1e-6
+    shaft = 1000.0 / 60.0
+    exact = shaft * np.array([29, 29 / 71 * 23, 29 / 71 * 23 / 67 * 19])
+    assert motion.mesh_frequency == pytest.approx(exact, rel=1e-14)
+    figures = result.summary()
+    # Each shaft is in equilibrium on average.
+    base = 0.5 * 3e-3 * np.cos(np.radians(20.0)) * np.array(list(TEETH.values()))
+    first = 100.0 / base[0]
+    forces = first * np.array([1.0, base[1] / base[2], base[1] / base[2] * base[3] / base[4]])
+    for name, force in zip(motion.mesh, forces, strict=True):
+        assert figures[f"meshes.{name}.mean_mesh_force"] == pytest.approx(force, rel=1e-6)
+
+
+def test_lines_have_exact_frequencies_and_causes() -> None:
+    motion = three().motion
+    lines = motion.lines(motion.mesh_force[:, 1], 6)
+    causes = {line.cause: line for line in lines}
+    for number, name in enumerate(motion.mesh):
+        line = causes[f"1 x {name}"]
+        assert line.frequency == pytest.approx(motion.mesh_frequency[number], rel=1e-14)
+        assert line.numbers == tuple(int(axis == number) for axis in range(3))
+    spectra = motion.mesh_spectra("mesh2", 3)
+    assert spectra.attrs["mesh_frequency"] == pytest.approx(motion.mesh_frequency[1])
+
+
+def test_phases_have_the_motion_of_the_common_period() -> None:
+    clock, phases = two(phases="off").operation, two(phases="on").operation
+    assert isinstance(phases.response, PhaseResponse)
+    at = phases.response.at(clock.response.time)
+    for name in ("position", "contact_force"):
+        expected = getattr(clock.response, name)
+        assert np.abs(getattr(at, name) - expected).max() < 1e-6 * np.ptp(expected)
+    for key, value in clock.figures.items():
+        assert phases.figures[key] == pytest.approx(value, rel=2e-3, abs=1e-12), key
+
+
+def test_the_period_decides_and_the_case_overrides() -> None:
+    short = {"z1": 19, "z2": 23, "z3": 17, "z4": 31}
+    for solver, expected in (({}, False), ({"phases": "on"}, True), ({"phases": "off"}, False)):
+        chosen = case(short, **solver)
+        assert over_phases(chosen.solver, chosen.machine()) is expected
+    assert over_phases(case().solver, case().machine())
+    with pytest.raises(td.InputError, match=r"solver.phases|phases = 'maybe'"):
+        case(phases="maybe")
+    with pytest.raises(td.InputError, match="unknown key"):
+        case(phase="on")
+
+
+def test_cost_is_stated_before_the_run_and_does_not_depend_on_the_teeth() -> None:
+    few = warn_of_motion(case().solver, case().machine())
+    many = case({"z1": 101, "z2": 211, "z3": 103, "z4": 199, "z5": 107, "z6": 193})
+    cost = warn_of_motion(many.solver, many.machine())
+    assert few is not None
+    assert cost is not None
+    assert cost[1:] == few[1:]
+    assert "3 phases" in str(cost)
+    small = case(memory="100 MB")
+    with pytest.raises(td.ComputationError, match=r"GB are allowed by solver.memory"):
+        phase_cost_of(small.solver, small.machine())
+    with pytest.raises(td.ComputationError, match=r"solver.memory allows 0\.1 GB"):
+        warn_of_motion(*(lambda c: (c.solver, c.machine()))(case(phases="off", memory="100 MB")))
+
+
+def test_a_stored_result_keeps_its_phases(tmp_path: Any) -> None:
+    result = three()
+    result.save(tmp_path / "result")
+    stored = td.load_result(tmp_path / "result")
+    assert np.array_equal(stored.motion.mesh_force, result.motion.mesh_force)
+    assert stored.motion.mesh_frequency == pytest.approx(result.motion.mesh_frequency)
+    assert stored.operation.system.phases == 3
+
+
+def test_what_needs_a_period_says_so() -> None:
+    with pytest.raises(td.InputError, match="no common period"):
+        _ = three().turning_motion
+
+
+def test_numbers_of_a_line_are_the_smallest() -> None:
+    turns = np.array([578, 20, 101])
+    for numbers in ((1, 0, 0), (0, 3, 0), (2, -1, 0), (1, 0, -2), (0, 1, 4)):
+        order = int(np.dot(turns, numbers))
+        assert line_numbers(turns, [order]) == {order: numbers}
+    meshes = {"a": (1, 0), "b": (0, 2), "c": (0, 3)}
+    assert line_cause((2, 0), meshes) == "2 x a"
+    assert line_cause((0, 6), meshes) == "3 x b"
+    assert line_cause((2, -1), meshes) == "2 x a - 1 x b / 2"
