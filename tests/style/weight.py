@@ -34,6 +34,7 @@ __all__ = ["ANY", "FILES", "LINES", "import_circles", "lines_of_code", "measures
 #: machine, study: models of couplings, one file each.
 #: arguments: copies that the package makes of its own objects are not checked again.
 #: dynamics, nonlinear, report, study: diagrams, branches, basins and exponents of machines.
+#: cli, dynamics, plot, study: machines of any teeth over independent phases, with their cost.
 LINES: dict[str, int] = {
     "__init__": 100,
     "__main__": 3,
