@@ -35,10 +35,10 @@ PACKAGE = ROOT / "src" / "tribodyn"
 TESTS = ROOT / "tests"
 
 #: Folders and files of the repository; anything else in the folder was left there by its user.
-_FOLDERS = (".ci", "benchmarks", "docs", "examples", "src", "tests")
+_FOLDERS = (".ci", ".github", "benchmarks", "docs", "examples", "src", "tests")
 _FILES = (
-    ".gitignore", "CHANGELOG.md", "CITATION.cff", "CONTRIBUTING.md", "LICENSE", "README.md",
-    "pyproject.toml",
+    ".gitignore", ".pre-commit-config.yaml", "CHANGELOG.md", "CITATION.cff", "CODE_OF_CONDUCT.md",
+    "CONTRIBUTING.md", "LICENSE", "README.md", "SECURITY.md", "noxfile.py", "pyproject.toml",
 )  # fmt: skip
 _GENERATED = {"__pycache__", "_generated"}
 _TEXT = {".py", ".toml", ".md", ".cff", ".yml", ".yaml", ".j2", ".html", ".css", ".js", ".txt", ""}

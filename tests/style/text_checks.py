@@ -14,6 +14,8 @@ _URL = re.compile(r"https?://([\w.-]+)(:\d+)?")
 #: Hosts that text may name: literature, standards of writing, licences, namespaces, examples.
 HOSTS = {
     "doi.org",
+    "github.com",  # where hooks of pre-commit come from
+    "www.contributor-covenant.org",
     "keepachangelog.com",
     "semver.org",
     "toml.io",

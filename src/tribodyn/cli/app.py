@@ -91,7 +91,7 @@ COMMANDS = (
     ),
     Command(
         "frequencies",
-        "frequencies_command:frequencies",
+        "case_commands:frequencies",
         "List the frequencies of shafts, meshes, bearings and planets.",
         "two-stage-spur",
     ),
