@@ -6,7 +6,7 @@ import size_checks
 from source_tree import modules, read
 
 #: Inner docstrings of several lines: formulas of papers, help texts, pages of single files.
-LONG_DOCSTRINGS = 151
+LONG_DOCSTRINGS = 152
 
 #: Folder -> files that it had when the limit was set. Lower a number when a folder shrinks.
 FOLDERS = {

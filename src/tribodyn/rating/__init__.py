@@ -47,7 +47,7 @@ from tribodyn.rating.materials import GearMaterial
 from tribodyn.rating.oil import GearOil
 from tribodyn.rating.pair_rating import GearRating, PairRating, rate_pair
 from tribodyn.rating.rated_gear import PinionShaft, RatedGear, ShaperCutter
-from tribodyn.rating.spectrum import GearDamage, LoadCase, SpectrumRating, rate_spectrum
+from tribodyn.rating.spectrum import GearDamage, SpectrumLoad, SpectrumRating, rate_spectrum
 from tribodyn.rating.surface.subsurface import LineContactStress, line_contact_stress
 from tribodyn.rating.tolerances import Deviations, gear_tolerances
 
@@ -61,7 +61,6 @@ __all__ = [
     "GearOil",
     "GearRating",
     "LineContactStress",
-    "LoadCase",
     "PairRating",
     "PinionShaft",
     "RatedBearing",
@@ -72,6 +71,7 @@ __all__ = [
     "ShaftRating",
     "ShaftStress",
     "ShaperCutter",
+    "SpectrumLoad",
     "SpectrumRating",
     "ball_bearing_life",
     "bearing_life",

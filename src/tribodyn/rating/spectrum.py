@@ -27,7 +27,7 @@ from tribodyn.rating.root_strength import record_bending
 
 
 @dataclass(frozen=True)
-class LoadCase:
+class SpectrumLoad:
     """One load case of a spectrum.
 
     Parameters
@@ -48,7 +48,7 @@ class LoadCase:
 
     Examples
     --------
-    >>> LoadCase(200.0, 150.0, 3.6e6, "full load").name
+    >>> SpectrumLoad(200.0, 150.0, 3.6e6, "full load").name
     'full load'
     """
 
@@ -89,7 +89,7 @@ class SpectrumRating:
     ----------
     pinion, wheel : GearDamage
         Safeties and damage of the gears.
-    cases : tuple of LoadCase
+    cases : tuple of SpectrumLoad
         Load cases, with durations scaled to the required life.
     ratings : tuple of PairRating
         Rating of each load case by itself.
@@ -97,7 +97,7 @@ class SpectrumRating:
 
     pinion: GearDamage
     wheel: GearDamage
-    cases: tuple[LoadCase, ...]
+    cases: tuple[SpectrumLoad, ...]
     ratings: tuple[PairRating, ...]
 
     @property
@@ -163,7 +163,7 @@ def _strength(
 
 
 def _stresses(
-    mesh: MeshLoad, index: int, oil: GearOil, rating: PairRating, case: LoadCase
+    mesh: MeshLoad, index: int, oil: GearOil, rating: PairRating, case: SpectrumLoad
 ) -> tuple[_Stress, _Stress]:
     """Contact and root stress of a gear in a load case."""
     rated = mesh.rated[index]
@@ -208,7 +208,7 @@ def _gear_damage(
 def rate_spectrum(
     pair: CylindricalPair,
     *,
-    cases: Sequence[LoadCase],
+    cases: Sequence[SpectrumLoad],
     oil: GearOil,
     pinion: RatedGear | None = None,
     wheel: RatedGear | None = None,
@@ -221,7 +221,7 @@ def rate_spectrum(
     ----------
     pair : CylindricalPair
         Geometry.
-    cases : sequence of LoadCase
+    cases : sequence of SpectrumLoad
         Load cases; with ``required_life`` their durations are shares of it.
     oil, pinion, wheel, factors
         As for :func:`rate_pair`, in SI units; ``load_cycles`` of the gears are not used.
@@ -251,7 +251,7 @@ def rate_spectrum(
     >>> from tribodyn.gear import spur_pair
     >>> pair = spur_pair(pinion_teeth=20, wheel_teeth=30, normal_module=4e-3,
     ...     normal_pressure_angle=0.3490658504, pinion_face_width=40e-3)
-    >>> cases = [LoadCase(500.0, 150.0, 1.8e6), LoadCase(300.0, 150.0, 3.4e7)]
+    >>> cases = [SpectrumLoad(500.0, 150.0, 1.8e6), SpectrumLoad(300.0, 150.0, 3.4e7)]
     >>> rating = rate_spectrum(pair, cases=cases, oil=GearOil(kinematic_viscosity_at_40=220e-6))
     >>> print(f"{rating.pitting_safety:.2f} {rating.bending_safety:.2f}")
     1.14 2.89

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from tribodyn.study.machine.case import MachineCase, PartsCase, PlanetaryCase
     from tribodyn.study.machine.load_cases import LoadCase
     from tribodyn.study.machine.modes import MachineCampbell
-    from tribodyn.study.machine.motion import MachineMotion
+    from tribodyn.study.machine.motion import MachineMotion, PeriodicSamples
     from tribodyn.study.machine.result import (
         LoadResult,
         MachineResult,
@@ -31,6 +31,7 @@ if TYPE_CHECKING:
     from tribodyn.study.pipeline.tooth_contact import loaded_contact
     from tribodyn.study.planetary.stage_result import PlanetaryMotion, StageResult
     from tribodyn.study.planetary.tolerances import LoadShareStatistics, load_share_statistics
+    from tribodyn.study.rating import CaseRating, MeshRating, MeshSpectrum, Verdict
     from tribodyn.study.result_comparison import ResultComparison, compare_results
     from tribodyn.study.studies.bifurcation import bifurcation
     from tribodyn.study.studies.case_grid import build_system
@@ -59,6 +60,7 @@ __all__ = [
     "SUMMARY",
     "Case",
     "CaseEnsemble",
+    "CaseRating",
     "CaseSensitivity",
     "DataSet",
     "KinematicFrequencies",
@@ -71,7 +73,10 @@ __all__ = [
     "MachineLevels",
     "MachineMotion",
     "MachineResult",
+    "MeshRating",
+    "MeshSpectrum",
     "PartsCase",
+    "PeriodicSamples",
     "PlanetaryCase",
     "PlanetaryLoadResult",
     "PlanetaryMotion",
@@ -83,6 +88,7 @@ __all__ = [
     "StageResult",
     "Sweep",
     "TurningClock",
+    "Verdict",
     "Wear",
     "basins",
     "bifurcation",
@@ -128,7 +134,8 @@ _NAMES = {
     "faults.recording_set": "RecordingSet record_set",
     "faults.wear": "Wear wear",
     "machine.modes": "MachineCampbell",
-    "machine.motion": "MachineMotion",
+    "machine.motion": "MachineMotion PeriodicSamples",
+    "rating": "CaseRating MeshRating MeshSpectrum Verdict",
     "machine.result": "LoadResult MachineResult PlanetaryLoadResult PlanetaryResult",
     "uncertain.machine_ensemble": "MachineEnsemble",
     "studies.levels": "MachineLevels",

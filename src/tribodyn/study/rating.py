@@ -11,10 +11,10 @@ from tribodyn.errors import collected
 from tribodyn.rating import (
     GearOil,
     GearRating,
-    LoadCase,
     PairRating,
     RatedGear,
     RatingConditions,
+    SpectrumLoad,
     SpectrumRating,
     rate_pair,
     rate_spectrum,
@@ -359,7 +359,7 @@ def rate_load_cases(meshes: Sequence[RatedMesh]) -> MeshSpectrum | None:
     if life is None or len(shares) < 2:
         return None
     cases = [
-        LoadCase(mesh.operation[1], mesh.operation[0], life * (mesh.share or 0.0), mesh.load)
+        SpectrumLoad(mesh.operation[1], mesh.operation[0], life * (mesh.share or 0.0), mesh.load)
         for mesh in shares
     ]
     common = {**first.common, "required_life": None}

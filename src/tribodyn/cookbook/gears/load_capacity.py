@@ -8,13 +8,12 @@ Read on: rating
 
 import tribodyn as td
 
+stated = ("dynamic_viscosity", "density", "pressure_viscosity_coefficient")
 case = td.load_case("helical-pair").replace(
-    {
+    {f"lubricant.{key}": None for key in stated}
+    | {
         "lubricant.name": "ISO VG 220",
         "lubricant.temperature": "70 degC",
-        "lubricant.dynamic_viscosity": None,
-        "lubricant.density": None,
-        "lubricant.pressure_viscosity_coefficient": None,
         "rating.required_life": "10000 h",
         "rating.application_factor": 1.25,
         "materials.steel.kind": "Eh",
@@ -26,5 +25,4 @@ case = td.load_case("helical-pair").replace(
 result = td.run(case)
 for verdict in result.rating.verdicts():
     print(f"{verdict.mode:10}{verdict.part:8}{verdict.safety:7.2f} of {verdict.required:g}")
-print(f"K_v {result.rating.meshes['mesh'].factors['K_v']:.3f} by the standard")
 result.plot_mesh_force().write_html("load_capacity.html")

@@ -180,10 +180,7 @@ class LaneGroup:
         record: Array | None = None,
         trail: Array | None = None,
     ) -> Any:
-        """Integrate the states (c, 2 n), which are overwritten; returns the courses.
-
-        ``record`` (c, cycles * points + 1, 2 n) and ``trail`` (c, steps, 2 + 6 n) are filled.
-        """
+        """Integrate states (c, 2 n) in place; fills record (c, rows, 2 n), trail (c, steps, m)."""
         from tribodyn.dynamics._engine.adaptive import Output, march_adaptive
         from tribodyn.dynamics._engine.dormand_prince import COURSE
 

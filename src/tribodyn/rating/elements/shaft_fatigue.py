@@ -81,6 +81,11 @@ class ShaftMaterial:
         Returns
         -------
         tuple of float
+
+        Raises
+        ------
+        InputError
+            If the diameter is beyond those for which the factor is known.
         """
         *slopes, largest = _SIZE[self.kind]
         millimetres = 1e3 * diameter

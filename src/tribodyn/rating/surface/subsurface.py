@@ -60,7 +60,7 @@ def line_contact_stress(
     depth : float or array
         z over the half width a, pure number of at least 0.
     friction : float
-        Coefficient of friction of the traction along +x.
+        Friction coefficient of the traction along +x, a pure number.
     poissons_ratio : float
         Poisson's ratio.
 

@@ -13,7 +13,6 @@ from typing import TYPE_CHECKING, Any, NamedTuple, cast
 from tribodyn.errors import Argument, InputError, ModelOption, ModelWarning, Problem, collected
 from tribodyn.study.case.gears import Gear, Gears, Modification
 from tribodyn.study.case.hypoid import hypoid_flanks, levers
-from tribodyn.study.case.profile_map_file import read_profile_map
 from tribodyn.study.case.rating_tables import rating_problems
 from tribodyn.study.case.section import Section, options_of
 from tribodyn.study.case.sections import Dynamics, Losses, LubricantData, MaterialData
@@ -108,11 +107,14 @@ def _modifications(gears: Gears) -> _Modified:
     problems: list[Problem] = []
 
     def modification(name: str, data: Modification | None) -> FlankModification | None:
-        chart = None
         try:
             if data is not None and data.profile_map is not None:
-                chart = read_profile_map(data.profile_map, data.profile_map_interpolation)
-            return flank_modification(data, chart)
+                from tribodyn.measurement.readers.profile_map import read_profile_map
+
+                return flank_modification(
+                    data, read_profile_map(data.profile_map, data.profile_map_interpolation)
+                )
+            return flank_modification(data, None)
         except InputError as error:
             problems.extend(
                 replace(problem, where=Argument(f"modification.{place.name}", name))
@@ -122,11 +124,9 @@ def _modifications(gears: Gears) -> _Modified:
             )
             return None
 
-    modifications = (
-        modification("pinion", gears.pinion.modification),
-        modification("wheel", gears.wheel.modification),
-    )
-    return _Modified(*modifications, tuple(problems))
+    sides = gears.pinion.modification, gears.wheel.modification
+    pinion, wheel = map(modification, ("pinion", "wheel"), sides)
+    return _Modified(pinion, wheel, tuple(problems))
 
 
 @lru_cache(maxsize=16)

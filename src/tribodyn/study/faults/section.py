@@ -291,7 +291,7 @@ def read_fault(fault: FaultTable, **changes: Any) -> Fault | BearingDefect | Sha
     if fault.kind == "random-load" and "torque" in values:
         return faults.RandomLoad.of_rms(values.pop("torque"), values.pop("frequencies"), **values)
     if fault.kind == "flank-topographies":
-        from tribodyn.study.case.profile_map_file import read_tooth_maps
+        from tribodyn.measurement.readers.profile_map import read_tooth_maps
 
         maps = read_tooth_maps(values.pop("file"), values.pop("interpolation", "linear"))
         values |= {"teeth": tuple(maps), "maps": tuple(maps.values())}

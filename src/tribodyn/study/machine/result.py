@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 from collections.abc import Iterable, Mapping
 from dataclasses import asdict, dataclass
-from functools import cached_property, wraps
+from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -197,10 +197,30 @@ class LoadResult:
             raise InputError(f'there is no stage "{chosen}"', Argument("name"), why, "Name one")
         return StageResult(self, chosen)
 
-    @wraps(StageResult.ring_sensor)
-    def ring_sensor(self, *arguments: Any, **options: Any) -> RingSensorSignal:
-        """Signal of a sensor on the ring of the first stage, as of :class:`StageResult`."""
-        return self.stage().ring_sensor(*arguments, **options)
+    def ring_sensor(
+        self, sensor_angle: float = 0.0, window: Any = None, steps: int = 256
+    ) -> RingSensorSignal:
+        """Signal of a sensor on the ring of the first stage, see :meth:`StageResult.ring_sensor`.
+
+        Parameters
+        ----------
+        sensor_angle : float
+            Angle of the sensor from y towards z [rad].
+        window : float or function, optional
+            As for :func:`tribodyn.machine.ring_sensor_signal`.
+        steps : int
+            Samples of a mesh cycle.
+
+        Returns
+        -------
+        RingSensorSignal
+
+        Raises
+        ------
+        InputError
+            If the machine has no stage, or an argument is out of range.
+        """
+        return self.stage().ring_sensor(sensor_angle, window, steps)
 
     def __getattr__(self, name: str) -> Any:
         """Find what a stage by itself had in an earlier version."""

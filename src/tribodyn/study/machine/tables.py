@@ -374,14 +374,9 @@ class PlanetsTable(Section):
         None, meaning="gear at the ring of double planets; planet is that at the sun", example='"q"'
     )
     ring_normal_module: float | None = number(
-        None,
-        0.05e-3,
-        0.1,
-        "ISO 54 modules run from 1 to 50 mm",
-        of="normal_module",
-        meaning="module of the ring and its gears of stepped planets",
-        basis="that of the sun",
-    )
+        None, 0.05e-3, 0.1, "ISO 54 modules run from 1 to 50 mm", of="normal_module",
+        meaning="module of the ring and its gears of stepped planets", basis="that of the sun",
+    )  # fmt: skip
     ring_center_distance: float | None = _position(
         "distance from the sun to the planets at the ring of pairs, from the profile shifts of the "
         "ring mesh by default",
@@ -392,14 +387,10 @@ class PlanetsTable(Section):
     )
     count: int = integer(REQUIRED, 1, 24, "more do not fit", meaning="number of planets")
     angles: tuple[float, ...] | None = numbers(
-        -_TURN,
-        _TURN,
-        "one turn",
-        unit="rad",
-        display_unit="deg",
+        -_TURN, _TURN, "one turn", unit="rad", display_unit="deg",
         example='["0 deg", "120 deg", "240 deg"]',
         meaning="angles of the planets about the sun; equally spaced by default",
-    )
+    )  # fmt: skip
     pin_stiffness: float = _support("radial stiffness of each planet on the carrier")
     pin_clearance: float = _clearance(
         "radial distance that each planet can move on its pin before it is held"
@@ -419,14 +410,9 @@ class PlanetsTable(Section):
         None, 1e-9, 1e6, _GUARD, of="mass", meaning="mass of the carrier", basis="a steel disc"
     )
     carrier_moment_of_inertia: float | None = number(
-        None,
-        1e-14,
-        1e7,
-        _GUARD,
-        of="moment_of_inertia",
-        meaning="moment of inertia of the carrier about its axis",
-        basis="a steel disc",
-    )
+        None, 1e-14, 1e7, _GUARD, of="moment_of_inertia",
+        meaning="moment of inertia of the carrier about its axis", basis="a steel disc",
+    )  # fmt: skip
     pin_errors: tuple[float, ...] | None = _errors(
         "distance by which each pin is ahead of its place, from x towards y"
     )
