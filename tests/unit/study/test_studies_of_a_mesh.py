@@ -1,6 +1,5 @@
 """Studies of one mesh of a machine or a stage, and the table of what each study takes."""
 
-import numpy as np
 import pytest
 
 import tribodyn as td
@@ -125,16 +124,6 @@ def test_the_table_names_commands_and_decides_by_kind():
     for study, need in STUDIES.items():
         for kind, case in cases.items():
             assert takes(study, case) == (kind in need.kinds or (need.of_mesh and kind in PARTS))
-
-
-@pytest.mark.parametrize(
-    "study", [td.continuation, td.basins, td.lyapunov_exponents, td.bifurcation]
-)
-@pytest.mark.parametrize("name", ["two-stage-spur", "planetary-stage"])
-def test_studies_in_time_refuse_cases_of_parts(study, name):
-    with pytest.raises(td.InputError, match="needs the case of one pair of gears") as caught:
-        study(td.load_case(name))
-    assert np.all([problem.remedy for problem in caught.value.problems])
 
 
 @pytest.mark.parametrize("name", ["planetary-stage", "machine"])

@@ -26,7 +26,7 @@ _FEWEST = 60
 def over_phases(solver: SolverTable, machine: Machine) -> bool:
     """Whether the motion of a machine is found over independent phases of its meshes."""
     bearings = machine.bearings.values()
-    if len(machine.phases.frequency) == 1 or solver.phases == "off":
+    if solver.phases == "off" or len(machine.phases.frequency) == 1:
         return False
     if any(bearing.unloaded is not None for bearing in bearings):
         return False  # supports with clearance act on one clock

@@ -263,7 +263,7 @@ def axial_notes(modes: MachineModes) -> list[str]:
         stiffness = {n: b.stiffness_matrix[0, 0] for n, b in parts if b.shaft == shaft}
         held = [(n, float(f"{1e-6 * k:.3g}")) for n, k in stiffness.items() if k > 0.0]
         free = [name for name, k in stiffness.items() if not k > 0.0]
-        springs = ", ".join(f"{name} with {k:g} N/µm" for name, k in held) or "no bearing"
+        springs = ", ".join(f"{name} with {k:g} N/um" for name, k in held) or "no bearing"
         mode = f"Mode {number + 1} ({modes.frequency[number]:.4g} Hz)"
         text = f"{mode} moves shaft {shaft} along its axis; {springs} holds it at this load"
         notes.append(f"{text}, {', '.join(free)} not at all." if free else f"{text}.")
