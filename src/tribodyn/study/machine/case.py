@@ -280,8 +280,10 @@ class MachineCase(PartsBase):
     @property
     def planet_names(self) -> tuple[str, ...]:
         """Names of the gears that are planets of stages."""
-        bodies = self.data.get("planets", {}).values()
-        return tuple(b[k] for b in bodies for k in ("planet", "ring_planet") if k in b)
+        tables = self.data.get("planets")
+        bodies = tables.values() if isinstance(tables, dict) else ()
+        stages = [b for b in bodies if isinstance(b, dict)]
+        return tuple(str(b[k]) for b in stages for k in ("planet", "ring_planet") if k in b)
 
     @cached_property
     def lone_stage(self) -> str | None:

@@ -110,7 +110,7 @@ def _planets(data: Mapping[str, Any]) -> KeyedProblems:
             yield from _refused(f"gears.{gear}", table, places, why, "Remove it")
         for role in ("sun", "ring", "carrier"):
             member = str(body.get(role))
-            shaft = _tables(data, "gears").get(member, {}).get("shaft", member)
+            shaft = str(_tables(data, "gears").get(member, {}).get("shaft", member))
             held = [b for b in _tables(data, "bearings").values() if b.get("shaft") == shaft]
             if held or _is_set(_tables(data, "shafts").get(shaft), "sections"):
                 why = f"Shaft {shaft} has sections, or bearings that support it"
