@@ -305,8 +305,8 @@ def test_films_of_sun_and_ring_meshes_are_heated():
         for model in ("thermal", "newton")
     )
     ratios = {
-        mesh: np.array([hot[f"meshes.{mesh}.{n}"] / before[f"meshes.{mesh}.{n}"] for n in names])
-        for mesh in ("sun", "ring")
+        kind: np.array([hot[f"meshes.{mesh}.{n}"] / before[f"meshes.{mesh}.{n}"] for n in names])
+        for kind, mesh in (("sun", "low_sun1"), ("ring", "low_ring1"))
         for names in [("mean_friction_coefficient", "minimum_film_thickness")]
     }
     # The flanks of planet and ring slide less, so that they make less heat.

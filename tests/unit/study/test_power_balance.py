@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections import defaultdict
 from typing import Any
 
-import numpy as np
 import pytest
 
 import tribodyn as td
@@ -49,9 +48,6 @@ def test_input_power_is_output_power_and_listed_losses(results: dict[str, Any]) 
         entering, leaving = (abs(figures[f"shafts.{end}.power"]) for end in (start, end))
         torque, speed = figures["machine.output_torque"], figures[f"shafts.{ends[1]}.speed"]
         listed = sum(figures[f"meshes.{mesh}.friction_power"] for mesh in case.meshes)
-        for kind in ("sun", "ring") * bool(case.stages):
-            alike = [figures[f"meshes.{m}.friction_power"] for m in case.meshes if kind in m]
-            assert figures[f"meshes.{kind}.friction_power"] == pytest.approx(np.mean(alike))
         power, lost = figures["machine.input_power"], figures["machine.friction_power"]
         assert power == pytest.approx(entering, rel=1e-9), name
         assert power - leaving == pytest.approx(lost, rel=1e-7), name

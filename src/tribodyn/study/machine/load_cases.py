@@ -27,7 +27,7 @@ class LoadCase:
     share : float
         Share of the time [1].
     temperature, gear_temperature : float, optional
-        Temperatures of oil and gears in place of those of ``[lubricant]`` [K].
+        Temperatures of oil and gears in place of those of the table ``lubricant`` [K].
     """
 
     name: str

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -67,7 +68,6 @@ def parts_of(result: Result) -> Parts:
         attributes = _attributes_of("1", "mesh harmonic")
         coordinates["order"] = ("order", variables.pop("order"), attributes)
     facts = {
-        "omega_max_dt": response.step_number,
         "title": result.case.title,
         "half_backlash": result.half_backlash,
     }
@@ -131,12 +131,14 @@ def _ends(response: Response, prefix: str = "") -> dict[str, Any]:
     return variables
 
 
-#: Fields of a response that are numbers, with the type and the name in a file.
+#: Fields of a response that are numbers or texts, with the type and the name in a file.
 _NUMBERS: dict[str, tuple[type, str]] = {
     "mesh_frequency": (float, "mesh_frequency"),
     "periods": (int, "periods"),
     "error": (float, "steady_state_error"),
     "step_error": (float, "step_error"),
+    "engine": (str, "engine"),
+    "step_number": (float, "omega_max_dt"),
     **{name: (int, name) for name in ("converged", "cycles_used", "search_cycles", "period")},
 }
 
@@ -313,6 +315,7 @@ def read_response(system: System, data: xarray.Dataset, prefix: str = "") -> Res
     }
     names, rows = tuple(data["coordinate"].values), data.sizes[f"{prefix}time"]
     frequency, periods = facts.pop("mesh_frequency"), facts.pop("periods")
+    number = facts.pop("step_number", None)
     if names != tuple(system.names) or rows % periods:
         why = f"Its motion has {', '.join(names)}, its case {', '.join(system.names)}"
         raise InputError("these files are of different results", "", why, "")
@@ -331,4 +334,6 @@ def read_response(system: System, data: xarray.Dataset, prefix: str = "") -> Res
         np.zeros(system.size) if extra is None else extra.values,
         **{"step_error": float("nan"), **facts, "converged": bool(facts["converged"])},
     )
+    if number is not None:
+        response = replace(response, step_number=number)
     return later(response, float(data[f"{prefix}time"].values[0]))
