@@ -240,7 +240,7 @@ def test_a_machine_is_opened_changed_and_run(context: Any, served: Page, folder:
     visit.wait("#bench p.answer", "500 N")
     visit.run(1)
     tab.click("[role=tab]:has-text('All numbers')")
-    visit.wait("#bench td", "Bearing A")
+    visit.wait("#bench h3", "Bearings")
     visit.wait("text=Report")
     assert not visit.messages
     tab.close()

@@ -174,12 +174,21 @@ def test_every_command_with_a_case_is_tried() -> None:
     assert set(_ARGUMENTS) | _APART == taking
 
 
-@pytest.mark.parametrize("name", _CASES)
+#: Studies of motions that take minutes: those of a stage are in test_motions_of_machines.py.
+_LONG = {
+    (command, name)
+    for command in ("basins", "bifurcation", "continuation", "lyapunov")
+    for name in ("planetary-stage", "two-stage-helical", "two-stage-spur", "wind-turbine-gearbox")
+}
+
+
 @pytest.mark.parametrize(
-    "command",
+    ("command", "name"),
     [
-        pytest.param(name, marks=() if name in _LIGHT else pytest.mark.slow)
-        for name in sorted(_ARGUMENTS)
+        pytest.param(command, name, marks=() if command in _LIGHT else pytest.mark.slow)
+        for command in sorted(_ARGUMENTS)
+        for name in _CASES
+        if (command, name) not in _LONG
     ],
 )
 def test_it_computes_or_refuses(
