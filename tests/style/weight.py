@@ -76,7 +76,7 @@ LINES: dict[str, int] = {
     "report": 1783,
     "signals": 1754,
     "stiffness": 5084,
-    "study": 17390,
+    "study": 17395,
     "surrogate": 777,
     "types": 7,
     "uncertainty": 290,
