@@ -14,7 +14,7 @@ from tribodyn.model import REQUIRED, Option, choice, file_path, integer, number,
 from tribodyn.nomenclature import GEARS
 from tribodyn.report.study_report_data import MEASUREMENT
 from tribodyn.study.case.values import FaultError, Plain, read_value
-from tribodyn.study.studies.needs import PAIR_MESH, study_meshes, takes
+from tribodyn.study.studies.needs import PAIR_MESH, PAIRS, kind_of, study_meshes, takes
 from tribodyn.study.studies.needs import STUDIES as NEEDS
 from tribodyn.study.studies.range_syntax import toml_value
 
@@ -75,7 +75,9 @@ def _time(unit: str, default: float, high: float, meaning: str) -> Option:
 
 
 def offered(kind: str, case: Case | MachineCase) -> bool:
-    """Whether the page offers a study for a case."""
+    """Whether the page offers a study for a case; motions of a named mesh it does not."""
+    if kind in ("basins", "bifurcation", "continuation", "lyapunov") and kind_of(case) not in PAIRS:
+        return False
     return takes(kind, case) and (not NEEDS[kind].of_mesh or bool(study_meshes(kind, case)))
 
 

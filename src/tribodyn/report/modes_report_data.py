@@ -50,12 +50,10 @@ def _parts_modes_report_data(
         progress.start("Natural modes")
         modes = machine_modes(structure)
         campbell = campbell_of(structure, _diagram_speeds(ends), modes)
-    figures = [
-        figure_with_caption(plot.machine_modes, modes),
-        figure_with_caption(plot.machine_campbell, campbell),
-    ]
+    drawn = ((plot.machine_modes, modes), (plot.machine_campbell, campbell))
+    figures = [figure_with_caption(*each) for each in drawn if not each[0].missing(each[1])]
     progress.finish()
-    statements = [f"{figures[1][1].layout.title.text}.", *axial_notes(modes)]
+    statements = [f"{figures[-1][1].layout.title.text}.", *axial_notes(modes)]
     facts = modes_facts(modes, campbell)
     rows = mode_rows(modes)
     return StudyReportData(campbell, figures, statements, MODES_HEAD, rows, facts)
