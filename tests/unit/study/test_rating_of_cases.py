@@ -78,8 +78,8 @@ def test_a_pair_is_rated_as_without_a_case(result):
     assert ours.pitting_safety == pytest.approx(pair.pitting_safety, rel=2e-3)
     assert ours.bending_safety == pytest.approx(pair.bending_safety, rel=1e-9)
     assert rating.gears["wheel"]["mesh"].bending_safety == ours.wheel.bending_safety
-    assert ours.scuffing_safety_flash is not None
-    assert ours.micropitting_safety is not None
+    assert ours.scuffing_safety_flash == pytest.approx(pair.scuffing_safety_flash, rel=2e-3)
+    assert ours.micropitting_safety == pytest.approx(pair.micropitting_safety, rel=2e-3)
 
 
 def test_computed_loads_stand_beside_those_of_the_standard(result):
