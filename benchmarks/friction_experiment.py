@@ -12,8 +12,8 @@ from collections.abc import Sequence
 
 from race import Goal, arguments, print_goals
 from tribodyn import friction_experiment, load_case, run
+from tribodyn.cases.papers.friction_experiment import ROUGHNESSES
 from tribodyn.errors import ModelWarning
-from tribodyn.study.studies.friction_experiment import ROUGHNESSES
 
 #: Changes of the sample: laws that differ in what they need.
 SAMPLE = ("none", "benedict-kelly", "xu-2007", "mixed", "mixed-ehl", "ehl")

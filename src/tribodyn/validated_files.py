@@ -117,8 +117,8 @@ def _content(data: Any) -> _Content:
 
 
 @deferred()
-def write_dataset(data: Any, path: str | PathLike[str]) -> None:
-    """Write labelled arrays to a netCDF file, with the checksum of what they hold."""
+def write_dataset(data: Any, path: str | PathLike[str] | io.BytesIO) -> None:
+    """Write labelled arrays to a netCDF file or into memory, with a checksum of their content."""
     content = _content(data)
     try:
         _write(content, path)
@@ -128,7 +128,7 @@ def write_dataset(data: Any, path: str | PathLike[str]) -> None:
         raise
 
 
-def _write(content: _Content, path: str | PathLike[str]) -> None:
+def _write(content: _Content, path: str | PathLike[str] | io.BytesIO) -> None:
     """Write the same file as xarray does, which takes ten times as long and a second to import."""
     import h5py
 

@@ -35,6 +35,7 @@ __all__ = ["ANY", "FILES", "LINES", "import_circles", "lines_of_code", "measures
 #: arguments: copies that the package makes of its own objects are not checked again.
 #: dynamics, nonlinear, report, study: diagrams, branches, basins and exponents of machines.
 #: cli, dynamics, plot, study: machines of any teeth over independent phases, with their cost.
+#: cases: the friction experiment, a study of papers, came from study
 LINES: dict[str, int] = {
     "__init__": 100,
     "__main__": 3,
@@ -43,7 +44,7 @@ LINES: dict[str, int] = {
     "app": 2126,
     "arguments": 543,
     "arrays": 174,
-    "cases": 908,
+    "cases": 1376,
     "checkpoints": 142,
     "checks": 56,
     "cli": 3091,
@@ -76,16 +77,16 @@ LINES: dict[str, int] = {
     "report": 1781,
     "signals": 1754,
     "stiffness": 5084,
-    "study": 17395,
+    "study": 16908,
     "surrogate": 777,
     "types": 7,
     "uncertainty": 290,
     "units": 243,
     "validated_files": 195,
-    "variants": 1073,
+    "variants": 1056,
 }
 #: Modules of the package, and its annotations without a type.
-FILES, ANY = 772, 2634
+FILES, ANY = 773, 2632
 
 _NO_CODE = {
     tokenize.COMMENT, tokenize.NL, tokenize.NEWLINE, tokenize.INDENT, tokenize.DEDENT,

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 from tribodyn.arguments import guarded
 
 if TYPE_CHECKING:
+    from tribodyn.cases.papers.friction_experiment import friction_experiment
     from tribodyn.study.case.case import Case
     from tribodyn.study.case.read import read_case
     from tribodyn.study.faults.clock import TurningClock, turning_clock
@@ -35,7 +36,6 @@ if TYPE_CHECKING:
     from tribodyn.study.result_comparison import ResultComparison, compare_results
     from tribodyn.study.studies.bifurcation import bifurcation
     from tribodyn.study.studies.case_grid import build_system
-    from tribodyn.study.studies.friction_experiment import friction_experiment
     from tribodyn.study.studies.levels import MachineLevels
     from tribodyn.study.studies.losses import loss_map, rig_power_flow
     from tribodyn.study.studies.modes import campbell, natural_modes
@@ -148,7 +148,7 @@ _NAMES = {
     "planetary.tolerances": "LoadShareStatistics load_share_statistics",
     "result_comparison": "ResultComparison compare_results",
     "studies.bifurcation": "bifurcation",
-    "studies.friction_experiment": "friction_experiment",
+    ".cases.papers.friction_experiment": "friction_experiment",
     "studies.losses": "loss_map rig_power_flow",
     "studies.modes": "campbell natural_modes",
     "studies.nonlinear": "basins continuation lyapunov_exponents",
@@ -171,5 +171,5 @@ def __getattr__(name: str) -> Any:
     """Load a public name when it is first used."""
     if name not in _HOMES:
         raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
-    value = getattr(import_module(f"{__name__}.{_HOMES[name]}"), name)
+    value = getattr(import_module(f".{_HOMES[name]}", __name__), name)
     return globals().setdefault(name, guarded(value, __name__))

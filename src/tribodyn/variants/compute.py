@@ -11,12 +11,13 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from tribodyn.errors import Problem, TribodynError, quiet
-from tribodyn.interrupt import deferred
 from tribodyn.mesh.film.film_lookup import shared_films
 from tribodyn.progress import SILENT, Progress
+from tribodyn.record import Parts
 from tribodyn.study.pipeline.summary import SUMMARY
 from tribodyn.study.pipeline.summary_figures import figure_of, in_order, is_figure
 from tribodyn.types import Array
+from tribodyn.validated_files import write_dataset
 
 if TYPE_CHECKING:
     from tribodyn.study.case.case import Case
@@ -67,51 +68,19 @@ class Job(NamedTuple):
         part = self.compute(progress)
         return Stored(self._encoded(part), part.failed, [*part.figures])
 
-    @deferred()
     def _encoded(self, part: Part) -> bytes:
         """Result as netCDF; built in memory, as HDF5 does not handle a full disk well."""
-        import h5py
-
-        figure, count = KINDS[self.kind].figure, len(part.failed)
+        columns = {**self.columns, "failed": part.failed, "warnings": part.warned}
+        variables: dict[str, Any] = {key: ("member", values) for key, values in columns.items()}
+        names = {}
+        if part.figures:
+            units = [KINDS[self.kind].figure(name)[0] for name in part.figures]
+            variables["units"] = "figure", units
+            variables["value"] = ("member", "figure"), np.stack([*part.figures.values()], 1)
+            names = {"figure": [*part.figures]}
         buffer = io.BytesIO()
-        with h5py.File(buffer, "w") as file:
-            # A dimension without values, as netCDF marks it.
-            member = file.create_dataset("member", (count,), ">f4")
-            _scale(member, 0, f"This is a netCDF dimension but not a netCDF variable.{count:10}")
-            for key, column in self.columns.items():
-                _put(file, key, column, member)
-            _put(file, "failed", part.failed, member)
-            _put(file, "warnings", part.warned, member)
-            if part.figures:
-                axis = _put(file, "figure", [*part.figures])
-                _scale(axis, 1, "figure")
-                _put(file, "units", [figure(name)[0] for name in part.figures], axis)
-                _put(file, "value", np.stack([*part.figures.values()], 1), member, axis)
+        write_dataset(Parts(variables, names, {}), buffer)
         return buffer.getvalue()
-
-
-def _scale(dimension: Any, number: int, name: str) -> None:
-    """Turn a data set into a dimension."""
-    dimension.attrs["_Netcdf4Dimid"] = np.int32(number)
-    dimension.make_scale(name)
-
-
-def _put(file: Any, name: str, values: Any, *dimensions: Any) -> Any:
-    """Write one variable; netCDF has no logical values.
-
-    h5netcdf would make a dimension first and then delete it for the variable of that name. Whether
-    HDF5 uses that place again depends on who still looks at it, be it a profiler, and chunks would
-    not be the same byte for byte.
-    """
-    import h5py
-
-    is_text = isinstance(values[0], str)
-    data = np.array(values, dtype=object if is_text else None)
-    data = data.astype(np.int8) if data.dtype.kind == "b" else data
-    variable = file.create_dataset(name, data=data, dtype=h5py.string_dtype() if is_text else None)
-    for axis, dimension in enumerate(dimensions):
-        variable.dims[axis].attach_scale(dimension)
-    return variable
 
 
 def _each(compute: Callable[..., Part], columns: Columns, progress: Progress) -> Part:

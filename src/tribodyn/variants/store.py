@@ -22,7 +22,7 @@ from typing import TYPE_CHECKING, Any
 from tribodyn.checkpoints import NAME, Checkpoints, read_lines
 from tribodyn.errors import Argument, InputError, OutputExistsError, quiet
 from tribodyn.files import atomic_write, lock
-from tribodyn.study.studies.case_grid import identity
+from tribodyn.study.studies.runner import identity
 from tribodyn.validated_files import read_bytes
 from tribodyn.variants.compute import Job, Stored
 from tribodyn.variants.members import Chunk, Plan, layout_of

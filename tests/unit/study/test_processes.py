@@ -9,7 +9,6 @@ import subprocess
 import sys
 import threading
 import time
-from functools import partial
 
 import pytest
 
@@ -20,6 +19,7 @@ from tribodyn.friction.benedict_kelly import VARIANTS
 from tribodyn.model import known_elsewhere
 from tribodyn.study.processes import Helpers, helpers
 from tribodyn.study.studies import sweep as studied
+from tribodyn.study.studies.runner import Groups
 
 #: A script without a guard, as many are written: its first process would begin it again otherwise.
 _SCRIPT = """
@@ -85,11 +85,11 @@ def test_points_of_a_sweep_are_the_same_in_another_process() -> None:
     case = td.load_case("fzg-roughness").replace(
         {"film.model": "none", "solver.steps_per_mesh_cycle": 512}
     )
-    study = partial(studied._pending_at, case, ("operation.speed", "operation.torque"))
+    source = studied._source(case, ("operation.speed", "operation.torque"))
     # The second is refused, with its reason.
     places = [[(100.0, 50.0)], [(1e-6, 90.0)], [(200.0, 70.0), (200.0, 90.0)]]
-    work = partial(studied._points, study)
-    results = _each(pickle.loads(studied._pickled(study)), places, work)
+    work = source.points_at
+    results = _each(pickle.loads(Groups(remote=work).pickled()), places, work)
     assert results == [work(place) for place in places]
     assert [bool(point.failed) for points in results for point in points] == [0, 1, 0, 0]
 
@@ -126,13 +126,13 @@ def test_an_error_here_ends_all() -> None:
 
 def test_a_law_that_a_script_registers_stays_in_its_process() -> None:
     case = td.load_case("fzg-roughness")
-    study = partial(studied._pending_at, case, ("operation.speed",))
+    groups = Groups(remote=studied._source(case, ("operation.speed",)).points_at)
     assert known_elsewhere()
-    assert studied._pickled(study)
+    assert groups.pickled()
     with as_before():
         LAWS.define("of-a-script", source="a script")(lambda contact: contact.load_per_width)
         assert not known_elsewhere()
-        assert not studied._pickled(study)
+        assert not groups.pickled()
     with as_before():
         VARIANTS.register("of-a-script")(0.01)  # a number, which has no module
         assert not known_elsewhere()

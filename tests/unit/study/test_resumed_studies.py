@@ -7,7 +7,7 @@ from typing import Any
 
 import pytest
 
-import tribodyn.study.studies.case_grid as grid
+import tribodyn.study.studies.runner as runner
 import tribodyn.study.studies.sweep as sweeps
 from tribodyn import load_case
 from tribodyn.checkpoints import Checkpoints
@@ -45,7 +45,7 @@ def test_a_sweep_goes_on(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Non
     case = _plain_case()
     full = sweep(case, _SPEEDS)
     with monkeypatch.context() as patch, Checkpoints(tmp_path / "s") as members:
-        patch.setattr(grid.os, "cpu_count", lambda: 1)
+        patch.setattr(runner.os, "cpu_count", lambda: 1)
         _dying(patch, 2)
         with pytest.raises(_KilledError):
             sweep(case, _SPEEDS, checkpoints=members)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Mapping
+from threading import Lock
 from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
@@ -30,7 +31,10 @@ Computation = Callable[..., Figures]
 COMPUTATIONS: Registry[Computation] = Registry("computation")
 
 #: Keys that do not affect loads and films of a mesh.
-_AFTER = ("friction.", "solver.", "losses.", "operation.torque_balance", "title", "origin")
+_AFTER = (
+    *("friction.", "solver.", "losses.", "operation.torque_balance", "title", "origin"),
+    *("gears.composite_roughness", *(f"gears.{gear}.roughness_" for gear in GEARS)),
+)
 #: Margin inside the path of contact [base pitches].
 _INSIDE = 1e-9
 _HARMONICS = 22
@@ -49,22 +53,26 @@ class Meshes:
 
     def __init__(self) -> None:
         self._loaded: dict[str, LoadedMesh] = {}
+        self._locks: dict[str, Lock] = {}
+
+    def loaded(self, case: Case) -> LoadedMesh:
+        """Loads and films of a pair with computed teeth; threads wait for equal ones."""
+        from tribodyn.mesh.build import loaded_mesh
+
+        key, settings = loads_of(case), contact_settings(case)
+        with self._locks.setdefault(key, Lock()):
+            if key not in self._loaded:
+                law = mesh_law_of(case) == "force-law"
+                self._loaded[key] = loaded_mesh(
+                    case.gear_pair, settings, case.operating_point, force_law=law
+                )
+        return self._loaded[key]
 
     def table(self, case: Case) -> MeshTable:
         """Mesh table of a case."""
-        from tribodyn.mesh.build import loaded_mesh
-
         if case.spur_pair is None:
             return mesh_of(case)
-        key = loads_of(case)
-        if key not in self._loaded:
-            self._loaded[key] = loaded_mesh(
-                case.spur_pair,
-                contact_settings(case),
-                case.operating_point,
-                force_law=mesh_law_of(case) == "force-law",
-            )
-        return self._loaded[key].table(contact_settings(case))
+        return self.loaded(case).table(contact_settings(case))
 
 
 @COMPUTATIONS.register("check")

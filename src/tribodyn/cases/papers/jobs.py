@@ -5,16 +5,16 @@ from __future__ import annotations
 import hashlib
 import json
 from collections.abc import Mapping, Sequence
-from functools import cache
+from functools import cache, partial
 from typing import TYPE_CHECKING, Any
 
 from tribodyn.cases.load import load_case
-from tribodyn.cases.papers.computations import Figures, Meshes, figures_of, loads_of
+from tribodyn.cases.papers.computations import Figures, Meshes, figures_of
 from tribodyn.cases.papers.printed import PrintedRow, course
 from tribodyn.checkpoints import Checkpoints
 from tribodyn.errors import ComputationError, InputError, quiet
 from tribodyn.progress import SILENT, Progress
-from tribodyn.study.studies.case_grid import over_cases
+from tribodyn.study.studies.runner import run_each
 from tribodyn.units import shown_in
 
 if TYPE_CHECKING:
@@ -48,16 +48,11 @@ def _request(row: PrintedRow, changes: Mapping[str, Any], arguments: Mapping[str
 
 
 class Jobs:
-    """Computations of rows without repetition, grouped by the tooth loads that they share."""
+    """Computations of rows without repetition; they share the tooth loads of equal cases."""
 
     def __init__(self, rows: Sequence[PrintedRow]) -> None:
         self.requests = [request for row in rows for request in requests_of(row)]
         self.names = {request: self._name(request) for request in dict.fromkeys(self.requests)}
-        self.groups: dict[str, dict[str, Request]] = {}
-        for request, name in self.names.items():
-            shares = request[0] in ("run", "mesh", "modes")
-            key = loads_of(self.case(request)) if shares else name
-            self.groups.setdefault(key, {}).setdefault(name, request)
 
     @staticmethod
     @cache
@@ -76,31 +71,29 @@ class Jobs:
         return hashlib.sha256(text.encode()).hexdigest()
 
     def done(
-        self, checkpoints: Checkpoints, partial: bool, progress: Progress = SILENT
+        self, checkpoints: Checkpoints, partly: bool, progress: Progress = SILENT
     ) -> dict[str, Figures]:
         """Figures of every computation by name; of the finished ones if interrupted."""
-        groups, done = list(self.groups.values()), dict[int, Any]()
-        stored = {name: checkpoints.get(name) for group in groups for name in group}
+        requests = {name: request for request, name in self.names.items()}
+        names, stored = list(requests), {name: checkpoints.get(name) for name in requests}
         results = {name: figures for name, figures in stored.items() if figures is not None}
 
-        def compute(group: Mapping[str, Request]) -> None:
-            meshes = Meshes()
-            for name, request in group.items():
-                if name not in results:
-                    figures = self._figures(request, meshes)
-                    checkpoints.keep(name, figures)
-                    results[name] = figures
+        def store(number: int, figures: Figures) -> None:
+            checkpoints.keep(names[number], figures)
+            results[names[number]] = figures
 
-        progress.start("Computations", len(groups))
-        try:
-            over_cases(compute, groups, done, progress)
-        except KeyboardInterrupt:
-            if not (partial and results):
-                raise
-        progress.finish()
+        run_each(
+            partial(self._figures, Meshes()),
+            list(requests.values()),
+            task="Computations",
+            progress=progress,
+            earlier={names.index(name): figures for name, figures in results.items()},
+            store=store,
+            partly=partly,
+        )
         return results
 
-    def _figures(self, request: Request, meshes: Meshes) -> Any:
+    def _figures(self, meshes: Meshes, request: Request) -> Any:
         try:
             with quiet():
                 return figures_of(request[0], self.case(request), meshes, json.loads(request[3]))

@@ -14,7 +14,7 @@ from tribodyn.errors import InputError
 
 if TYPE_CHECKING:
     from tribodyn.cases.papers.comparison import PaperComparison
-    from tribodyn.study.studies.friction_claims import FrictionExperiment
+    from tribodyn.cases.papers.friction_claims import FrictionExperiment
 
 _EXPERIMENTS = ("friction",)
 
@@ -53,7 +53,7 @@ def experiment(
     ready, options = changed_case(case, set_ or [], "experiment"), _options(roughness, laws)
 
     def compute(**checkpointing: Any) -> FrictionExperiment:
-        from tribodyn.study.studies.friction_experiment import friction_experiment
+        from tribodyn.cases.papers.friction_experiment import friction_experiment
 
         return friction_experiment(ready, **options, partial=True, **checkpointing)
 

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from tribodyn.cases.papers.friction_claims import DRIVING, HELD
 from tribodyn.drawing import drawing
 from tribodyn.plot.theme.panels import Panel, stack
 from tribodyn.plot.theme.style import (
@@ -22,10 +23,9 @@ from tribodyn.plot.theme.style import (
     line,
 )
 from tribodyn.study.pipeline.summary_labels import in_a_sentence
-from tribodyn.study.studies.friction_claims import DRIVING, HELD
 
 if TYPE_CHECKING:
-    from tribodyn.study.studies.friction_claims import FrictionExperiment
+    from tribodyn.cases.papers.friction_claims import FrictionExperiment
 
 _MADE = "Call tribodyn.friction_experiment(case) and its plot method."
 _SYMBOLS, _DASHES = ("circle", "square", "diamond"), ("solid", "dash", "dot")

@@ -17,13 +17,13 @@ from tribodyn.study.machine.case import MachineCase
 from tribodyn.study.studies.case_grid import (
     Moving,
     contact_without_speed,
-    identity,
     many_motions,
     moving_members,
     study_steps,
     varied,
 )
 from tribodyn.study.studies.needs import PARTS, kind_of, mesh_in_motion
+from tribodyn.study.studies.runner import identity
 from tribodyn.study.studies.study_axes import Axis, ends_of
 from tribodyn.types import Array
 

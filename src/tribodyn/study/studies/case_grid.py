@@ -1,25 +1,15 @@
-"""Cases of a study: their systems, their results, and the loop over them in threads."""
+"""Cases of a study: their systems and their results."""
 
 from __future__ import annotations
 
-import hashlib
-import json
-import os
-import threading
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager, suppress
 from functools import partial
-from typing import TYPE_CHECKING, Any, NamedTuple, TypeVar
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 from tribodyn.checkpoints import Checkpoints
 from tribodyn.errors import Argument, ComputationError, InputError, collected
-from tribodyn.interrupt import (
-    STOPPED,
-    in_threads,
-    refuse_stopped,
-    single_blas_thread,
-    stop_flag,
-)
+from tribodyn.interrupt import STOPPED, refuse_stopped, single_blas_thread, stop_flag
 from tribodyn.machine import system as system_of
 from tribodyn.machine.static.clearance import clearance_supports
 from tribodyn.mesh import MeshTable
@@ -33,13 +23,12 @@ from tribodyn.study.machine.run import MeshWarning, balanced_machine, run_load, 
 from tribodyn.study.pipeline.assembly import whole_system
 from tribodyn.study.pipeline.motion import steps_of
 from tribodyn.study.pipeline.tooth_contact import mesh_of
+from tribodyn.study.studies.runner import run_each
 from tribodyn.study.studies.sweep_result import SweepPoint
 
 if TYPE_CHECKING:
     from tribodyn.dynamics import Response, System
     from tribodyn.study.case.case import Case
-
-Value = TypeVar("Value")
 
 
 class Member(NamedTuple):
@@ -68,7 +57,6 @@ def varied(
     checkpoints: Checkpoints | None = None,
 ) -> list[Member]:
     """Build tooth contact and structure of a case for each change, in their order."""
-    members: dict[int, Member] = {}
     folder = checkpoints.folder if checkpoints is not None else None
 
     def member(index: int) -> Member:
@@ -84,50 +72,7 @@ def varied(
             built_member.mesh.save(path)
         return built_member
 
-    progress.start("Tooth contacts", len(changes))
-    over_cases(member, range(len(changes)), members, progress)
-    progress.finish()
-    return [members[index] for index in range(len(changes))]
-
-
-def identity(study: str, case: Case | MachineCase, over: Any, **options: Any) -> dict[str, Any]:
-    """Identity of a study; checkpoints are reused only if it is the same."""
-    import tribodyn
-
-    text = json.dumps(over, default=str)
-    return {
-        "study": study,
-        "version": tribodyn.__version__,
-        "options": options,
-        "case": hashlib.sha256(case.to_toml().encode()).hexdigest(),
-        "over": hashlib.sha256(text.encode()).hexdigest(),
-    }
-
-
-def over_cases(
-    compute: Callable[[Any], Value],
-    members: Sequence[Any],
-    done: dict[int, Value],
-    progress: Progress = SILENT,
-) -> None:
-    """Compute members in threads; ``done`` receives values by index, even if interrupted."""
-    lock = threading.Lock()
-    progress.advance(len(done))
-
-    def compute_one(index: int) -> None:
-        value = compute(members[index])
-        with lock:
-            done[index] = value
-            progress.advance()
-
-    remaining = [index for index in range(len(members)) if index not in done]
-    in_threads(compute_one, remaining, os.cpu_count() or 1)
-
-
-def finished(done: Mapping[int, Value]) -> list[Value]:
-    """Return the finished values up to the first one that is missing."""
-    count = next(index for index in range(len(done) + 1) if index not in done)
-    return [done[index] for index in range(count)]
+    return run_each(member, range(len(changes)), task="Tooth contacts", progress=progress)
 
 
 def result_under(
@@ -218,12 +163,8 @@ def moving_members(
     case: MachineCase, over: str, values: Sequence[float], mesh: str, progress: Progress
 ) -> list[Moving]:
     """Structure of a machine for each value of a key, in their order."""
-    members: dict[int, Moving] = {}
-    progress.start("Machines", len(values))
     at = partial(moving_at, case, over, mesh)
-    over_cases(at, values, members, progress)
-    progress.finish()
-    return [members[index] for index in range(len(values))]
+    return run_each(at, values, task="Machines", progress=progress)
 
 
 def moving_at(case: Case | MachineCase, over: str, mesh: str, value: float) -> Moving:

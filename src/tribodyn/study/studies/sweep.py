@@ -2,22 +2,17 @@
 
 from __future__ import annotations
 
-import functools
-import os
-import pickle
-import threading
-from collections.abc import Callable, Mapping, Sequence
-from contextlib import nullcontext, suppress
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import contextmanager, nullcontext
 from functools import partial
 from itertools import product
-from typing import TYPE_CHECKING, Any, TypeVar
+from typing import TYPE_CHECKING, Any, NamedTuple, TypeVar
 
 from tribodyn.aliases import with_old_names
 from tribodyn.checkpoints import Checkpoints
 from tribodyn.errors import ComputationError, InputError, quiet
-from tribodyn.interrupt import STOPPED, in_threads, refuse_stopped, stop_flag
+from tribodyn.interrupt import STOPPED, refuse_stopped, stop_flag
 from tribodyn.mesh.film.film_lookup import shared_films
-from tribodyn.model import known_elsewhere
 from tribodyn.progress import SILENT, Progress
 from tribodyn.study.first_use import compile_in_parallel
 from tribodyn.study.pipeline.run import (
@@ -27,8 +22,8 @@ from tribodyn.study.pipeline.run import (
     prepare_run,
     with_tables,
 )
-from tribodyn.study.processes import helpers
-from tribodyn.study.studies.case_grid import finished, identity, points_of_parts
+from tribodyn.study.studies.case_grid import points_of_parts
+from tribodyn.study.studies.runner import Groups, identity, run_groups
 from tribodyn.study.studies.study_axes import Axis, read_axes
 from tribodyn.study.studies.sweep_result import Sweep, SweepPoint
 
@@ -37,12 +32,11 @@ if TYPE_CHECKING:
     from tribodyn.study.machine.case import MachineCase
 
 Value = TypeVar("Value")
-#: Computes points of a grid by the values of the keys; prepares one of them.
-PointsAt = Callable[..., Sequence[SweepPoint]]
-CaseAt = Callable[..., PendingRun]
 
 #: Number of points from which a shared table of solved films costs less than separate films.
 _SHARED_FILM_POINTS = 4
+#: Largest number of points in a group, and motions that are integrated in one batch.
+_GROUP_SIZE, _BATCH = 16, 8
 
 
 @with_old_names
@@ -108,17 +102,40 @@ def sweep(
     """
     axes = read_axes(case, _read_ranges(over, between, points), by=by)
     study = identity("sweep", case, [(axis.key, axis.values) for axis in axes])
+    source = _source(case, tuple(axis.key for axis in axes))
+    computed = compute_points(axes, source, study, checkpoints, partly=partial, progress=progress)
+    return Sweep(case, axes, computed)
 
-    sources = _sources(case, tuple(axis.key for axis in axes))
-    return Sweep(case, axes, _compute(axes, *sources, study, partial, progress, checkpoints))
+
+class PointSource(NamedTuple):
+    """How a study computes its points from the values of its keys."""
+
+    points_at: Callable[..., list[SweepPoint]]  #: of the places of a group
+    #: Run of a pair at a place, for the kernels that it needs first.
+    pending_at: Callable[..., PendingRun] | None = None
+
+    def points(
+        self, places: Sequence[tuple[Any, ...]], progress: Progress = SILENT, **options: Any
+    ) -> list[SweepPoint]:
+        """Compute the points of all places; options are those of ``run_groups``."""
+        compute, groups = self.points_at, Groups(_GROUP_SIZE, self.points_at)
+        if self.pending_at is not None:
+            groups = groups._replace(compiling=partial(_compiling, self.pending_at))
+        else:  # A machine names the stages of each point, which are computed one after the other.
+            compute = partial(self.points_at, progress=progress)
+            groups = groups._replace(warm_up=1)
+        return run_groups(compute, places, groups=groups, progress=progress, **options)
 
 
-def _sources(case: Case | MachineCase, keys: Sequence[str]) -> tuple[PointsAt, CaseAt | None]:
-    """What computes a case at values of its keys, and the pair whose kernels it needs first."""
+def pair_source(pending_at: Callable[..., PendingRun]) -> PointSource:
+    """Points of a gear pair whose runs a function of the values returns."""
+    return PointSource(partial(_points, pending_at), pending_at)
+
+
+def _source(case: Case | MachineCase, keys: Sequence[str]) -> PointSource:
     if not case.lumped:
-        return partial(points_of_parts, case, keys), None
-    pending_at = partial(_pending_at, case, keys)
-    return partial(_points, pending_at), pending_at
+        return PointSource(partial(points_of_parts, case, keys))
+    return pair_source(partial(_pending_at, case, keys))
 
 
 def _pending_at(case: Case, keys: Sequence[str], *values: Any) -> PendingRun:
@@ -127,29 +144,15 @@ def _pending_at(case: Case, keys: Sequence[str], *values: Any) -> PendingRun:
 
 def compute_points(
     axes: tuple[Axis, ...],
-    pending_at: Callable[..., PendingRun],
+    source: PointSource,
     study: Mapping[str, Any],
-    partial: bool,
-    progress: Progress,
     checkpoints: Checkpoints | None,
+    **options: Any,
 ) -> tuple[SweepPoint, ...]:
-    """Compute every point of a grid in parallel, except those that the checkpoints hold."""
-    points_at = functools.partial(_points, pending_at)
-    return _compute(axes, points_at, pending_at, study, partial, progress, checkpoints)
-
-
-def _compute(
-    axes: tuple[Axis, ...],
-    points_at: PointsAt,
-    case_at: CaseAt | None,
-    study: Mapping[str, Any],
-    partial: bool,
-    progress: Progress,
-    checkpoints: Checkpoints | None,
-) -> tuple[SweepPoint, ...]:
+    """Compute every point of a grid, except those that the checkpoints hold."""
     grid = list(product(*(axis.values for axis in axes)))
     checkpoints = (Checkpoints() if checkpoints is None else checkpoints).begin(study)
-    done = {
+    earlier = {
         index: SweepPoint(grid[index], figures, failed, tuple(warned))
         for index in range(len(grid) if len(checkpoints) else 0)
         for figures, failed, warned in [checkpoints.get(str(index)) or (None, "", ())]
@@ -159,26 +162,17 @@ def _compute(
     def store(index: int, point: SweepPoint) -> None:
         checkpoints.keep(str(index), (dict(point.figures), point.failed, point.warned))
 
-    progress.start("Values", len(grid))
-    try:
-        # By the size of the grid: a resumed sweep has the same figures as an uninterrupted one.
-        with shared_films() if len(grid) >= _SHARED_FILM_POINTS else nullcontext():
-            _over_points(points_at, case_at, grid, done, progress, store)
-    except KeyboardInterrupt:
-        if not (partial and 0 in done):
-            raise
-    progress.finish()
-    return tuple(finished(done))
+    # By the size of the grid: a resumed sweep has the same figures as an uninterrupted one.
+    with shared_films() if len(grid) >= _SHARED_FILM_POINTS else nullcontext():
+        return tuple(source.points(grid, task="Values", earlier=earlier, store=store, **options))
 
 
 def points_under(
     case: Case | MachineCase, changes: Sequence[Mapping[str, Any]], progress: Progress = SILENT
 ) -> list[SweepPoint]:
     """Compute a case for several changes of the same keys; a failed point holds its reason."""
-    done: dict[int, SweepPoint] = {}
-    sources = _sources(case, tuple(changes[0]) if changes else ())
-    _over_points(*sources, [tuple(change.values()) for change in changes], done, progress)
-    return [done[index] for index in range(len(changes))]
+    source = _source(case, tuple(changes[0]) if changes else ())
+    return source.points([tuple(change.values()) for change in changes], progress)
 
 
 def _read_ranges(over: str | Mapping[str, Any], between: Any, points: int) -> Mapping[str, Any]:
@@ -193,85 +187,17 @@ def _read_ranges(over: str | Mapping[str, Any], between: Any, points: int) -> Ma
     return over
 
 
-#: Largest number of points in a group, and number of groups for each processor.
-_GROUP_SIZE, _GROUPS_PER_CPU = 16, 4
-#: Motions that are integrated in one batch.
-_BATCH = 8
-#: Number of points that justifies a worker process.
-_POINTS_PER_PROCESS = 50
-
-
-def _over_points(
-    points_at: PointsAt,
-    case_at: CaseAt | None,
-    grid: Sequence[tuple[Any, ...]],
-    done: dict[int, SweepPoint],
-    progress: Progress,
-    store: Callable[[int, SweepPoint], None] = lambda index, point: None,
-) -> None:
-    """Compute the points that are not in ``done`` yet, in groups and in parallel."""
-    remaining = [index for index in range(len(grid)) if index not in done]
-    count = os.cpu_count() or 1
-    size = min(_GROUP_SIZE, max(1, len(remaining) // (_GROUPS_PER_CPU * count)))
-    size -= size % _BATCH if size > _BATCH else 0
-    groups = [remaining[first : first + size] for first in range(0, len(remaining), size)]
-    places = [[grid[index] for index in members] for members in groups]
-    lock = threading.Lock()
-    progress.advance(len(done))
-
-    def keep_group(number: int, points: Sequence[SweepPoint]) -> None:
-        for index, point in zip(groups[number], points, strict=True):
-            store(index, point)
-            with lock:
-                done[index] = point
-                progress.advance()
-
-    first = _first_use(points_at, case_at, places, partial(keep_group, 0))
-    del groups[:first], places[:first]
-    pickled = _pickled(points_at)
-    with helpers(len(remaining) // _POINTS_PER_PROCESS if pickled else 0) as workers:
-        if pickled and workers.count:
-            # The points of machines are computed one after the other: one loads all that they need.
-            first_call = places[0][:1] if case_at is None else None
-            workers.each(points_at, pickled, places, keep_group, first_call)
-        else:
-            if case_at is None:  # a machine names the stages of each point
-                points_at = partial(points_at, progress=progress)
-            numbers = range(len(groups))
-            in_threads(lambda i: keep_group(i, points_at(places[i])), numbers, count)
-
-
-def _first_use(
-    points_at: PointsAt,
-    case_at: CaseAt | None,
-    places: Sequence[Sequence[tuple[Any, ...]]],
-    store: Callable[[Sequence[SweepPoint]], None],
-) -> int:
-    """Compute the first group alone if kernels must be compiled; return the number of groups."""
-    # Groups in parallel threads or processes would all wait for the same kernels.
-    pending = _try(partial(case_at, *places[0][0])) if places and case_at else None
+@contextmanager
+def _compiling(
+    pending_at: Callable[..., PendingRun], places: Sequence[tuple[Any, ...]]
+) -> Iterator[bool]:
+    """Compile in parallel what the first of some points needs; yield whether it needs anything."""
+    pending = _try(partial(pending_at, *places[0]))
     if not isinstance(pending, PendingRun):
-        return 0
-    study = "map" if len(places[0]) >= _BATCH else "run"
-    with compile_in_parallel(pending.case, study) as compiles:
-        if compiles:
-            store(points_at(places[0]))
-    return int(compiles)
-
-
-def _pickled(points_at: PointsAt) -> bytes:
-    """Pickle the function that a worker process calls; empty if it cannot be pickled."""
-    if known_elsewhere():
-        with suppress(pickle.PicklingError, AttributeError, TypeError):
-            return pickle.dumps(partial(_points_in_process, points_at))
-    return b""
-
-
-def _points_in_process(
-    points_at: PointsAt, places: Sequence[tuple[Any, ...]]
-) -> Sequence[SweepPoint]:
-    with shared_films(persistent=True):
-        return points_at(places)
+        yield False
+        return
+    with compile_in_parallel(pending.case, "map" if len(places) >= _BATCH else "run") as compiles:
+        yield compiles
 
 
 def _points(

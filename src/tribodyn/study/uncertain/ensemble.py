@@ -78,7 +78,7 @@ class CaseEnsemble(Record):
             If an input is a factor and no key of a case, so that its variants are no cases.
         """
         from tribodyn.study.pipeline.run import computed
-        from tribodyn.study.studies.case_grid import over_cases
+        from tribodyn.study.studies.runner import run_each
 
         keys = [str(key) for key in self.input]
         factors = [key for key in keys if "." not in key]
@@ -92,10 +92,8 @@ class CaseEnsemble(Record):
         middle = {key: float(value) for key, value in medians if key not in self.case.uncertain}
         rows = [dict(zip(keys, map(float, row), strict=True)) for row in self.value[chosen]]
         cases = [self.case.replace(row) if row else self.case for row in (middle, *rows)]
-        results_by_number: dict[int, Result] = {}
         with quiet():
-            over_cases(computed, cases, results_by_number)
-        return tuple(results_by_number[number] for number in range(len(cases)))
+            return tuple(run_each(computed, cases))
 
     def plot(self, name: str = "", *arguments: Any, **options: Any) -> Any:
         """Draw the spread of the motion, or any figure of a run with bands of the variants.

@@ -10,9 +10,9 @@ import numpy as np
 import pytest
 
 import tribodyn as td
+from tribodyn.cases.papers import friction_experiment as module
 from tribodyn.checkpoints import Checkpoints
 from tribodyn.study import friction_experiment
-from tribodyn.study.studies import friction_experiment as module
 from tribodyn.study.studies import sweep as sweeps
 
 pytestmark = pytest.mark.filterwarnings("ignore::tribodyn.errors.ModelWarning")

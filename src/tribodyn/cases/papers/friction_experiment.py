@@ -12,28 +12,26 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from tribodyn.aliases import with_old_names
-from tribodyn.checkpoints import Checkpoints
-from tribodyn.errors import InputError, collected
-from tribodyn.nomenclature import GEARS
-from tribodyn.progress import SILENT, Progress
-from tribodyn.study.case.to_models import locate_errors, mesh_law_of
-from tribodyn.study.mesh_inputs import contact_settings
-from tribodyn.study.pipeline.run import PendingRun
-from tribodyn.study.studies.case_grid import identity, over_cases
-from tribodyn.study.studies.friction_claims import (
+from tribodyn.cases.papers.computations import Meshes
+from tribodyn.cases.papers.friction_claims import (
     CONSTANT,
     MIXED,
     NONE,
     FrictionExperiment,
     Rubbing,
 )
+from tribodyn.checkpoints import Checkpoints
+from tribodyn.errors import InputError, collected
+from tribodyn.nomenclature import GEARS
+from tribodyn.progress import SILENT, Progress
+from tribodyn.study.case.to_models import locate_errors
+from tribodyn.study.pipeline.run import PendingRun
 from tribodyn.study.studies.needs import require
+from tribodyn.study.studies.runner import identity, run_each
 from tribodyn.study.studies.study_axes import Axis, ends_of
-from tribodyn.study.studies.sweep import compute_points
+from tribodyn.study.studies.sweep import compute_points, pair_source
 
 if TYPE_CHECKING:
-    from tribodyn.mesh import MeshTable
-    from tribodyn.mesh.build import LoadedMesh
     from tribodyn.study.case.case import Case
 
 #: Laws that are compared; ``constant`` takes COEFFICIENTS, and the mean of MIXED at each roughness.
@@ -109,18 +107,20 @@ def friction_experiment(
     heights = _roughnesses(case, ROUGHNESSES if roughness is None else roughness)
     named = _laws(laws)
     base = _with_film(case, named)
-    loaded = _loaded(base, progress)
-    rubbing = tuple(_list_frictions(base, loaded[GEARS[0]], named, heights, coefficients))
+    meshes = _loaded(base, progress)
+    rubbing = tuple(_list_frictions(base, meshes, named, heights, coefficients))
     frictions = {applied.name: applied for applied in rubbing}
     axes = (Axis(_KEYS[0], DRIVERS), Axis(_KEYS[1], BALANCES), Axis(_KEYS[2], tuple(frictions)))
 
     def pending_at(driver: str, balance: str, friction: str) -> PendingRun:
-        applied, mesh = frictions[friction], loaded[driver]
-        changed = _case_with(base, applied, mesh, driver).replace({_KEYS[1]: balance})
-        return PendingRun(changed, lambda: _table(changed, mesh))
+        changed = _case_with(base, frictions[friction], meshes, driver)
+        changed = changed.replace({_KEYS[1]: balance})
+        return PendingRun(changed, lambda: meshes.table(changed))
 
     study = identity("friction", base, [(axis.key, axis.values) for axis in axes])
-    points = compute_points(axes, pending_at, study, partial, progress, checkpoints)
+    points = compute_points(
+        axes, pair_source(pending_at), study, checkpoints, partly=partial, progress=progress
+    )
     return FrictionExperiment(base, axes, points, rubbing)
 
 
@@ -164,31 +164,22 @@ def _with_film(case: Case, laws: Sequence[str]) -> Case:
     return case.replace({**changes, **cleared, **rough})
 
 
-def _loaded(base: Case, progress: Progress) -> dict[str, LoadedMesh]:
+def _loaded(base: Case, progress: Progress) -> Meshes:
     """Compute loads and films of the pair for each driving gear."""
-    from tribodyn.mesh.build import loaded_mesh
+    meshes = Meshes()
 
-    meshes: dict[int, LoadedMesh] = {}
-
-    def load(driver: str) -> LoadedMesh:
+    def load(driver: str) -> None:
         case = base.replace({_KEYS[0]: driver})
         with locate_errors(case), collected():
-            return loaded_mesh(
-                case.gear_pair,
-                contact_settings(case),
-                case.operating_point,
-                force_law=mesh_law_of(case) == "force-law",
-            )
+            meshes.loaded(case)
 
-    progress.start("Loads and films", len(DRIVERS))
-    over_cases(load, DRIVERS, meshes, progress)
-    progress.finish()
-    return {driver: meshes[place] for place, driver in enumerate(DRIVERS)}
+    run_each(load, DRIVERS, task="Loads and films", progress=progress)
+    return meshes
 
 
 def _list_frictions(
     base: Case,
-    loaded: LoadedMesh,
+    meshes: Meshes,
     laws: Sequence[str],
     heights: Sequence[float],
     coefficients: Sequence[float],
@@ -202,7 +193,7 @@ def _list_frictions(
                 frictions += [Rubbing(law, height, as_mixed=True) for height in heights]
             continue
         by_roughness = [Rubbing(law, height) for height in heights]
-        if len(heights) > 1 and _same_coefficients(base, loaded, by_roughness[0], by_roughness[-1]):
+        if len(heights) > 1 and _same_coefficients(base, meshes, by_roughness[0], by_roughness[-1]):
             by_roughness = by_roughness[:1]
         frictions += [
             friction._replace(varies=len(by_roughness) > 1 or law == MIXED)
@@ -211,12 +202,12 @@ def _list_frictions(
     return frictions
 
 
-def _same_coefficients(base: Case, loaded: LoadedMesh, smooth: Rubbing, rough: Rubbing) -> bool:
+def _same_coefficients(base: Case, meshes: Meshes, smooth: Rubbing, rough: Rubbing) -> bool:
     """Whether two frictions have the same coefficients; False if a law cannot be applied."""
     try:
         with collected():
             coefficients, others = (
-                _table(_case_with(base, friction, loaded, DRIVERS[0]), loaded).friction_coefficient
+                meshes.table(_case_with(base, friction, meshes, DRIVERS[0])).friction_coefficient
                 for friction in (smooth, rough)
             )
     except InputError:
@@ -224,18 +215,14 @@ def _same_coefficients(base: Case, loaded: LoadedMesh, smooth: Rubbing, rough: R
     return bool(np.array_equal(coefficients, others))
 
 
-def _case_with(base: Case, friction: Rubbing, loaded: LoadedMesh, driver: str) -> Case:
+def _case_with(base: Case, friction: Rubbing, meshes: Meshes, driver: str) -> Case:
     changes = {_KEYS[0]: driver, "gears.composite_roughness": friction.roughness}
     if friction.as_mixed:
         mixed = base.replace({**changes, "friction.law": MIXED})
         with collected():
-            mean = _table(mixed, loaded).mean_friction_coefficient
+            mean = meshes.table(mixed).mean_friction_coefficient
         return base.replace({**changes, "friction.law": CONSTANT, "friction.coefficient": mean})
     chosen: dict[str, Any] = {**changes, "friction.law": friction.law}
     if friction.coefficient is not None:
         chosen["friction.coefficient"] = friction.coefficient
     return base.replace(chosen)
-
-
-def _table(case: Case, loaded: LoadedMesh) -> MeshTable:
-    return loaded.table(contact_settings(case))
