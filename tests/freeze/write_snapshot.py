@@ -1,7 +1,8 @@
 """Write the snapshot anew and say what changed: ``python tests/freeze/write_snapshot.py``.
 
-Names and figures that are new come in by this. What is gone or differs is printed: such a
-change breaks what users wrote, and belongs into the change log.
+Names and figures that are new come in by this, figures with ``--figures "why they moved"``. What is
+gone or differs is printed: such a change breaks what users wrote. Figures that moved go into the
+table of the release notes.
 """
 
 from __future__ import annotations
@@ -13,6 +14,7 @@ from typing import Any
 
 from frozen_figures import case_figures, differences
 from frozen_surface import losses, surface
+from moved_figures import Moved, add_moved, markdown
 
 FOLDER = Path(__file__).resolve().parent / "snapshot"
 
@@ -31,7 +33,7 @@ def write(name: str, data: Any) -> None:
 
 
 def main() -> None:
-    """Write the names, with ``--figures`` those of the cases too; print what differs."""
+    """Write the names, with ``--figures`` the figures of the cases too; print what differs."""
     old = read("surface")
     new = surface(old.get("pages"))
     for line in losses(old, new):
@@ -41,12 +43,20 @@ def main() -> None:
     write("surface", new)
     if "--figures" not in sys.argv:
         return
+    why = sys.argv[sys.argv.index("--figures") + 1]
     old_figures, new_figures = read("figures"), case_figures()
+    moved: list[Moved] = []
     for case, values in old_figures.items():
-        for line in differences(
-            case, values["summary"], new_figures.get(case, {}).get("summary", {})
-        ):
+        before, after = values["summary"], new_figures.get(case, {}).get("summary", {})
+        for line in differences(case, before, after):
             print("*", line)
+        moved += [
+            Moved(case, why, name, before[name], after[name])
+            for name in before.keys() & after.keys()
+            if differences(case, {name: before[name]}, after)
+        ]
+    add_moved(moved)
+    print(markdown())
     write("figures", new_figures)
 
 
