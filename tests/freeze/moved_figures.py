@@ -46,13 +46,13 @@ def add_moved(entries: Sequence[Moved]) -> None:
 
 def markdown() -> str:
     """Table of cases and reasons, with the figure that moved furthest."""
-    rows = ["| case | figures | furthest (SI) | before | after | why |", "|---|---|---|---|---|---|"]
+    rows = ["| case | figures | furthest (SI) | before | after | why |"]
+    rows.append("|---|---|---|---|---|---|")
     for (case, why), group in groupby(moved_figures(), lambda entry: entry[:2]):
         entries = list(group)
         far = max(entries, key=lambda entry: entry.change)
-        rows.append(
-            f"| `{case}` | {len(entries)} | `{far.figure}` | {far.before:.6g} | {far.after:.6g} | {why} |"
-        )
+        values = f"{far.before:.6g} | {far.after:.6g}"
+        rows.append(f"| `{case}` | {len(entries)} | `{far.figure}` | {values} | {why} |")
     return "\n".join(rows)
 
 
