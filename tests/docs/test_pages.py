@@ -32,7 +32,7 @@ def test_readme_has_exactly_the_two_commands() -> None:
         assert command.startswith("python3 -m venv .venv && .venv/bin/pip install ")
     assert " .venv/bin/tribodyn run fzg-roughness --out fzg-report" in main
     assert '".[test]"' in suite
-    assert suite.rstrip().endswith("-m pytest -n auto")
+    assert suite.rstrip().endswith('-m pytest -n auto -m "not slow"')
 
 
 def test_the_first_pages_name_all_kinds_of_gears() -> None:
