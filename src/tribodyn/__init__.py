@@ -13,6 +13,7 @@ Everything is loaded when it is first used: the names below, and the packages ``
 
 from __future__ import annotations
 
+import sys
 from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
@@ -124,3 +125,7 @@ def __getattr__(name: str) -> Any:
 def __dir__() -> list[str]:
     """Public names and packages."""
     return sorted({*__all__, *_PACKAGES})
+
+
+if "IPython" in sys.modules:
+    import_module(f"{__name__}.notebook").prepare(sys.modules["IPython"].get_ipython())

@@ -11,20 +11,21 @@ from __future__ import annotations
 
 import json
 import math
+import re
 from base64 import b64encode
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass, field
-from functools import cache
+from functools import cache, partial
 from importlib import import_module
 from importlib.metadata import entry_points
-from inspect import cleandoc, signature
+from inspect import Parameter, Signature, cleandoc, signature
 from pathlib import Path
 from typing import Any, TypeVar
 
 import numpy as np
 
 from tribodyn.arguments.reading import checked
-from tribodyn.errors import InputError
+from tribodyn.errors import InputError, did_you_mean
 from tribodyn.model import Registry
 
 Writer = TypeVar("Writer", bound=Callable[..., Path])
@@ -222,7 +223,25 @@ class Drawing:
                 self.made_by or "tribodyn.plot.FIGURES lists the figures, each with its caption"
             )
             raise InputError(what, "", reason.removesuffix(self.made_by).strip(), remedy)
+        self._check_options(options)
         return self.draw(self.subject(result), *arguments, **options)
+
+    def _check_options(self, options: Iterable[str]) -> None:
+        """Refuse options that the figure does not have."""
+        known = _options(self.draw)
+        if any(each.kind is each.VAR_KEYWORD for each in known):
+            return
+        names = [each.name for each in known]
+        for name in options:
+            if name not in names:
+                why = f"It has {', '.join(names) or 'none'}"
+                remedy = did_you_mean(name, names, "Leave it out")
+                raise InputError(f'no option "{name}" of the figure "{self.name}"', "", why, remedy)
+
+
+def _options(figure: Callable[..., Any]) -> list[Parameter]:
+    """Parameters of a figure function but what it draws."""
+    return [*signature(figure).parameters.values()][1:]
 
 
 def figure_text(text: str, argument: str, kinds: Iterable[str] = ()) -> str:
@@ -306,6 +325,24 @@ def _draws(figure: Callable[..., Any], result: Any) -> bool:
         return not isinstance(figure, Drawing) or figure.subject(result) is not None
     except InputError:  # The figure draws gears of another kind.
         return False
+
+
+def bound_figure(result: Any, name: str) -> Callable[..., Any]:
+    """Figure as a method of a result, with the options and the help of the figure function."""
+    figure = FIGURES[name]
+    if not isinstance(figure, Drawing):
+        return partial(figure, result)
+
+    def plot(*arguments: Any, **options: Any) -> Any:
+        return figure(result, *arguments, **options)
+
+    first = next(iter(signature(figure.draw).parameters))
+    subject = rf"(?m)^{first} : .*\n(?:[ \t]+.*\n|\n(?=[ \t]))*"
+    text = re.sub(subject, "", figure.__doc__ or "")
+    plot.__doc__ = text.replace("Parameters\n----------\n\n", "")
+    plot.__name__ = plot.__qualname__ = f"plot_{name}"
+    plot.__signature__ = Signature(_options(figure.draw))  # type: ignore[attr-defined]
+    return plot
 
 
 def draw(result: Any, name: str = "", *arguments: Any, **options: Any) -> Any:

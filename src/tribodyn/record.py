@@ -29,7 +29,7 @@ from typing import Any, ClassVar, NamedTuple, TypeVar, dataclass_transform
 import numpy as np
 
 from tribodyn.drawing import draw
-from tribodyn.errors import Argument, InputError
+from tribodyn.errors import Argument, InputError, did_you_mean
 from tribodyn.files import atomic_write, check_new
 from tribodyn.nomenclature import QUANTITIES
 from tribodyn.validated_files import write_dataset
@@ -182,28 +182,28 @@ class Record:
         data = xarray.Dataset(*self._stored())
         return data[self._array_name()] if self.ARRAY else data
 
-    def to_dataframe(self) -> Any:
-        """Return the result as a table with named columns.
+    def to_dataframe(self, over: str = "") -> Any:
+        """Return the result as a table over time, phase, order, ...
+
+        Parameters
+        ----------
+        over : str
+            Dimension; by default the one that most variables begin with.
 
         Returns
         -------
         pandas.DataFrame
-            One row for each value of the dimensions, which are its index.
+            A column for each variable that begins with it, or for each of its values over
+            further dimensions: ``force[wheel]``. ``attrs`` has the units by column, and
+            ``"left_out"``: variables over other dimensions or with more than 100 columns, which
+            :meth:`to_xarray` has.
 
         Raises
         ------
         InputError
-            If the fields have different dimensions.
+            If no variable begins with the dimension.
         """
-        data = self.to_xarray()
-        if hasattr(data, "data_vars"):
-            shapes = {variable.dims for variable in data.data_vars.values()}
-            if len(shapes) > 1:
-                dimensions = ", ".join(" x ".join(dims) or "one value" for dims in sorted(shapes))
-                what = f"{type(self).__name__} has fields over different dimensions: {dimensions}"
-                why = "A table needs the same dimensions for all columns"
-                raise InputError(what, "", why, 'Take .to_xarray()[["name", ...]].to_dataframe()')
-        return data.to_dataframe()
+        return default_table(self.to_xarray(), over)
 
     def plot(self, *arguments: Any, **options: Any) -> Any:
         """Draw the result by the figure registered for its class.
@@ -275,14 +275,57 @@ class Record:
         return html_table(repr(self), ("field", "over", "value", "unit"), rows)
 
 
-def html_table(title: str, head: Iterable[str], rows: Iterable[Iterable[Any]]) -> str:
-    """HTML table for notebooks; all text is escaped."""
+#: Most columns of one variable in a table.
+_COLUMNS = 100
+
+
+def default_table(data: Any, over: str = "") -> Any:
+    """Table of labelled arrays over a dimension, by default the one that most begin with."""
+    import pandas
+
+    if not hasattr(data, "data_vars"):
+        data = data.to_dataset()
+    firsts = [array.dims[0] for array in data.data_vars.values() if array.dims]
+    if not firsts:
+        return data.to_dataframe() if data.dims else pandas.DataFrame()
+    if over and over not in firsts:
+        known = ", ".join(dict.fromkeys(firsts))
+        remedy = did_you_mean(over, firsts, "Choose one of these")
+        raise InputError(f'no variable over "{over}"', Argument("over"), f"It has {known}", remedy)
+    over = over or max(dict.fromkeys(firsts), key=lambda dim: (firsts.count(dim), data.sizes[dim]))
+    columns: dict[str, Any] = {}
+    units: dict[str, str] = {}
+    left_out = []
+    for name, array in data.data_vars.items():
+        if array.dims[:1] != (over,) or array[0].size > _COLUMNS:
+            left_out.append(str(name))
+            continue
+        labels = [[str(label) for label in array[dim].values] for dim in array.dims[1:]]
+        for place in np.ndindex(array.shape[1:]):
+            inner = ", ".join(names[i] for names, i in zip(labels, place, strict=True))
+            column = f"{name}[{inner}]" if inner else str(name)
+            columns[column] = array.values[(slice(None), *place)]
+            units[column] = array.attrs.get("units", "")
+    along = [name for name in data.coords if data[name].dims == (over,)]
+    axis = over if over in along or not along else along[0]
+    table = pandas.DataFrame(columns, index=pandas.Index(data[axis].values, name=axis))
+    table.attrs = {"units": units, "left_out": left_out}
+    return table
+
+
+def html_table(
+    title: str, head: Iterable[str], rows: Iterable[Iterable[Any]], *, closed: bool = False
+) -> str:
+    """HTML table for notebooks, closed up to a click if wanted; all text is escaped."""
 
     def line(cells: Iterable[Any], tag: str) -> str:
         return f"<tr>{''.join(f'<{tag}>{escape(str(cell))}</{tag}>' for cell in cells)}</tr>"
 
     lines = [line(head, "th"), *(line(row, "td") for row in rows)]
-    return f"<b>{escape(title)}</b><table>{''.join(lines)}</table>"
+    table = f"<table>{''.join(lines)}</table>"
+    if closed:
+        return f"<details><summary>{escape(title)}</summary>{table}</details>"
+    return f"<b>{escape(title)}</b>{table}"
 
 
 def _same_fields(a: Any, b: Any) -> bool:

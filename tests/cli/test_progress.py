@@ -12,10 +12,12 @@ from rich.console import Console
 
 import tribodyn as td
 from tribodyn.analysis import bifurcation
-from tribodyn.cli.progress_bar import Bar, Lines, counted, left
+from tribodyn.cli.console import tell
+from tribodyn.cli.progress_bar import Bar
 from tribodyn.compiled import announcing_to
 from tribodyn.dynamics import System
 from tribodyn.errors import collected
+from tribodyn.progress import TextProgress, counted, left
 
 _KERNEL = """
 import sys
@@ -90,13 +92,12 @@ def test_a_diagram_of_many_steps_estimates_its_time(transient: int, times: int) 
     "name", [pytest.param("two-stage-spur", marks=pytest.mark.slow), "planetary-stage"]
 )
 def test_an_ensemble_of_a_machine_reports_teeth_and_members(
-    name: str, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+    name: str, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    monkeypatch.setattr("tribodyn.cli.progress_bar._INTERVAL", 0.0)
     case = td.load_case(name).replace({"load_cases": None})
     torque = f"{case.operating_point.torque} N*m +- 1 %"
     with collected():
-        td.ensemble(case, {"operation.torque": torque}, 3, seed=1, progress=Lines())
+        td.ensemble(case, {"operation.torque": torque}, 3, seed=1, progress=TextProgress(tell, 0.0))
     lines = capsys.readouterr().err.splitlines()
     for number in range(5):
         assert any(line.startswith(f"Variants: {number} of 4") for line in lines)
@@ -106,7 +107,7 @@ def test_an_ensemble_of_a_machine_reports_teeth_and_members(
 
 def test_lines_of_progress_are_rare(capsys: pytest.CaptureFixture[str]) -> None:
     times = iter(np.arange(0.0, 200.0, 5.0))
-    lines = Lines(lambda: float(next(times)))
+    lines = TextProgress(tell, clock=lambda: float(next(times)))
     lines.start("Motions", 12)
     for _ in range(12):
         lines.advance()

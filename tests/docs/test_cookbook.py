@@ -66,6 +66,32 @@ def test_recipe_runs_and_writes_its_figure(
     assert "plotly" in (tmp_path / recipe.figure_name).read_text("utf-8")
 
 
+@pytest.mark.parametrize("recipe", RECIPES, ids=lambda recipe: recipe.name)
+def test_notebook_is_the_script_and_ends_with_its_figure(recipe: Recipe) -> None:
+    cells = json.loads(recipe.notebook)["cells"]
+    assert [cell["cell_type"] for cell in cells] == ["markdown", "code", "code"]
+    assert "".join(cells[0]["source"]) == f"# {recipe.question}\n\n{recipe.notes}"
+    code = "\n".join("".join(cell["source"]) for cell in cells[1:])
+    assert f'{code}.write_html("{recipe.figure_name}")\n' == recipe.code
+    assert ast.parse("".join(cells[2]["source"]), mode="eval")
+
+
+@pytest.mark.filterwarnings("ignore::tribodyn.errors.ModelWarning")
+@pytest.mark.parametrize("name", ["speed-sweep", "friction-laws"])
+def test_notebook_runs_cell_by_cell(
+    name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    assert call(["cookbook", name, "--out", "my.ipynb"]) == 0
+    cells = json.loads(Path("my.ipynb").read_text("utf-8"))["cells"]
+    names: dict[str, object] = {}
+    with as_before():
+        exec("".join(cells[1]["source"]), names)
+        figure = eval("".join(cells[2]["source"]), names)
+    assert figure.to_dict()["data"]
+    assert not [*tmp_path.glob("*.html")]
+
+
 def test_pages_are_those_of_the_recipes() -> None:
     expected = written_pages()
     stored = {path: path.read_text("utf-8") for path in (INDEX, *FOLDER.glob("*.md"))}

@@ -3,6 +3,7 @@
 | Module | Content |
 |---|---|
 | `annotations` | values that an annotation accepts |
+| `display` | one line for any object |
 | `quantities` | numbers from objects of unit libraries |
 | `reading` | validated calls, and messages about wrong arguments |
 """

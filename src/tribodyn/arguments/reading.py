@@ -25,7 +25,9 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from tribodyn import progress
 from tribodyn.arguments.annotations import ANYTHING, Wanted, wanted
+from tribodyn.arguments.display import fields_in_one_line
 from tribodyn.arguments.quantities import UnitRefusedError, ValueRefusedError, without_units
 from tribodyn.errors import Argument, ComputationError, InputError, Problem, shortened
 
@@ -210,6 +212,8 @@ class _Reader:
         self.fits = {name: want.fits() for name, want in self.wanted.items()}
         self.other_fits = self.fits.get(_OTHERS, lambda value: True)
         self.first = [self.fits[name] for name in self.names]
+        reports = inspect.signature(function).parameters.get("progress")
+        self.reports = reports is not None and reports.default is progress.SILENT
 
     def named_values(
         self, args: Sequence[Any], named: Mapping[str, Any]
@@ -228,6 +232,12 @@ class _Reader:
                 return False
         fits, other = self.fits, self.other_fits
         return all(fits.get(name, other)(value) for name, value in named.items())
+
+    def with_progress(self, args: Any, named: dict[str, Any]) -> dict[str, Any]:
+        """Named arguments with the receiver of progress of the session where none is passed."""
+        if not self.reports or "progress" in named or "progress" in self.names[: len(args)]:
+            return named
+        return {**named, "progress": progress.automatic()}
 
     def read(self, args: Any, named: dict[str, Any]) -> tuple[Any, dict[str, Any]]:
         wants, other = self.wanted, self.wanted.get(_OTHERS, ANYTHING)
@@ -304,7 +314,7 @@ def checked(function: Callable[..., Any], owner: type | None = None) -> Callable
             if not reader.fitting(args, named):
                 args, named = reader.read(args, named)
             with np.errstate(**_USUAL):
-                return function(*args, **named)
+                return function(*args, **reader.with_progress(args, named))
         except Exception as error:
             if _is_own(error):
                 raise
@@ -345,7 +355,9 @@ def guarded(member: Any, page: str) -> Any:
 
 
 def _guard_methods(owner: type) -> None:
-    """Check the arguments of the constructor and the public methods of a class."""
+    """Check the arguments of the constructor and the public methods; display it in one line."""
+    if hasattr(owner.__dict__.get("__repr__"), "__wrapped__"):  # written by dataclasses
+        owner.__repr__ = fields_in_one_line  # type: ignore[method-assign, assignment]
     for name, value in list(vars(owner).items()):
         kind = type(value) if isinstance(value, classmethod | staticmethod) else None
         method = value.__func__ if kind else value

@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 import sys
-import time
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from contextlib import AbstractContextManager, contextmanager
 from typing import Any
 
 from tribodyn.cli.console import tell
 from tribodyn.compiled import announcing_to
-from tribodyn.progress import Progress
+from tribodyn.progress import Progress, TextProgress, counted, left
 
 
 def _columns() -> list[Any]:
@@ -36,22 +35,6 @@ def _columns() -> list[Any]:
 
     text = TextColumn("{task.description}")
     return [SpinnerColumn(), text, Count(), BarColumn(), TimeElapsedColumn(), Left()]
-
-
-def counted(done: float, total: float | None) -> str:
-    """Return "12 of 40"; empty where the total is unknown."""
-    return "" if total is None else f"{done:.0f} of {total:.0f}"
-
-
-def left(seconds: float | None) -> str:
-    """Return the remaining time; empty where it is unknown."""
-    if not seconds:
-        return ""
-    minutes, remainder = divmod(round(seconds), 60)
-    hours, minutes = divmod(minutes, 60)
-    if hours:
-        return f"about {hours} h {minutes} min left"
-    return f"about {minutes} min {remainder:02d} s left" if minutes else f"about {remainder} s left"
 
 
 class Bar:
@@ -100,57 +83,11 @@ class Bar:
             self._task = None
 
 
-#: Least time between two lines of progress [s].
-_INTERVAL = 20.0
-
-
-class Lines:
-    """Progress in lines of text, of computations that take longer than a few seconds."""
-
-    def __init__(self, clock: Callable[[], float] = time.monotonic) -> None:
-        self._clock = clock
-        self._last = clock()
-        self.start("")
-
-    def start(self, task: str, total: int | None = None) -> None:
-        """Begin a task of ``total`` steps."""
-        self._task, self._total, self._done = task, total, 0
-        self._begin, self._first = self._last, -1
-        self._write("")
-
-    def advance(self, steps: int = 1) -> None:
-        """Count ``steps`` more steps as done."""
-        self._done += steps
-        if self._first < 0:  # what was stored took no time
-            self._first, self._begin = self._done, self._clock()
-        self._write("")
-
-    def describe(self, stage: str) -> None:
-        """Report what the current step does."""
-        self._write(f" ({stage})")
-
-    def finish(self) -> None:
-        """End the task."""
-        self._task = ""
-
-    def _write(self, stage: str) -> None:
-        """Write a line unless the last is recent."""
-        now = self._clock()
-        if not self._task or now - self._last < _INTERVAL:
-            return
-        self._last, remaining = now, ""
-        if self._total is not None and self._done > self._first >= 0:
-            each = (now - self._begin) / (self._done - self._first)
-            remaining = left(each * (self._total - self._done))
-        count = ": ".join(filter(None, (self._task, counted(self._done, self._total))))
-        tell(", ".join(filter(None, (count + stage, remaining))))
-
-
 @contextmanager
 def _lines() -> Iterator[Progress]:
     """Report in lines of text where stderr is not a terminal."""
     with announcing_to(tell):
-        yield Lines()
+        yield TextProgress(tell)
 
 
 def progress_bar() -> AbstractContextManager[Progress]:

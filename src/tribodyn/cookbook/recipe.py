@@ -4,9 +4,11 @@ from __future__ import annotations
 
 import ast
 import difflib
+import json
 from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
+from typing import Any
 
 from tribodyn.errors import InputError
 
@@ -58,9 +60,28 @@ class Recipe:
         return f"{self.name.replace('-', '_')}.py"
 
     @property
+    def notebook(self) -> str:
+        """Return the recipe as a notebook: its question and notes, the code, and the figure."""
+        code, last = self.code.rstrip().rsplit("\n", 1)
+        figure = last.removesuffix(f'.write_html("{self.figure_name}")')
+        cells: list[dict[str, Any]] = [_cell("markdown", f"# {self.question}\n\n{self.notes}")]
+        cells += [_cell("code", part) | _NOT_RUN for part in (code, figure)]
+        kernel = {"name": "python3", "display_name": "Python 3", "language": "python"}
+        data = {"cells": cells, "metadata": {"kernelspec": kernel}}
+        return json.dumps({**data, "nbformat": 4, "nbformat_minor": 4}, indent=1) + "\n"
+
+    @property
     def figure_name(self) -> str:
         """Return the name of the page with the figure that the script writes."""
         return f"{self.name.replace('-', '_')}.html"
+
+
+#: What a code cell has beside its text before it runs.
+_NOT_RUN: dict[str, Any] = {"execution_count": None, "outputs": []}
+
+
+def _cell(kind: str, text: str) -> dict[str, Any]:
+    return {"cell_type": kind, "metadata": {}, "source": text.splitlines(keepends=True)}
 
 
 @cache

@@ -152,8 +152,8 @@ def test_a_given_damping_drops_the_default_ratio(case: Any) -> None:
 
 
 def test_repr_is_a_table_with_units(case: Any) -> None:
-    assert "gears.center_distance" in repr(case)
-    assert "91.5 mm" in repr(case)
+    assert "gears.center_distance" in str(case)
+    assert "91.5 mm" in str(case)
 
 
 def test_a_deleted_default_line_needs_no_second_edit() -> None:

@@ -69,7 +69,7 @@ def test_a_changed_case_knows_the_values_that_it_began_with(case: Any) -> None:
 
 
 def test_the_table_names_each_value_and_its_origin(case: Any) -> None:
-    assert f"Case: {case.title}" in repr(case)
+    assert f"Case: {case.title}" in str(case)
     (row,) = (line for line in str(case).splitlines() if line.startswith("  operation.torque "))
     assert "N*m" in row
     assert row.endswith("given")

@@ -154,7 +154,7 @@ def test_default_length_is_shown_where_it_holds() -> None:
     length = default_relief_length(case.gear_pair)
     line = f'# tip_relief_length = "{1e3 * length:.10g} mm"'
     assert line in case.to_toml()
-    assert f"{1e3 * length:.10g} mm" in repr(case)
+    assert f"{1e3 * length:.10g} mm" in str(case)
     figures = geometry(case)
     assert figures["tip_relief_pinion"] == pytest.approx(10e-6)
     assert figures["tip_relief_length_pinion"] == pytest.approx(length)

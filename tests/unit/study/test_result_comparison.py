@@ -58,5 +58,3 @@ def test_wrong_input_is_refused(results) -> None:
         td.compare_results(*results, names=("a", "a"))
     with pytest.raises(InputError, match=r"results of tribodyn\.run"):
         td.compare_results(results[0], "fzg-report")
-    with pytest.raises(InputError, match="Result has fields over different dimensions"):
-        results[0].to_dataframe()

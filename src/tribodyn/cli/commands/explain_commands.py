@@ -17,6 +17,8 @@ from tribodyn.study.case.values import Term, find_term, listed_terms
 
 #: Entries beyond this number are only named.
 _MAX_ENTRIES = 8
+#: Endings of the files of a recipe.
+_WRITTEN = (".py", ".ipynb")
 
 Entries = list[dict[str, Any]]
 
@@ -310,7 +312,7 @@ def cookbook(
     name : str
         Name of a recipe. Without one, all are listed.
     out : Path
-        File that the script is written to, or a folder for it.
+        File that the script is written to, or a folder for it; a notebook if it ends in .ipynb.
     skill : Path
         Folder in which to write a skill for coding assistants, with all recipes.
     force : bool
@@ -345,13 +347,14 @@ def _list_recipes(json: bool) -> None:
 
 def _show_recipe(recipe: Recipe, out: Path | None, *, force: bool, json: bool) -> None:
     if out is not None:
-        path = out / recipe.file_name if out.is_dir() or out.suffix != ".py" else out
+        path = out / recipe.file_name if out.is_dir() or out.suffix not in _WRITTEN else out
         if path.exists() and not force:
             remedy = "Choose another name, or add --force."
             raise OutputExistsError("this exists already", str(path), "", remedy)
         path.parent.mkdir(parents=True, exist_ok=True)
-        path.write_text(recipe.script, "utf-8")
-        tell(f"Run it with: python {path}")
+        is_script = path.suffix != ".ipynb"
+        path.write_text(recipe.script if is_script else recipe.notebook, "utf-8")
+        tell(f"Run it with: {'python' if is_script else 'jupyter lab'} {path}")
     if json:
         say_json(_as_dict(recipe))
     elif out is None:

@@ -10,9 +10,10 @@ from typing import TYPE_CHECKING
 
 from tribodyn.cli.commands.sweep_command import INTERRUPTED
 from tribodyn.cli.console import say, say_json, tell
-from tribodyn.cli.progress_bar import left, progress_bar
+from tribodyn.cli.progress_bar import progress_bar
 from tribodyn.cli.settings import Flag, Output
 from tribodyn.errors import quiet
+from tribodyn.progress import left
 
 if TYPE_CHECKING:
     from tribodyn.variants import StudyState

@@ -7,6 +7,7 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Self
 
+from tribodyn.arguments.display import brief
 from tribodyn.errors import InputError
 from tribodyn.study.case.provenance import Assumption, provenance
 from tribodyn.study.case.user_input import Source, Stated, UserInput
@@ -129,13 +130,16 @@ class BaseCase:
         return hash(tuple(self._effective.items()))
 
     def __repr__(self) -> str:
+        """One line; ``print(case)`` writes the table."""
+        values = sum(value is not None for value in self._effective.values())
+        return f"{type(self).__name__}({brief(self.title)}: {values} values)"
+
+    def __str__(self) -> str:
         """Format all values with units as a table."""
         return case_table(self)
 
-    __str__ = __repr__
-
     def _repr_html_(self) -> str:
-        """Table of all values for notebooks."""
+        """One line that opens the table of all values in notebooks."""
         from tribodyn.record import html_table
 
-        return html_table(f"Case: {self.title}", ("key", "value", "origin"), case_rows(self))
+        return html_table(repr(self), ("key", "value", "origin"), case_rows(self), closed=True)

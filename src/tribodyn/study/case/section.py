@@ -13,6 +13,7 @@ from pathlib import Path
 from typing import Any, ClassVar, NamedTuple, TypeVar
 
 from tribodyn.aliases import with_old_names
+from tribodyn.arguments.display import one_line
 from tribodyn.errors import InputError
 from tribodyn.model import Model, Models, Option
 
@@ -97,8 +98,8 @@ class Section:
 
     def __repr__(self) -> str:
         """Values that were given or have a default."""
-        values = (f"{k}={v!r}" for k, v in vars(self).items() if v is not None and k[0] != "_")
-        return f"{type(self).__name__}({', '.join(values)})"
+        values = ((k, v) for k, v in vars(self).items() if v is not None and k[0] != "_")
+        return one_line(type(self), values)
 
     def __dir__(self) -> list[str]:
         """List keys, methods and properties."""

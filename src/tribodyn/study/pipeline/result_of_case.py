@@ -5,17 +5,19 @@ from __future__ import annotations
 import os
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from functools import cached_property, partial
+from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, ClassVar
 
-from tribodyn.drawing import FIGURES, draw, figures_of
-from tribodyn.record import Parts, html_table
+from tribodyn.drawing import FIGURES, bound_figure, figures_of
+from tribodyn.errors import did_you_mean
+from tribodyn.record import Parts, default_table, html_table
 from tribodyn.study.pipeline.store import MOTIONS, write_result
-from tribodyn.study.pipeline.summary_figures import Figures, summary_rows
+from tribodyn.study.pipeline.summary_figures import Figures, by_topic, figure_of, summary_rows
 from tribodyn.study.pipeline.summary_labels import in_words
 
 if TYPE_CHECKING:
+    import pandas
     import xarray
 
     from tribodyn.errors import ModelWarning
@@ -94,6 +96,47 @@ class ResultOfCase(ABC):
             keys are read with a warning, but are not listed.
         """
         return Figures(self._summary)
+
+    @property
+    def table(self) -> pandas.DataFrame:
+        """Figures of :meth:`summary` by topic: ``name``, ``value`` in SI, ``unit``, ``meaning``.
+
+        Examples
+        --------
+        >>> import tribodyn as td
+        >>> td.run("time-varying-friction").table.head(2)[["name", "unit"]]
+                          name unit
+        0  pitch_line_velocity  m/s
+        1     tangential_force    N
+        """
+        import pandas
+
+        names = (name for topic in by_topic(self._summary).values() for name in topic)
+        rows = [(n, self._summary[n], figure_of(n).unit, figure_of(n).meaning) for n in names]
+        return pandas.DataFrame(rows, columns=["name", "value", "unit", "meaning"])
+
+    def to_dataframe(self, over: str = "") -> pandas.DataFrame:
+        """Return the motion at the operating point as a table over time or order.
+
+        Parameters
+        ----------
+        over : str
+            Dimension, such as ``"time"``, ``"order"`` or ``"clock"``; by default the one that most
+            signals begin with.
+
+        Returns
+        -------
+        pandas.DataFrame
+            A column for each signal over that dimension, or for each of its values over further
+            dimensions: ``mesh_force[first]``. ``attrs`` has the ``"units"`` by column, and in
+            ``"left_out"`` the signals over other dimensions, which :meth:`to_xarray` has.
+
+        Raises
+        ------
+        InputError
+            If no signal begins with the dimension.
+        """
+        return default_table(self.to_xarray(), over)
 
     def to_xarray(self) -> xarray.Dataset:
         """Return the motion at the operating point as labelled arrays with units.
@@ -258,12 +301,14 @@ class ResultOfCase(ABC):
             raise AttributeError(f"{type(self).__name__} has no attribute {name!r}")
         figure, figures = name.removeprefix(_PLOT), figures_of(self)
         if figure in figures:
-            return partial(draw, self, figure)
+            return bound_figure(self, figure)
         if figure in FIGURES:
             other: Any = FIGURES[figure]
             raise AttributeError(f"{type(self).__name__} has no {name}. {other.missing(self)}")
-        listed = ", ".join(f"{_PLOT}{each}" for each in figures)
-        raise AttributeError(f"{type(self).__name__} has no figure {name!r}; it has {listed}")
+        methods = [f"{_PLOT}{each}" for each in figures]
+        remedy = did_you_mean(name, methods, "")
+        what = f"{type(self).__name__} has no figure {name!r}. {remedy}".strip()
+        raise AttributeError(f"{what} It has {', '.join(methods)}")
 
     def __dir__(self) -> list[str]:
         """Attributes and figures."""

@@ -215,18 +215,9 @@ class Sweep(Record):
         -------
         pandas.DataFrame
             A row for each value: keys and figures in SI, ``failed`` and ``warnings``.
-
-        Raises
-        ------
-        InputError
-            If pandas is not installed.
         """
-        try:
-            import pandas
-        except ImportError:
-            remedy = "Install it: pip install pandas, or use to_csv() or to_xarray()"
-            why = "A table of this kind is an object of pandas"
-            raise InputError("pandas is not installed", why=why, remedy=remedy) from None
+        import pandas
+
         return pandas.DataFrame(list(self.rows()))
 
     def _repr_html_(self) -> str:
