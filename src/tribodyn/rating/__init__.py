@@ -14,6 +14,7 @@
 | `influence` | K_v, K_Hbeta, K_Halpha: ISO 6336-1 |
 | `pitting` | contact stress and its limit: ISO 6336-2 |
 | `root_section`, `bending`, `root_strength` | root stress and its limit: ISO 6336-3 |
+| `root_elements` | root stress by finite elements beside it |
 | `surface` | scuffing and micropitting: ISO/TS 6336-20, -21, -22 |
 | `elements` | life of rolling bearings, fatigue of shafts: ISO 281, ISO/TS 16281, DIN 743 |
 | `life` | Z_NT, Y_NT and cycles to failure |
@@ -47,6 +48,7 @@ from tribodyn.rating.materials import GearMaterial
 from tribodyn.rating.oil import GearOil
 from tribodyn.rating.pair_rating import GearRating, PairRating, rate_pair
 from tribodyn.rating.rated_gear import PinionShaft, RatedGear, ShaperCutter
+from tribodyn.rating.root_elements import RootStress, root_stress_by_elements
 from tribodyn.rating.spectrum import GearDamage, SpectrumLoad, SpectrumRating, rate_spectrum
 from tribodyn.rating.surface.subsurface import LineContactStress, line_contact_stress
 from tribodyn.rating.tolerances import Deviations, gear_tolerances
@@ -66,6 +68,7 @@ __all__ = [
     "RatedBearing",
     "RatedGear",
     "RatingConditions",
+    "RootStress",
     "ShaftMaterial",
     "ShaftNotch",
     "ShaftRating",
@@ -89,6 +92,7 @@ __all__ = [
     "rate_spectrum",
     "reference_viscosity",
     "roller_bearing_life",
+    "root_stress_by_elements",
     "system_life",
 ]
 

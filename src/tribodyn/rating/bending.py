@@ -60,6 +60,11 @@ def form_factor(
     return bending / (section.chord**2 * math.cos(pressure_angle)) * overlap_factor
 
 
+def stress_correction(slenderness: float, notch: float) -> float:
+    """Y_S at L = s_Fn/h_Fe and q_s = s_Fn/(2 rho_F)."""
+    return float((1.2 + 0.13 * slenderness) * notch ** (1.0 / (1.21 + 2.3 / slenderness)))
+
+
 def load_distribution_factor(
     contact_ratio: float, overlap: float, edition: int
 ) -> tuple[float, str]:
@@ -143,13 +148,10 @@ def record_root_stress(mesh: MeshLoad, index: int, factors: Factors) -> float:
     f_eps = record("f_eps", f_eps, PRACTICE, branch=rule)
     y_f = form_factor(lever, section, gear.normal_pressure_angle, f_eps)
     y_f = record("Y_F", y_f, f"{PART_3}, form factor", branch=section.tool)
-    slender, notch = (
-        chord / arm,
-        record("q_s", chord / (2.0 * fillet), f"{PART_3}, notch parameter"),
-    )
+    slender = chord / arm
+    notch = record("q_s", chord / (2.0 * fillet), f"{PART_3}, notch parameter")
     check_range("q_s", notch, 1.0, 8.0, f"Y_S of {PART_3}")
-    y_s = (1.2 + 0.13 * slender) * notch ** (1.0 / (1.21 + 2.3 / slender))
-    y_s = record("Y_S", y_s, f"{PART_3}, stress correction factor")
+    y_s = record("Y_S", stress_correction(slender, notch), f"{PART_3}, stress correction factor")
     if "Y_B" in factors.replacements:
         y_b = record("Y_B", 1.0, f"{PART_3}, rim factor")
     else:

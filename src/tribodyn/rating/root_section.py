@@ -28,6 +28,11 @@ class RootSection(NamedTuple):
     center_distance: float  #: distance of the chord from the axis of the virtual gear
     tool: str
 
+    @property
+    def notch(self) -> float:
+        """q_s = s_Fn/(2 rho_F)."""
+        return self.chord / (2.0 * self.fillet_radius)
+
 
 def virtual_teeth(gear: CylindricalGear) -> float:
     """z_n, with its sign."""

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import asdict, dataclass
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from dataclasses import asdict, dataclass, field
+from functools import cached_property, partial
 from itertools import chain
 from typing import TYPE_CHECKING, Any, NamedTuple
 
@@ -21,8 +22,11 @@ from tribodyn.rating import (
 )
 from tribodyn.study.case.rating_tables import gear_material
 from tribodyn.study.case.to_models import lubricant
+from tribodyn.study.computed_rating import load_sharing_factor
+from tribodyn.types import Array
 
 if TYPE_CHECKING:
+    from tribodyn.mesh import MeshTable
     from tribodyn.study.case.case import Case
     from tribodyn.study.pipeline.result import Result
 
@@ -81,6 +85,8 @@ class MeshRating:
         By the factors of ISO 6336.
     computed : PairRating
         With K_v, K_Hbeta and K_Halpha of the computed motion and load distribution.
+    rated : RatedMesh, optional
+        The mesh with its load, tooth contact and motion.
     """
 
     load: str
@@ -88,6 +94,19 @@ class MeshRating:
     gears: tuple[str, str]
     standard: PairRating
     computed: PairRating
+    rated: RatedMesh | None = field(default=None, repr=False)
+
+    @cached_property
+    def root_stress(self) -> dict[str, dict[str, float]]:
+        """Root stress by finite elements of ``pinion`` and ``wheel``; empty without computed teeth.
+
+        ``ratio`` to Y_F Y_S for the same load at the outer point of single contact, greatest
+        ``static_stress`` and ``dynamic_stress`` over the mesh cycle with K_A and K_gamma [Pa], and
+        the ``bending_safety`` of the latter.
+        """
+        from tribodyn.study.computed_rating import root_stresses
+
+        return root_stresses(self)
 
     def verdicts(self) -> Iterator[Verdict]:
         """Iterate over the safeties of the mesh and of its gears.
@@ -127,6 +146,7 @@ class MeshRating:
             "load": self.load,
             **self.standard.to_dict(),
             "computed_factors": factors,
+            "root_stress": self.root_stress,
             "computed": {
                 name: value
                 for name, value in self.computed.to_dict().items()
@@ -313,6 +333,9 @@ class RatedMesh:
     reversed: tuple[bool, bool] = (False, False)
     planets: int = 1
     share: float | None = None  #: of the required life, of a load case
+    table: MeshTable | None = None  #: tooth contact at this load
+    #: mesh phase and mesh force over its mean along the motion
+    motion: Callable[[], tuple[Array, Array]] | None = None
 
     def __post_init__(self) -> None:
         """Read what is common to all ratings of the mesh."""
@@ -346,9 +369,13 @@ def rate_mesh(mesh: RatedMesh) -> MeshRating:
     """Rating of a mesh with the factors of the standard, and with computed ones."""
     pair, (speed, torque) = mesh.case.gear_pair, mesh.operation
     standard = rate_pair(pair, torque=torque, speed=speed, **mesh.common)
+    factors = dict(mesh.computed)
+    if mesh.table is not None:
+        factors["K_Halpha"] = load_sharing_factor(mesh.case, mesh.table)
+        factors["K_Falpha"] = factors["K_Halpha"]
     with collected():  # those of the first rating
-        computed = rate_pair(pair, torque=torque, speed=speed, factors=mesh.computed, **mesh.common)
-    return MeshRating(mesh.load, mesh.mesh, mesh.gears, standard, computed)
+        computed = rate_pair(pair, torque=torque, speed=speed, factors=factors, **mesh.common)
+    return MeshRating(mesh.load, mesh.mesh, mesh.gears, standard, computed, mesh)
 
 
 def rate_load_cases(meshes: Sequence[RatedMesh]) -> MeshSpectrum | None:
@@ -369,13 +396,12 @@ def rate_load_cases(meshes: Sequence[RatedMesh]) -> MeshSpectrum | None:
 
 
 def computed_factors(figures: Mapping[str, float | None]) -> dict[str, float]:
-    """K_v of the motion, K_Hbeta and K_Halpha of the load distribution, where they are computed."""
+    """K_v of the motion and K_Hbeta of the load distribution, where they are computed."""
     factors = {}
     if (dynamic := figures.get("dynamic_factor_peak")) is not None:
         factors["K_v"] = max(float(dynamic), 1.0)
     if (face := figures.get("face_load_factor")) is not None:
         factors["K_Hbeta"] = max(float(face), 1.0)
-        factors["K_Halpha"] = factors["K_Falpha"] = 1.0  # contained in the load of the slices
     return factors
 
 
@@ -394,4 +420,14 @@ def rated_pair(result: Result) -> Iterator[RatedMesh]:
     case = result.case
     if case.is_rated:
         factors = computed_factors(result.figures)
-        yield RatedMesh("operation", result._MESH, case, _ROLES, case.operating_point, factors)
+        operation = result._MESH, case, _ROLES, case.operating_point, factors
+        yield RatedMesh(
+            "operation", *operation, table=result.mesh, motion=partial(_force_over_mean, result)
+        )
+
+
+def _force_over_mean(result: Result) -> tuple[Array, Array]:
+    from tribodyn.study.pipeline.response_series import measured, mesh_force, one_sided_phase
+
+    samples = measured(result.response)
+    return one_sided_phase(samples), mesh_force(samples) / result.figures["mean_mesh_force"]

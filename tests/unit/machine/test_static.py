@@ -375,6 +375,31 @@ def test_slices_tilt_the_shafts_back_and_give_the_face_load_factor():
     assert bound.face_load_factor == pytest.approx(factor, rel=1e-9)
 
 
+def test_a_mesh_without_load_has_no_distribution_of_it():
+    stage = spur_stage()
+    idle = replace(
+        stage,
+        shafts={**stage.shafts, "idle": sections((0.2, 0.04, 0.0))},
+        gears={
+            **stage.gears,
+            "z3": Gear("out", 0.14, 30, 0.03),
+            "z4": Gear("idle", 0.14, 25, 0.03),
+        },
+        meshes={**stage.meshes, "second": Mesh(("z3", "z4"), 3e-3, stiffness=3e8)},
+        bearings={
+            **stage.bearings,
+            **{
+                f"idle {end}": Bearing("idle", end, radial_stiffness=1e9, axial_stiffness=1e9)
+                for end in (0.0, 0.2)
+            },
+        },
+    )
+    balance = static_balance(idle, laws=face_laws(idle))
+    assert abs(balance.meshes["second"].force) < 1e-6
+    assert balance.meshes["second"].face_load_factor is None
+    assert 1.0 < balance.meshes["first"].face_load_factor < 2.0
+
+
 @pytest.mark.parametrize("helix", [10e-6, 40e-6])
 def test_face_load_factor_of_a_linear_gap(helix):
     """1 + F k/(2 N) while the full face carries, sqrt(2 F k/N) beyond (thin slices)."""

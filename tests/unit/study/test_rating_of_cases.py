@@ -97,6 +97,44 @@ def test_computed_loads_stand_beside_those_of_the_standard(result):
     json.dumps(result.rating.to_dict())
 
 
+def test_load_sharing_is_that_of_perfect_flanks_where_there_is_no_relief(result):
+    (mesh,) = result.rating.ratings
+    assert mesh.computed.factors["K_Halpha"] == mesh.computed.factors["K_Falpha"] == 1.0
+
+
+@pytest.mark.parametrize("relief", ["0 um", "12 um"])
+def test_relief_gives_one_of_three_tooth_pairs_more_than_its_share(relief):
+    """Total contact ratio above 2: the greatest load of a pair over that of perfect flanks."""
+    gears = {name: value for name, value in PAIR["gears"].items() if name != "center_distance"}
+    flank = {"modification": {"tip_relief": relief}} if relief != "0 um" else {}
+    for role in ("pinion", "wheel"):
+        gears[role] = {
+            **gears[role],
+            "face_width": 40e-3,
+            "profile_shift_coefficient": 0.0,
+            **flank,
+        }
+    gears |= {"helix_angle": "25 deg"}
+    result = td.run(Case(**changed(PAIR, gears=gears, stiffness={"model": "analytic"})))
+    factor = result.rating.ratings[0].computed.factors["K_Halpha"]
+    if relief == "0 um":
+        assert factor == pytest.approx(1.0, abs=1e-9)
+    else:
+        assert 1.05 < factor < 2.0
+
+
+def test_root_stress_by_finite_elements_stands_beside_the_standard(result):
+    (mesh,) = result.rating.ratings
+    assert set(mesh.root_stress) == {"pinion", "wheel"}
+    peak = mesh.computed.factors["K_v"]
+    for role, root in mesh.root_stress.items():
+        assert 0.9 < root["ratio"] < 1.15
+        assert root["dynamic_stress"] <= root["static_stress"] * peak * (1.0 + 1e-6)
+        limit = mesh.standard.gears[role].factors["sigma_FG"]
+        assert root["bending_safety"] == pytest.approx(limit / root["dynamic_stress"], rel=1e-12)
+    assert mesh.to_dict()["root_stress"] == mesh.root_stress
+
+
 def test_one_required_safety_holds_for_all_modes():
     case = Case(**changed(PAIR, rating={**PAIR["rating"], "minimum_safety": 1.7}))
     assert {v.required for v in td.run(case).rating.verdicts()} == {1.7}

@@ -80,6 +80,11 @@ def _factors(rating: Any) -> list[tuple[str, ...]]:
         (f"{name} computed", f"{computed.factors[name]:.6g}", "", "motion and load of the run", "")
         for name in computed.overridden
     ]
+    for role, gear in zip(standard.gears, rating.gears, strict=True):
+        for name, value in rating.root_stress.get(role, {}).items():
+            unit = "Pa" if name.endswith("stress") else ""
+            label = f"{name.replace('_', ' ')} of {gear}"
+            rows.append((label, f"{value:.6g}", unit, "root by finite elements", "beside Y_F Y_S"))
     return rows
 
 

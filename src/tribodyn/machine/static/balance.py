@@ -57,7 +57,8 @@ class MeshBalance:
     stiffness : (2, 2) array
         Derivative of force and moment with respect to compression and its slope [N/m, N, N*m].
     face_load_factor : float or None
-        Greatest over mean load per face width; None without a :class:`FaceLaw`.
+        Greatest over mean load per face width; None without a :class:`FaceLaw`, and of a mesh
+        that carries no load, whose load has no distribution.
     mounting : Misalignment or None
         On crossed axes: the changes V, H, J and alpha of offset, mounting distances and shaft
         angle by the deflection; ``misalignment`` is zero then.
@@ -405,9 +406,9 @@ def _balance(
     for name, (load, stiffness) in forces.meshes.items():
         compression, slope = (model.meshes[name] @ displacement).tolist()
         misalignment = slope * model.face_width(name)
-        law = laws[name]
-        factor = law.face_load_factor(compression, slope) if isinstance(law, FaceLaw) else None
-        force, moment = load.tolist()
+        law, (force, moment), factor = laws[name], load.tolist(), None
+        if isinstance(law, FaceLaw) and force > rounding:
+            factor = law.face_load_factor(compression, slope)
         mounting = model.mounting(name, displacement)
         values = force, moment, compression, misalignment, stiffness, factor, mounting
         meshes[name] = MeshBalance(*values)

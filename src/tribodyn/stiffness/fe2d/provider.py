@@ -114,7 +114,7 @@ def _carried_to_tip(
 
 #: Folders, relative to this one, and modules on which the numbers depend.
 _SOURCES = (
-    (".", "flank_load provider ring tooth_mesh"),
+    (".", "flank_load provider ring root_stress tooth_mesh"),
     ("../teeth", "tooth_bending tooth_compliance"),
     ("../../gear", "curves tooth_form"),
 )

@@ -4,10 +4,12 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
+from functools import partial
 from typing import TYPE_CHECKING
 
 from tribodyn.study.machine.pair_cases import read_teeth, teeth_under
 from tribodyn.study.rating import RatedMesh, computed_factors
+from tribodyn.types import Array
 
 if TYPE_CHECKING:
     from tribodyn.study.case.case import Case
@@ -65,7 +67,17 @@ def _rated_mesh(
         reversed=reversed_,
         planets=len(equal) if mesh in case._stage_of else 1,
         share=load.load.share if name != "operation" else None,
+        table=load.tables.get(mesh),
+        motion=partial(_force_over_mean, load, mesh),
     )
+
+
+def _force_over_mean(load: LoadResult, mesh: str) -> tuple[Array, Array]:
+    motion = load.motion
+    column = motion.mesh.index(mesh)
+    force = motion.mesh_force[:, column]
+    phase = load.machine.meshes[mesh].offset + motion.cycles[column] * motion.clock
+    return phase, force / float(motion.mean(force))
 
 
 def _flanks(load: LoadResult, gear: str, mesh: str) -> tuple[int, bool]:

@@ -1,0 +1,140 @@
+"""Root stress by finite elements: notched plate, refinement, Y_F Y_S, neighbours, motion."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+from scipy.sparse import coo_array
+from scipy.sparse.linalg import spsolve
+
+from known_hypoids import h1043
+from known_ratings import helical_example, ring_example, spur_example
+from tribodyn.errors import InputError
+from tribodyn.gear import Material
+from tribodyn.lubricant import Lubricant
+from tribodyn.mesh import MeshTable, build
+from tribodyn.rating import root_stress_by_elements
+from tribodyn.rating.root_section import root_section, virtual_teeth
+from tribodyn.stiffness.fe2d.picture import deformed_gear
+from tribodyn.stiffness.fe2d.ring import element_stiffness, plane_stress
+from tribodyn.stiffness.fe2d.root_stress import (
+    at_places,
+    computed_root_stress,
+    root_stress,
+    surface_stress,
+    virtual_spur_gear,
+)
+from tribodyn.stiffness.fe2d.tooth_mesh import grid_elements
+
+NU = 0.3
+PAIRS = {"spur": spur_example, "helical": helical_example, "ring": ring_example}
+
+
+def mesh_of(pair) -> MeshTable:
+    return build(
+        pair, material=Material(), stiffness_model="analytic", friction_law="none",
+        lubricant=Lubricant(0.082, 880.0, 2.19e-8), composite_roughness=0.0,
+        pinion_speed=100.0, pinion_torque=200.0, steps=64,
+    )  # fmt: skip
+
+
+def kirsch(nodes: np.ndarray) -> np.ndarray:
+    """Displacements of an infinite plate with a hole of radius 1 under a tension of 1 along x."""
+    r, t = np.hypot(*nodes.T), np.arctan2(nodes[:, 1], nodes[:, 0])
+    kappa, shear = (3.0 - NU) / (1.0 + NU), 0.5 / (1.0 + NU)
+    scale = 1.0 / (8.0 * shear)
+    outward = scale * (
+        r * (kappa - 1.0 + 2.0 * np.cos(2.0 * t))
+        + 2.0 / r * (1.0 + (kappa + 1.0 - 1.0 / r**2) * np.cos(2.0 * t))
+    )
+    around = -scale * 2.0 * np.sin(2.0 * t) * (r + (kappa - 1.0 + 1.0 / r**2) / r)
+    x = outward * np.cos(t) - around * np.sin(t)
+    return np.stack([x, outward * np.sin(t) + around * np.cos(t)], axis=1)
+
+
+@pytest.mark.parametrize(("per_quarter", "tolerance"), [(12, 0.01), (24, 0.002)])
+def test_the_edge_of_a_hole_in_a_plate_has_three_times_the_tension(per_quarter, tolerance):
+    angle = np.linspace(0.0, 0.5 * math.pi, 2 * per_quarter + 1)[:, None]
+    radius = np.geomspace(1.0, 3.0, per_quarter + 1)[None, :]
+    nodes = np.stack([radius * np.cos(angle), radius * np.sin(angle)], axis=-1).reshape(-1, 2)
+    grid = np.arange(len(nodes)).reshape(angle.size, -1)
+    elements = grid_elements(grid[::-1])
+    matrices = element_stiffness(nodes[elements], plane_stress(1.0, NU))
+    freedoms = (2 * elements[:, :, None] + np.arange(2)).reshape(len(elements), 18)
+    rows, columns = (np.broadcast_to(f, matrices.shape) for f in
+                     (freedoms[:, :, None], freedoms[:, None, :]))  # fmt: skip
+    matrix = coo_array((matrices.ravel(), (rows.ravel(), columns.ravel()))).tocsr()
+    exact = kirsch(nodes).ravel()
+    held = np.unique(np.concatenate([grid[0], grid[-1], grid[:, -1]]))
+    fixed = (2 * held[:, None] + np.arange(2)).ravel()
+    free = np.setdiff1d(np.arange(exact.size), fixed)
+    moved = exact.copy()
+    moved[free] = spsolve(matrix[free][:, free], -matrix[free][:, fixed] @ exact[fixed])
+    stress, points = surface_stress(nodes, grid[:, 0], moved.reshape(-1, 2, 1))
+    expected = 1.0 - 2.0 * np.cos(2.0 * np.arctan2(points[:, 1], points[:, 0]))
+    assert np.abs(stress[:, 0] - expected).max() < 3.0 * tolerance
+    assert stress.max() == pytest.approx(3.0, rel=0.02)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    ("name", "gear"), [("spur", "pinion"), ("helical", "wheel"), ("ring", "wheel")]
+)
+def test_two_refinements_agree_and_stand_beside_the_form_factor(name, gear, record_property):
+    pair = PAIRS[name]()
+    part = getattr(pair, gear)
+    spur = virtual_spur_gear(part, virtual_teeth(part))
+    fillet = root_section(spur, None, 2019).fillet_radius
+    units = [computed_root_stress(spur, fillet, refined) for refined in (1.0, 1.4)]
+    radii = units[0].curvature_radius
+    at = radii.min() + np.linspace(0.4, 0.9, 6) * np.ptp(radii)
+    peaks = [at_places(unit, 0, at).max(axis=1) for unit in units]
+    assert peaks[0] == pytest.approx(peaks[1], rel=0.01)
+    ratio = root_stress_by_elements(pair, gear).ratio
+    record_property("ratio", ratio)
+    assert 0.88 < ratio < 1.15
+
+
+@pytest.mark.parametrize("gear", [spur_example().pinion, ring_example().wheel])
+def test_loads_of_neighbours_stretch_the_root_as_in_the_picture_of_the_ring(gear):
+    """The outline of the deformed gear: another mesh, another way to the neighbour."""
+    unit = computed_root_stress(gear, root_section(gear, None, 2019).fillet_radius, 0.5)
+    at = float(unit.curvature_radius.min() + 0.6 * np.ptp(unit.curvature_radius))
+    distance = gear.sign * np.hypot(*unit.position.T).max() * gear.normal_module
+    if gear.is_ring:
+        distance = -np.hypot(*unit.position.T).min() * gear.normal_module
+    for neighbour in (-1, 1):
+        outline, moved = deformed_gear(gear, Material(), [(0, at, 0.0), (neighbour, at, 1e6)])
+        step, change = np.diff(outline, axis=1), np.diff(moved, axis=1)
+        strain = (step * change).sum(axis=0) / (step**2).sum(axis=0)
+        middle = 0.5 * (outline[:, 1:] + outline[:, :-1])
+        angle, radius = np.arctan2(*middle), gear.sign * np.hypot(*middle)
+        fillet = (angle > 0.0) & (angle < math.pi / abs(gear.teeth)) & (radius < distance)
+        drawn = strain[fillet] * Material().youngs_modulus * gear.normal_module / 1e6
+        computed = at_places(unit, neighbour, np.array(at))
+        ours, theirs = (each[np.abs(each).argmax()] for each in (computed, drawn))
+        assert ours == pytest.approx(theirs, rel=0.05)
+
+
+def test_the_load_of_one_pair_bends_as_without_the_others():
+    """Where one tooth pair carries all."""
+    pair = spur_example()
+    table = mesh_of(pair)
+    root = root_stress_by_elements(pair, "pinion", table)
+    single = table.load_share.max(axis=1) > 1.0 - 1e-9
+    unit = root_stress(pair.pinion, root_section(pair.pinion, None, 2019).fillet_radius)
+    radius = table.pinion_curvature_radius[single].max(axis=1)
+    alone = at_places(unit, 0, radius).max(axis=1)
+    alone *= table.total_normal_force / pair.common_face_width / pair.pinion.normal_module
+    assert root.stress[single] == pytest.approx(alone, rel=1e-9)
+    doubled = root.under_force(table.phase, np.full(table.phase.size, 2.0 * root.force))
+    assert doubled == pytest.approx(2.0 * root.greatest, rel=1e-9)
+    at_one_phase = np.where(np.arange(table.phase.size) == 40, root.force, 0.0)
+    assert root.under_force(table.phase, at_one_phase) == pytest.approx(root.stress[40], rel=1e-6)
+
+
+def test_a_hypoid_pair_is_refused_by_name():
+    with pytest.raises(InputError, match="hypoid"):
+        root_stress_by_elements(h1043(), "pinion")
