@@ -32,7 +32,8 @@ if TYPE_CHECKING:
     from tribodyn.study.pipeline.tooth_contact import loaded_contact
     from tribodyn.study.planetary.stage_result import PlanetaryMotion, StageResult
     from tribodyn.study.planetary.tolerances import LoadShareStatistics, load_share_statistics
-    from tribodyn.study.rating import CaseRating, MeshRating, MeshSpectrum, Verdict
+    from tribodyn.study.rated_parts import BearingRating, NotchRating, Verdict
+    from tribodyn.study.rating import CaseRating, MeshRating, MeshSpectrum
     from tribodyn.study.result_comparison import ResultComparison, compare_results
     from tribodyn.study.studies.bifurcation import bifurcation
     from tribodyn.study.studies.case_grid import build_system
@@ -58,6 +59,7 @@ if TYPE_CHECKING:
 
 __all__ = [
     "SUMMARY",
+    "BearingRating",
     "Case",
     "CaseEnsemble",
     "CaseRating",
@@ -75,6 +77,7 @@ __all__ = [
     "MachineResult",
     "MeshRating",
     "MeshSpectrum",
+    "NotchRating",
     "PartsCase",
     "PeriodicSamples",
     "PlanetaryCase",
@@ -135,7 +138,8 @@ _NAMES = {
     "faults.wear": "Wear wear",
     "machine.modes": "MachineCampbell",
     "machine.motion": "MachineMotion PeriodicSamples",
-    "rating": "CaseRating MeshRating MeshSpectrum Verdict",
+    "rated_parts": "BearingRating NotchRating Verdict",
+    "rating": "CaseRating MeshRating MeshSpectrum",
     "machine.result": "LoadResult MachineResult PlanetaryLoadResult PlanetaryResult",
     "uncertain.machine_ensemble": "MachineEnsemble",
     "studies.levels": "MachineLevels",

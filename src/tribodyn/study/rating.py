@@ -6,7 +6,7 @@ from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import asdict, dataclass, field
 from functools import cached_property, partial
 from itertools import chain
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, Any
 
 from tribodyn.errors import collected
 from tribodyn.rating import (
@@ -23,6 +23,13 @@ from tribodyn.rating import (
 from tribodyn.study.case.rating_tables import gear_material
 from tribodyn.study.case.to_models import lubricant
 from tribodyn.study.computed_rating import load_sharing_factor
+from tribodyn.study.rated_parts import (
+    ALL_CASES,
+    BearingRating,
+    NotchRating,
+    PartRatings,
+    Verdict,
+)
 from tribodyn.types import Array
 
 if TYPE_CHECKING:
@@ -37,38 +44,6 @@ _BASE_OILS = {"polyalphaolefin": "pao", "polyalkylene glycol": "polyglycol"}
 #: Where the oil of a case has no temperature, as of the viscosity that it states.
 _WITHOUT_TEMPERATURE = 353.15
 _ROLES = "pinion", "wheel"
-
-
-class Verdict(NamedTuple):
-    """Safety of one part against one mode of failure.
-
-    Parameters
-    ----------
-    mode : str
-        Mode of failure: ``pitting``, ``bending``, ``scuffing (flash)``...
-    part : str
-        Gear or mesh.
-    load : str
-        Load.
-    safety : float
-        Safety by the factors of the standard, pure number.
-    required : float
-        Required safety, pure number.
-    computed : float, optional
-        Safety by computed load factors, pure number.
-    """
-
-    mode: str
-    part: str
-    load: str
-    safety: float
-    required: float
-    computed: float | None
-
-    @property
-    def margin(self) -> float:
-        """Safety over the required one, less 1."""
-        return self.safety / self.required - 1.0
 
 
 @dataclass(frozen=True)
@@ -119,19 +94,21 @@ class MeshRating:
         pairs = zip(
             self.gears, self.standard.gears.values(), self.computed.gears.values(), strict=True
         )
-        for name, gear, other in pairs:
-            for mode in ("pitting", "bending"):
+        for (name, gear, other), single in zip(pairs, ("Z_B", "Z_D"), strict=True):
+            point = single[-1] if gear.factors[single] > 1.0 else "C"
+            for mode, where in (("pitting", f"at {point}"), ("bending", "root")):
                 key, required = f"{mode}_safety", getattr(needed, f"{mode}_safety")
                 values = getattr(gear, key), required, getattr(other, key)
-                yield Verdict(mode, name, self.load, *values)
-        for mode, key, required in (
-            ("scuffing (flash)", "scuffing_safety_flash", needed.scuffing_safety),
-            ("scuffing (integral)", "scuffing_safety_integral", needed.scuffing_safety),
-            ("micropitting", "micropitting_safety", needed.micropitting_safety),
+                yield Verdict(mode, name, self.load, *values, where)
+        for mode, key, required, factor in (
+            ("scuffing (flash)", "scuffing_safety_flash", needed.scuffing_safety, "theta_fl_max"),
+            ("scuffing (integral)", "scuffing_safety_integral", needed.scuffing_safety, ""),
+            ("micropitting", "micropitting_safety", needed.micropitting_safety, "lambda_min"),
         ):
             if (safety := getattr(self.standard, key)) is not None:
                 other = getattr(self.computed, key)
-                yield Verdict(mode, self.mesh, self.load, safety, required, other)
+                where = self.standard.factors[factor].branch if factor else "mean of the path"
+                yield Verdict(mode, self.mesh, self.load, safety, required, other, where)
 
     def to_dict(self) -> dict[str, Any]:
         """Ratings of the mesh, as JSON has them.
@@ -193,7 +170,7 @@ class MeshSpectrum:
             for mode in ("pitting", "bending"):
                 key = f"{mode}_safety"
                 values = getattr(damage, key), getattr(required, key), None
-                yield Verdict(mode, name, "all load cases", *values)
+                yield Verdict(mode, name, ALL_CASES, *values)
 
     def to_dict(self) -> dict[str, Any]:
         """Safeties, and damage by load case, as JSON has them.
@@ -211,7 +188,7 @@ class MeshSpectrum:
 
 @dataclass(frozen=True)
 class CaseRating:
-    """Load capacity of all cylindrical gears of a result.
+    """Load capacity of the cylindrical gears, the bearings and the shafts of a result.
 
     Parameters
     ----------
@@ -219,10 +196,31 @@ class CaseRating:
         Each mesh under each load.
     spectra : tuple of MeshSpectrum
         Each mesh under all load cases together, where there are several and a required life.
+    parts : PartRatings
+        Bearings and shafts.
     """
 
     ratings: tuple[MeshRating, ...]
     spectra: tuple[MeshSpectrum, ...] = ()
+    parts: PartRatings = field(default_factory=PartRatings)
+
+    @property
+    def bearings(self) -> dict[str, BearingRating]:
+        """Life of each bearing; of one that is not rated the reason."""
+        return {each.bearing: each for each in self.parts.bearings}
+
+    @property
+    def shafts(self) -> dict[str, dict[str, NotchRating]]:
+        """Fatigue of the notches of each shaft, under the load with the least safety."""
+        shafts: dict[str, dict[str, NotchRating]] = {}
+        for each in sorted(self.parts.notches, key=lambda notch: notch.safety, reverse=True):
+            shafts.setdefault(each.shaft, {})[each.notch] = each
+        return shafts
+
+    @property
+    def system_life(self) -> float | None:
+        """Life of all rated bearings together [s]; None where there are none."""
+        return self.parts.system_life
 
     @property
     def meshes(self) -> dict[str, PairRating]:
@@ -253,10 +251,12 @@ class CaseRating:
         -------
         list of Verdict
         """
-        least: dict[tuple[str, str], Verdict] = {}
-        listed = chain(*(each.verdicts() for each in self.ratings))
-        for verdict in chain(listed, *(each.verdicts() for each in self.spectra)):
-            key = verdict.mode, verdict.part
+        least: dict[tuple[str, ...], Verdict] = {}
+        listed = [each.verdicts() for each in self.ratings]
+        listed += [each.verdicts() for each in self.spectra]
+        for verdict in chain(*listed, self.parts.verdicts()):
+            place = verdict.where if verdict.mode == "shaft fatigue" else ""  # each notch
+            key = verdict.mode, verdict.part, place
             if key not in least or verdict.margin < least[key].margin:
                 least[key] = verdict
         return sorted(least.values(), key=lambda verdict: verdict.margin)
@@ -279,6 +279,7 @@ class CaseRating:
             "meshes": {name: each.to_dict() for name, each in self._governing().items()},
             "gears": gears,
             "spectra": {each.mesh: each.to_dict() for each in self.spectra},
+            **self.parts.to_dict(),
         }
 
 
@@ -405,14 +406,16 @@ def computed_factors(figures: Mapping[str, float | None]) -> dict[str, float]:
     return factors
 
 
-def case_rating(meshes: Iterable[RatedMesh]) -> CaseRating | None:
-    """Rating of meshes under their loads; None where there are none."""
+def case_rating(meshes: Iterable[RatedMesh], parts: PartRatings | None = None) -> CaseRating | None:
+    """Rating of meshes under their loads, with bearings and shafts; None where nothing is rated."""
     groups: dict[str, list[RatedMesh]] = {}
     for mesh in meshes:
         groups.setdefault(mesh.mesh, []).append(mesh)
     ratings = tuple(rate_mesh(mesh) for group in groups.values() for mesh in group)
     spectra = tuple(filter(None, map(rate_load_cases, groups.values())))
-    return CaseRating(ratings, spectra) if ratings else None
+    parts = parts or PartRatings()
+    is_rated = ratings or parts.notches or any(each.lives for each in parts.bearings)
+    return CaseRating(ratings, spectra, parts) if is_rated else None
 
 
 def rated_pair(result: Result) -> Iterator[RatedMesh]:

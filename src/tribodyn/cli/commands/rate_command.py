@@ -3,16 +3,21 @@
 from __future__ import annotations
 
 import warnings
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import Annotated
 
 from cyclopts import Parameter
 
 from tribodyn.cli.console import say, say_json, show_warnings, table
 from tribodyn.cli.settings import CaseName, Flag, Settings, changed_any_case
 from tribodyn.errors import InputError, ModelWarning
-
-if TYPE_CHECKING:
-    from tribodyn.study.rating import CaseRating, Verdict
+from tribodyn.study.rating_summary import (
+    RatingTable,
+    bearing_table,
+    damage_table,
+    factor_tables,
+    sentences,
+    verdict_table,
+)
 
 
 def rate(
@@ -23,7 +28,7 @@ def rate(
     all_: Annotated[bool, Parameter(name="--all", negative="")] = False,
     json: Flag = False,
 ) -> None:
-    """Rate the gears of a case: pitting, bending, scuffing and micropitting by ISO 6336.
+    """Rate gears, bearings and shafts of a case: ISO 6336, ISO 281, ISO/TS 16281, DIN 743.
 
     Parameters
     ----------
@@ -44,78 +49,27 @@ def rate(
         rating = compute(ready, progress).rating
         progress.finish()
     if rating is None:
-        why = "Only meshes of cylindrical gears with computed teeth are rated"
-        raise InputError("no mesh of the case can be rated", case, why, "Remove [rating]")
+        why = "Cylindrical gears with computed teeth, bearings and shafts are rated"
+        remedy = "Give bearings dynamic_load_rating or shafts notches, or remove [rating]"
+        raise InputError("nothing of the case can be rated", case, why, remedy)
     if json:
         say_json(rating.to_dict())
         return
-    verdicts = rating.verdicts()
-    head = ("mode of failure", "part", "safety", "required", "margin", "computed loads", "load")
-    say(f"{ready.title}: ISO 6336:{rating.ratings[0].standard.conditions.edition}")
-    say(table([head, *(_row(verdict) for verdict in verdicts)]))
-    say(limits_in_words(rating))
-    if all_:
-        for each in rating.ratings:
-            say(f"\n{each.mesh}, {each.load}: {' and '.join(each.gears)}")
-            say(table([("factor", "value", "unit", "source", "branch"), *_factors(each)]))
+    conditions = rating.ratings[0].standard.conditions if rating.ratings else None
+    say(f"{ready.title}{f': ISO 6336:{conditions.edition}' if conditions else ''}")
+    tables = [verdict_table(rating)]
+    tables += [damage_table(rating)] if rating.spectra else []
+    tables += [bearing_table(rating)] if rating.bearings else []
+    for each in tables:
+        _say(each)
+    for line in sentences(rating):
+        say(line)
+    for each in factor_tables(rating) if all_ else ():
+        _say(each)
     show_warnings([warning for each in rating.ratings for warning in each.standard.warnings])
 
 
-def _row(verdict: Verdict) -> tuple[str, ...]:
-    computed = "" if verdict.computed is None else f"{verdict.computed:.3f}"
-    margin = f"{100.0 * verdict.margin:+.1f} %"
-    numbers = f"{verdict.safety:.3f}", f"{verdict.required:g}", margin, computed
-    return verdict.mode, verdict.part, *numbers, verdict.load
-
-
-def _factors(rating: Any) -> list[tuple[str, ...]]:
-    """Rows of all factors of a mesh, then those of its gears."""
-    standard = rating.standard
-    rows = [_factor(name, factor) for name, factor in standard.factors.items()]
-    for gear, each in zip(rating.gears, standard.gears.values(), strict=True):
-        own = {name: f for name, f in each.factors.items() if standard.factors.get(name) is not f}
-        rows += [_factor(f"{name} of {gear}", factor) for name, factor in own.items()]
-    computed = rating.computed
-    rows += [
-        (f"{name} computed", f"{computed.factors[name]:.6g}", "", "motion and load of the run", "")
-        for name in computed.overridden
-    ]
-    for role, gear in zip(standard.gears, rating.gears, strict=True):
-        for name, value in rating.root_stress.get(role, {}).items():
-            unit = "Pa" if name.endswith("stress") else ""
-            label = f"{name.replace('_', ' ')} of {gear}"
-            rows.append((label, f"{value:.6g}", unit, "root by finite elements", "beside Y_F Y_S"))
-    return rows
-
-
-def _factor(name: str, factor: Any) -> tuple[str, ...]:
-    return name, f"{float(factor):.6g}", factor.unit, factor.source, factor.branch
-
-
-#: What helps against a mode of failure.
-_REMEDIES = {
-    "pitting": "a harder flank or a better grade, more face width, finer flanks, thicker oil, or a "
-    "lead that lowers K_Hbeta",
-    "bending": "a larger module, a larger root fillet, a positive profile shift, or shot peening",
-    "scuffing (flash)": "an oil of a higher load stage, tip relief, smoother flanks or cooler oil",
-    "scuffing (integral)": "an oil of a higher load stage, tip relief, smoother flanks or cooler "
-    "oil",
-    "micropitting": "smoother flanks, thicker or cooler oil, tip relief, or an oil of a higher "
-    "load stage in the micropitting test",
-}
-
-
-def limits_in_words(rating: CaseRating) -> str:
-    """What limits the design, and what would help."""
-    verdicts = rating.verdicts()
-    first = verdicts[0]
-    place = f"{first.mode} of {first.part} under {first.load}"
-    lacking = [verdict for verdict in verdicts if verdict.margin < 0.0]
-    if not lacking:
-        reserve = f"its safety {first.safety:.3f} is {100.0 * first.margin:.1f} % above"
-        return (
-            f"All safeties suffice. The design is limited by {place}: {reserve} the required one."
-        )
-    text = f"{len(lacking)} of {len(verdicts)} safeties are too low. The design is limited by "
-    text += f"{place}: safety {first.safety:.3f}, required {first.required:g}. It would help: "
-    return f"{text}{_REMEDIES[first.mode]}."
+def _say(each: RatingTable) -> None:
+    """Print a table under its title."""
+    say(f"\n{each.title}")
+    say(table([each.head, *each.rows]))

@@ -14,6 +14,7 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from tribodyn.errors import InputError, require_one_of
 from tribodyn.machine.fields import check_number
@@ -126,9 +127,26 @@ class RollerBearing(RollingElementBearing):
             np.einsum("ek,eki,ekj->eij", slope, gradient, gradient),
         )
 
-    def _contacts(self, axial: Array, radial: Array, tilt: Array) -> tuple[Array, ...]:
+    def lamina_loads(self, displacement: ArrayLike) -> Array:
+        """Load of each lamina of each roller.
+
+        Parameters
+        ----------
+        displacement : (5,) array [m, rad]
+            x, y, z, theta_y, theta_z of the inner ring against the outer ring.
+
+        Returns
+        -------
+        (rollers, laminae) array [N]
+        """
+        return self._forces(*self._local(np.asarray(displacement, dtype=float)))
+
+    def _forces(self, axial: Array, radial: Array, tilt: Array) -> Array:
         compression, _ = self._compression(axial, radial, tilt)
-        force = self._lamina_constant * compression**EXPONENT
+        return np.asarray(self._lamina_constant * compression**EXPONENT)
+
+    def _contacts(self, axial: Array, radial: Array, tilt: Array) -> tuple[Array, ...]:
+        force = self._forces(axial, radial, tilt)
         per_length = force.max(axis=1) * self.laminae / float(self.roller_length or 0.0)
         slope = self.element_diameter * math.cos(self.contact_angle) / self.pitch
         angle = np.full(self.elements, self.direction * self.contact_angle)

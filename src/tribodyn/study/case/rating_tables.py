@@ -1,4 +1,4 @@
-"""The tables ``[rating]`` and ``[materials.NAME]`` of a case: load capacity of its gears."""
+"""Tables of load capacity: ``[rating]``, ``[materials.NAME]``, keys of bearings and of shafts."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from typing import TYPE_CHECKING, Any
 
 from tribodyn.errors import InputError, Problem, did_you_mean
-from tribodyn.model import choice, flag, integer, number
+from tribodyn.model import REQUIRED, choice, flag, integer, number, numbers
 from tribodyn.study.case.section import NamedTables, Section, table
 
 if TYPE_CHECKING:
@@ -99,6 +99,89 @@ class RatingTable(Section):
     )  # fmt: skip
     lubrication: str = choice(
         "dip", ("dip", "spray", "submerged"), meaning="how the oil reaches the gears"
+    )
+
+
+def _load(meaning: str, example: str) -> Any:
+    return number(
+        None, 1.0, 1e9, "catalogues of rolling bearings", unit="N", display_unit="kN",
+        meaning=meaning, example=f'"{example} kN"',
+    )  # fmt: skip
+
+
+def _length(default: Any, meaning: str, basis: str = "", unit: str = "mm") -> Any:
+    return number(
+        default, 0.0, 100.0, "guards against a wrong unit", unit="m", display_unit=unit,
+        meaning=meaning, basis=basis, example=f'"40 {unit}"',
+    )  # fmt: skip
+
+
+class BearingCatalogue(Section):
+    """Catalogue values of a rolling bearing, for its life."""
+
+    dynamic_load_rating: float | None = _load("C of the catalogue, for the life", "55.3")
+    static_load_rating: float | None = _load("C_0 of the catalogue", "31.5")
+    fatigue_load_limit: float | None = number(
+        None, 0.1, 1e8, "catalogues of rolling bearings", unit="N", display_unit="kN",
+        meaning="C_u of the catalogue", basis="C_0/22 of balls, C_0/8.2 of rollers",
+        example='"1.34 kN"',
+    )  # fmt: skip
+    elements: str = choice("ball", ("ball", "roller"), meaning="what rolls in a bearing of no type")
+    pitch_diameter: float | None = number(
+        None, 1e-3, 10.0, "guards against a wrong unit", unit="m", display_unit="mm",
+        meaning="D_pw of a bearing of no type, for the viscosity that it needs",
+        example='"72.5 mm"',
+    )  # fmt: skip
+
+
+def _cleanliness() -> list[str]:
+    from tribodyn.rating.elements.bearing_life import CLEANLINESS
+
+    return list(CLEANLINESS)
+
+
+class PartRating(Section):
+    """Keys of ``[rating]`` of the bearings of a machine."""
+
+    cleanliness: str = choice(
+        "bath -/17/14", _cleanliness, meaning="filter or bath with the class of ISO 4406, or grease"
+    )
+    reliability: float = number(
+        90.0, 90.0, 99.95, "a_1 of ISO 281", meaning="percent of the bearings that last",
+        example="99.0",
+    )  # fmt: skip
+
+
+class ShaftStrength(Section):
+    """Strength of a shaft at the reference diameter of 16 mm, by DIN 743."""
+
+    tensile_strength: float | None = _strength("sigma_B", "tensile strength of the shaft")
+    yield_strength: float | None = _strength("sigma_S", "yield strength of the shaft")
+    heat_treatment: str = choice(
+        "quenched", ("quenched", "structural", "carburized CrNiMo", "carburized"),
+        meaning="kind of steel, for the influence of size",
+    )  # fmt: skip
+    hard_surface: bool = flag(False, meaning="whether the surface is hardened")
+
+
+class NotchTable(Section):
+    """A ``[shafts.NAME.notches.PLACE]`` table: a notched section, by DIN 743."""
+
+    position: float = _length(REQUIRED, "position on the shaft")
+    kind: str = choice(
+        "shoulder", ("shoulder", "groove", "key", "two keys", "press fit", "given"),
+        meaning="kind of notch; given has notch_factors",
+    )  # fmt: skip
+    diameter: float | None = _length(None, "d of the notched section", "the thinner section")
+    large_diameter: float | None = _length(None, "D beside the notch", "the thicker section")
+    radius: float | None = _length(None, "r of a shoulder or groove")
+    roughness: float = _length(5e-6, "roughness Rz of the surface", unit="um")
+    notch_factors: tuple[float, ...] | None = numbers(
+        1.0, 20.0, "notch factors", meaning="beta of tension, bending and torsion",
+        example="[1.5, 1.8, 1.4]",
+    )  # fmt: skip
+    surface_factor: float = number(
+        1.0, 1.0, 3.0, "DIN 743", symbol="K_V", meaning="strengthening of the surface"
     )
 
 

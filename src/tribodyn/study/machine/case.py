@@ -57,6 +57,7 @@ from tribodyn.study.machine.read_parts import (
     read_fault_table,
     read_gear,
     read_heat,
+    read_rated_parts,
     read_shaft,
     read_solver,
     table_of,
@@ -161,6 +162,7 @@ class MachineCase(PartsBase):
         self.housing: Housing | None = read_housing(self.data.get("housing"), problems)
         self.heat: LubricantData | None = read_heat(self.data.get("lubricant", {}), problems)
         motion = {k: v for k, v in self.data.get("dynamics", {}).items() if k not in MESH_KEYS}
+        self.rated_parts = read_rated_parts(self.data, self.shafts, problems)
         self.motion = table_of(MotionTable, motion, "dynamics", problems)
         self.solver = read_solver(self.data, problems)
         self.faults: dict[str, Any] = read_each(groups, "faults", read_fault_table, problems)

@@ -16,6 +16,7 @@ from tribodyn.study.case import gears
 from tribodyn.study.case.case import Case
 from tribodyn.study.case.hypoid import blank_of
 from tribodyn.study.case.provenance import spec_of
+from tribodyn.study.case.rating_tables import NotchTable, PartRating
 from tribodyn.study.case.section import Table
 from tribodyn.study.case.sections import Dynamics, Operation
 from tribodyn.study.case.to_models import usual_backlash
@@ -52,6 +53,8 @@ SHARED = ("material", "lubricant", "film", "stiffness", "friction", "materials",
 _OF_CYLINDRICAL = ("stiffness", "materials", "rating")
 #: Keys of ``[lubricant]`` of the heat balance, which is that of the whole machine.
 HEAT = ("heat_transfer", "gear_heat_transfer", "ambient_temperature")
+#: Keys of tables of models that are those of the whole machine.
+_OF_MACHINE = (*HEAT, *PartRating.fields)
 #: Keys of ``[dynamics]`` of a pair that belong to its mesh.
 MESH_KEYS = tuple(n for n in Dynamics.fields if n not in ("model", "bearing_damping_ratio"))
 #: Groups of parts, with a table for each part.
@@ -307,7 +310,7 @@ def _merged(name: str, shared: Mapping[str, Any], of_mesh: Mapping[str, Any]) ->
     """Table of a mesh: a model of its own brings its options, other keys are added."""
     selector = Case.fields[name].kind.selector  # type: ignore[union-attr]
     values = {**({} if selector in of_mesh else shared), **of_mesh}
-    return {key: value for key, value in values.items() if key not in HEAT}
+    return {key: value for key, value in values.items() if key not in _OF_MACHINE}
 
 
 def read_blanks(
@@ -369,6 +372,8 @@ def option_at(case: PartsBase, path: tuple[str, ...]) -> Option | None:
     if len(path) < 2:
         return None
     group, *names, name = path
+    if group == "shafts" and names[1:2] == ["notches"]:
+        return NotchTable.spec(name) if len(names) == 3 else None
     if name.isdigit():
         listed = option_at(case, (group, *names))
         return replace(listed, kind="number") if listed and listed.kind == "numbers" else None

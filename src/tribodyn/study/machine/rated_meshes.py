@@ -1,13 +1,28 @@
-"""Meshes of a machine under its loads, as they are rated."""
+"""Meshes, bearings and shafts of a machine under its loads, as they are rated."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from functools import partial
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
+import numpy as np
+
+from tribodyn.machine.shaft_matrices import ShaftMatrices
+from tribodyn.study.case.to_models import lubricant
 from tribodyn.study.machine.pair_cases import read_teeth, teeth_under
+from tribodyn.study.rated_parts import (
+    BearingLoad,
+    BearingRating,
+    NotchRating,
+    PartBearing,
+    PartRatings,
+    SectionLoad,
+    internal_loads,
+    rate_bearing,
+    rate_notch,
+)
 from tribodyn.study.rating import RatedMesh, computed_factors
 from tribodyn.types import Array
 
@@ -20,10 +35,7 @@ if TYPE_CHECKING:
 def rated_meshes(result: MachineResult) -> Iterator[RatedMesh]:
     """Each group of equal meshes with computed teeth under each load, if there is ``[rating]``."""
     case = result.case
-    loads = dict(result.loads) if case.is_rated else {}
-    if len(loads) > 1:  # load cases are what the machine has to last
-        del loads["operation"]
-    for name, load in loads.items():
+    for name, load in _rated_loads(result).items():
         seen = set()
         for mesh in case.meshes_with_teeth:
             under = teeth_under(case, mesh, load.load)
@@ -32,6 +44,14 @@ def rated_meshes(result: MachineResult) -> Iterator[RatedMesh]:
                 continue
             seen.add(group)
             yield _rated_mesh(case, load, (name, mesh), pair, under.names)
+
+
+def _rated_loads(result: MachineResult) -> Mapping[str, LoadResult]:
+    """Loads that the machine has to last: its load cases, else the operating point."""
+    loads = dict(result.loads) if result.case.is_rated else {}
+    if len(loads) > 1:
+        del loads["operation"]
+    return loads
 
 
 def _rated_mesh(
@@ -88,3 +108,101 @@ def _flanks(load: LoadResult, gear: str, mesh: str) -> tuple[int, bool]:
     }
     same = sum(value == drives[mesh] for value in drives.values())
     return same, same < len(drives)
+
+
+def rated_parts(result: MachineResult) -> PartRatings:
+    """Life of all bearings and fatigue of the notches of a machine, if there is ``[rating]``."""
+    case, loads = result.case, _rated_loads(result)
+    rated = case.rated_parts
+    if not loads or rated.rating is None:
+        return PartRatings()
+    bearings = [_bearing(case, loads, name) for name in _bearings(case)]
+    notches = [
+        _notch(load, (shaft, place, name), rated)
+        for shaft, place in rated.notches
+        for name, load in loads.items()
+    ]
+    required = rated.rating.required_life, rated.rating.minimum_safety
+    return PartRatings(tuple(bearings), tuple(notches), *required)
+
+
+def _bearings(case: MachineCase) -> Iterator[str]:
+    """Bearings of the file, and the pins of its planets; stiffnesses of supports are none."""
+    yield from case.data.get("bearings", {})
+    stages = tuple(f"{name}_" for name in case.stages)
+    for name, bearing in case.machine().bearings.items():
+        if bearing.carrier is not None and name.startswith(stages):
+            yield name
+
+
+def _bearing(case: MachineCase, loads: Mapping[str, LoadResult], name: str) -> BearingRating:
+    """Life of a bearing, or of a pin, under all loads."""
+    part, rated = case.machine().bearings[name], case.rated_parts
+    stage = next((s for s in case.stages if part.carrier and name.startswith(f"{s}_")), "")
+    catalogue = rated.catalogues.get(f"planets.{stage}" if stage else name)
+    if catalogue is None:
+        key = "pin_dynamic_load_rating" if stage else "dynamic_load_rating"
+        return BearingRating(name, (), reason=f"no {key}")
+    kind = str(case.data["bearings"][name].get("type", "")) if not stage else ""
+    bearing = PartBearing(catalogue, rated.conditions, part.rolling, kind)
+    exponent, rows = bearing.rated.exponent, []
+    for label, load in loads.items():
+        flow, balance = load.machine.kinematics.shafts, load.static.bearings[name]
+        speed = flow[part.shaft].speed - (flow[part.carrier].speed if part.carrier else 0.0)
+        force = load.motion.radial_force[:, load.motion.bearing.index(name)]
+        mean = float(load.motion.mean(force))
+        swing = float(load.motion.mean(force**exponent)) ** (1.0 / exponent) / mean if mean else 1.0
+        x, y, z = balance.load[:3].tolist()
+        share = load.load.share if label != "operation" else None
+        values = math.hypot(y, z), abs(x), abs(speed), _viscosity(case, load), max(swing, 1.0)
+        rows.append(BearingLoad(label, share, *values, balance.state))
+    return rate_bearing(name, bearing, rows, rated.rating.application_factor)
+
+
+def _viscosity(case: MachineCase, load: LoadResult) -> float | None:
+    """Kinematic viscosity of the oil of the machine under a load [m^2/s]."""
+    for mesh in case.meshes_with_teeth:
+        oil = read_teeth(case, mesh, teeth_under(case, mesh, load.load))[0].lubricant
+        if oil is not None:
+            return float(lubricant(oil).kinematic_viscosity)
+    return None
+
+
+def _notch(load: LoadResult, names: tuple[str, str, str], rated: Any) -> NotchRating:
+    """Safety of a notched section, on the side of it that carries more."""
+    shaft, place, _ = names
+    position, notch, material = rated.notches[shaft, place]
+    sections = [
+        SectionLoad(*loads, rated.rating.application_factor, *_motion_of(load, shaft))
+        for loads in section_loads(load, shaft, position)
+    ]
+    ratings = [rate_notch(names, notch, material, section) for section in sections]
+    return min(ratings, key=lambda rating: rating.safety)
+
+
+def section_loads(
+    load: LoadResult, shaft: str, position: float
+) -> list[tuple[float, float, float]]:
+    """Axial force, bending moment and torque just before and behind a position of a shaft."""
+    machine, bent = load.machine, load.static.shafts[shaft]
+    places = [gear.node_position for gear in machine.gears.values() if gear.shaft == shaft]
+    for bearing in machine.bearings.values():
+        places += [bearing.position] * (bearing.shaft == shaft)
+        places += [bearing.carrier_position] * (bearing.carrier == shaft)
+    beam = ShaftMatrices(machine.shafts[shaft], tuple(places), machine.shafts[shaft].length)
+    rows = np.abs(bent.position - beam.nodes[:, None]).argmin(axis=1)
+    forces = (beam.stiffness @ bent.displacement[rows].ravel()).reshape(-1, 6)
+    values = []
+    for side in (-1e-7, 1e-7):
+        total = internal_loads(beam.nodes.tolist(), forces, position + side)
+        values.append((total[0], math.hypot(total[4], total[5]), total[3]))
+    return values
+
+
+def _motion_of(load: LoadResult, shaft: str) -> tuple[float, bool]:
+    """Greatest dynamic factor of the meshes of a shaft, and whether the shaft turns."""
+    machine, factors = load.machine, [1.0]
+    for name, mesh in machine.meshes.items():
+        if shaft in {machine.gears[gear].shaft for gear in mesh.gears}:
+            factors.append(load.figures.get(f"meshes.{name}.dynamic_factor_peak") or 1.0)
+    return max(factors), bool(machine.kinematics.shafts[shaft].speed)

@@ -4,14 +4,25 @@ from __future__ import annotations
 
 import math
 import re
+from bisect import bisect
 from collections.abc import Callable, Mapping
 from dataclasses import MISSING, fields
-from typing import Any
+from functools import partial
+from typing import Any, NamedTuple
 
 from tribodyn.errors import Argument, InputError, Problem, did_you_mean
 from tribodyn.gear import Material
 from tribodyn.machine import COUPLINGS, ROLLING_BEARINGS, Bearing, Coupling, Gear, Section, Shaft
 from tribodyn.model import REQUIRED, Option, flag, integer, number, text
+from tribodyn.rating import ShaftMaterial, ShaftNotch
+from tribodyn.rating.elements.bearing_life import RELIABILITY
+from tribodyn.study.case.rating_tables import (
+    BearingCatalogue,
+    NotchTable,
+    PartRating,
+    RatingTable,
+    ShaftStrength,
+)
 from tribodyn.study.case.section import Section as Table
 from tribodyn.study.case.sections import LubricantData, MaterialData, heat_problems
 from tribodyn.study.case.user_input import UserInput
@@ -44,6 +55,8 @@ _SECTION = (
 _PARTS = ("length", "outer_diameter", "inner_diameter", "end_outer_diameter", "end_inner_diameter")
 #: Tables of parts, each with a name.
 _NAMED = ("shafts", "bearings", "gears", "meshes", "couplings", "planets", "faults")
+#: Distance on both sides of a notch at which the diameters are read [m].
+_BESIDE = 1e-7
 _SHARE = re.compile(r"\s*([\d.]+)\s*%\s*")
 
 
@@ -89,6 +102,7 @@ def read_shaft(name: str, body: dict[str, Any], problems: KeyedProblems) -> Shaf
     """Shaft of a table."""
     key = f"shafts.{name}"
     rows, count = body.pop("sections", ()), len(problems)
+    body.pop("notches", None)  # read with the rating
     table = read_table(ShaftTable, body, key, {}, problems)
     sections = [
         _section(f"{key}.sections", number, row, problems) for number, row in enumerate(rows)
@@ -133,7 +147,8 @@ def read_bearing(name: str, body: dict[str, Any], problems: KeyedProblems) -> Be
     table = read_table(BearingTable, body, key, {}, problems)
     if len(problems) > count:
         return None
-    values = {k: getattr(table, k) for k in BearingTable.fields}
+    names = [name for name in BearingTable.fields if name not in BearingCatalogue.fields]
+    values = {k: getattr(table, k) for k in names}
     part: Bearing | None = built(key, lambda: Bearing(**values, rolling=rolling), problems)
     return part
 
@@ -186,6 +201,94 @@ def rolling_options(law: type) -> dict[str, Option]:
             units = {"unit": unit, "display_unit": display_unit, "example": example}
             options[field.name] = number(default, -math.inf, math.inf, "", meaning=meaning, **units)
     return options
+
+
+class RatedParts(NamedTuple):
+    """What a machine is rated by besides its teeth."""
+
+    rating: Any = None  #: table ``[rating]``
+    conditions: Any = None  #: its keys of bearings
+    catalogues: Mapping[str, BearingCatalogue] = {}  #: of bearings; of pins by ``planets.NAME``
+    notches: Mapping[tuple[str, str], tuple[float, ShaftNotch, ShaftMaterial]] = {}
+
+
+def read_rated_parts(
+    data: Mapping[str, Any], shafts: Mapping[str, Shaft], problems: KeyedProblems
+) -> RatedParts:
+    """Read what the lives of bearings and the safeties of shafts are computed from."""
+    if not isinstance(body := data.get("rating"), Mapping):
+        return RatedParts()
+    of_parts = {k: v for k, v in body.items() if k in PartRating.fields}
+    others = {k: v for k, v in body.items() if k not in of_parts}
+    rating = table_of(RatingTable, others, "rating", problems)
+    conditions = table_of(PartRating, of_parts, "rating", problems)
+    if conditions is not None and conditions.reliability not in RELIABILITY:
+        why = f"ISO 281 has: {', '.join(f'{value:g}' for value in RELIABILITY)}"
+        what = f"reliability = {conditions.reliability:g}"
+        problems.append(("rating.reliability", Problem(what, "", why, "Choose one of these")))
+    catalogues = {}
+    for group, prefix in (("bearings", ""), ("planets", "pin_")):
+        for name, part in data.get(group, {}).items():
+            keys = {k: f"{prefix}{k}" for k in BearingCatalogue.fields}
+            stated = part if isinstance(part, Mapping) else {}
+            values = {k: stated[key] for k, key in keys.items() if key in stated}
+            if "dynamic_load_rating" in values:
+                key = f"planets.{name}" if prefix else name
+                catalogues[key] = read_table(BearingCatalogue, values, f"{group}.{name}", {}, [])
+    notches: dict[tuple[str, str], tuple[float, ShaftNotch, ShaftMaterial]] = {}
+    for name, part in data.get("shafts", {}).items():
+        if isinstance(part, Mapping) and isinstance(part.get("notches"), Mapping):
+            notches |= _read_notches(name, part, shafts.get(name), problems)
+    return RatedParts(rating, conditions, catalogues, notches)
+
+
+def _read_notches(
+    name: str, body: Mapping[str, Any], shaft: Shaft | None, problems: KeyedProblems
+) -> dict[tuple[str, str], tuple[float, ShaftNotch, ShaftMaterial]]:
+    """Notched sections of a shaft, with its material."""
+    key = f"shafts.{name}"
+    values = {k: v for k, v in body.items() if k in ShaftStrength.fields}
+    strength: Any = read_table(ShaftStrength, values, key, {}, [])
+    notches: dict[tuple[str, str], tuple[float, ShaftNotch, ShaftMaterial]] = {}
+    if shaft is None or strength is None:  # reported where it is read
+        return notches
+    for missing in ("tensile_strength", "yield_strength", "sections"):
+        if not getattr(shaft if missing == "sections" else strength, missing):
+            what, why = f"{missing} is missing", "Notches are rated by section and strength"
+            remedy = f"Add {missing} to [{key}], or remove the notches"
+            problems.append((f"{key}.{missing}", Problem(what, "", why, remedy)))
+            return notches
+    steel = {k: getattr(strength, k) for k in ShaftStrength.fields}
+    steel["kind"] = steel.pop("heat_treatment")
+    for place, each in body["notches"].items():
+        at = f"{key}.notches.{place}"
+        table: Any = table_of(NotchTable, each, at, problems)
+        if table is not None and not 0.0 < table.position < shaft.length:
+            what = f"position = {1e3 * table.position:.6g} mm"
+            why = f"The shaft extends from 0 to {1e3 * shaft.length:.6g} mm"
+            problem = Problem(what, "", why, "Give a position on the shaft")
+            problems.append((f"{at}.position", problem))
+        elif table is not None:
+            notch = built(at, partial(notch_of, table, shaft), problems)
+            material = built(key, partial(ShaftMaterial, **steel), problems)
+            if notch is not None and material is not None:
+                notches[name, place] = table.position, notch, material
+    return notches
+
+
+def notch_of(table: Any, shaft: Shaft) -> ShaftNotch:
+    """Notched section of a table, with the diameters of the shaft where it gives none."""
+    ends, sides = shaft.ends, []
+    for place in (table.position - _BESIDE, table.position + _BESIDE):
+        number = min(max(bisect(ends, place) - 1, 0), len(shaft.sections) - 1)
+        section = shaft.sections[number]
+        sides.append(section.diameters((place - ends[number]) / section.length))
+    values = {name: getattr(table, name) for name in NotchTable.fields if name != "position"}
+    thin, thick = sorted(side[0] for side in sides)
+    values["diameter"] = table.diameter or thin
+    if table.large_diameter is None and table.kind in ("shoulder", "groove"):
+        values["large_diameter"] = thick
+    return ShaftNotch(**values, bore_diameter=max(side[1] for side in sides))
 
 
 def read_coupling(name: str, body: dict[str, Any], problems: KeyedProblems) -> Coupling | None:

@@ -43,6 +43,7 @@ if TYPE_CHECKING:
     from tribodyn.study.machine.case import MachineCase
     from tribodyn.study.machine.load_cases import LoadCase
     from tribodyn.study.machine.modes import MachineCampbell
+    from tribodyn.study.rated_parts import PartRatings
     from tribodyn.study.rating import RatedMesh
 
 
@@ -300,6 +301,11 @@ class MachineResult(ResultOfCase):
         from tribodyn.study.machine.rated_meshes import rated_meshes
 
         return rated_meshes(self)
+
+    def _rated_parts(self) -> PartRatings:
+        from tribodyn.study.machine.rated_meshes import rated_parts
+
+        return rated_parts(self)
 
     @property
     def loads(self) -> Mapping[str, LoadResult]:

@@ -9,6 +9,7 @@ from typing import Any
 from tribodyn.machine import COUPLINGS, ROLLING_BEARINGS, STEEL
 from tribodyn.model import REQUIRED, choice, file_path, flag, integer, number, numbers, text
 from tribodyn.study.case import gears
+from tribodyn.study.case.rating_tables import BearingCatalogue, PartRating, ShaftStrength
 from tribodyn.study.case.section import Section
 from tribodyn.study.case.sections import Dynamics, MaterialData, Solver
 from tribodyn.study.faults.section import PartFaultTable
@@ -34,7 +35,9 @@ def _position(meaning: str, default: Any = REQUIRED, **more: Any) -> Any:
 
 
 class ShaftTable(MaterialData):
-    """A ``[shafts.NAME]`` table; its ``sections`` are read apart."""
+    """A ``[shafts.NAME]`` table; its ``sections`` and ``notches`` are read apart."""
+
+    fields = {**MaterialData.fields, **ShaftStrength.fields}  # noqa: RUF012
 
     density: float = number(STEEL.density, 500.0, 25000.0, "polymers to tungsten", of="density")
     moment_of_inertia: float = number(
@@ -44,7 +47,7 @@ class ShaftTable(MaterialData):
     )  # fmt: skip
 
 
-class BearingTable(Section):
+class BearingTable(BearingCatalogue):
     """A ``[bearings.NAME]`` table of a linear support; those of a rolling bearing are apart."""
 
     shaft: str = text(REQUIRED, meaning="shaft that it carries", example='"input"')
@@ -363,7 +366,10 @@ _PLANET_TYPES = {
 class PlanetsTable(Section):
     """A ``[planets.NAME]`` table."""
 
-    fields = {name: MeshTable.fields[name] for name in _OF_STAGE}  # noqa: RUF012
+    fields = {  # noqa: RUF012
+        **{name: MeshTable.fields[name] for name in _OF_STAGE},
+        **{f"pin_{name}": option for name, option in BearingCatalogue.fields.items()},
+    }
 
     sun: str = text(REQUIRED, meaning="gear in the middle", example='"s"')
     ring: str = text(REQUIRED, meaning="gear with internal teeth", example='"r"')
@@ -435,6 +441,7 @@ TABLES: dict[str, type[Section]] = {
     "dynamics": MotionTable,
     "solver": SolverTable,
     "faults": PartFaultTable,
+    "rating": PartRating,
 }
 
 

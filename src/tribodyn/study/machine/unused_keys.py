@@ -6,6 +6,7 @@ from collections.abc import Iterable, Iterator, Mapping
 from typing import Any
 
 from tribodyn.errors import Problem
+from tribodyn.study.case.rating_tables import BearingCatalogue, PartRating, ShaftStrength
 from tribodyn.study.case.values import written
 from tribodyn.study.machine.pair_cases import HEAT, MESH_KEYS, SHARED
 from tribodyn.study.machine.tables import (
@@ -75,6 +76,55 @@ def unused_keys(data: Mapping[str, Any]) -> KeyedProblems:
     unused = [name for name in data.get("materials") or () if name not in named]
     why, remedy = "No gear names it", "Name it as material of a gear, or remove it"
     yield from _refused("materials", data.get("materials"), unused, why, remedy)
+    yield from _rated_parts(data)
+
+
+def _catalogues(data: Mapping[str, Any]) -> Iterator[tuple[str, Mapping[str, Any], str]]:
+    """Key and body of bearings and stages, and what the keys of their catalogue begin with."""
+    for group, prefix in (("bearings", ""), ("planets", "pin_")):
+        for name, body in _tables(data, group).items():
+            yield f"{group}.{name}", body, prefix
+
+
+def rates_parts(data: Mapping[str, Any]) -> bool:
+    """Whether bearings have a dynamic load rating, or shafts have notches."""
+    listed = [body.get(f"{prefix}dynamic_load_rating") for _, body, prefix in _catalogues(data)]
+    listed += [body.get("notches") for body in _tables(data, "shafts").values()]
+    return any(value is not None for value in listed)
+
+
+def _rated_parts(data: Mapping[str, Any]) -> KeyedProblems:
+    """Keys of the life of bearings and the fatigue of shafts that have no effect."""
+    is_rated, add = _is_set(data, "rating"), "Add [rating], or remove it"
+    rated = []
+    for key, body, prefix in _catalogues(data):
+        keys = [f"{prefix}{name}" for name in BearingCatalogue.fields]
+        if "type" in body:  # its inner dimensions are those of the catalogue
+            why = "The type of the bearing gives it"
+            yield from _refused(key, body, ("elements",), why, "Remove it")
+            keys = keys[:3]
+        rated.append(is_rated and _is_set(body, keys[0]))
+        if not is_rated:
+            yield from _refused(key, body, keys, "Only a rating needs it", add)
+        elif not rated[-1]:
+            why = "The life of a bearing needs its dynamic load rating"
+            yield from _refused(key, body, keys, why, f"Add {keys[0]}, or remove it")
+    for name, body in _tables(data, "shafts").items():
+        keys, why, remedy = ["notches"], "Only a rating needs it", add
+        if is_rated:
+            why, remedy = "Only notches need the strength of a shaft", "Add notches, or remove it"
+            keys = []
+        if not is_rated or not _is_set(body, "notches"):
+            keys += ShaftStrength.fields
+        yield from _refused(f"shafts.{name}", body, keys, why, remedy)
+    if not any(rated):
+        why = "No bearing has dynamic_load_rating"
+        yield from _refused("rating", data.get("rating"), PartRating.fields, why, "Remove it")
+    why, remedy = "Bearings are those of the whole machine", "Write it in [rating]"
+    for group in ("meshes", "planets"):
+        for name, body in _tables(data, group).items():
+            table = body.get("rating")
+            yield from _refused(f"{group}.{name}.rating", table, PartRating.fields, why, remedy)
 
 
 def _heat(data: Mapping[str, Any]) -> KeyedProblems:
@@ -144,9 +194,13 @@ def _constant_meshes(data: Mapping[str, Any]) -> KeyedProblems:
         why = "The stiffness of hypoid teeth is line_stiffness or stiffness_model of their mesh"
         yield from _refused("", data, ("stiffness",), why, "Remove [stiffness]")
         why = "Bevel and hypoid gears are not rated"
-        yield from _refused("", data, ("rating", "materials"), why, "Remove it")
+        remedy = "Remove it, or rate bearings and shafts: dynamic_load_rating, notches"
+        names = ("materials",) if rates_parts(data) else ("rating", "materials")
+        yield from _refused("", data, names, why, remedy)
     elif meshes and not (crossed or plane):
-        teeth = ("lubricant", "film", "stiffness", "friction", "materials", "rating")
+        teeth = ["lubricant", "film", "stiffness", "friction", "materials", "rating"]
+        if rates_parts(data):
+            teeth.remove("rating")
         yield from _refused("", data, teeth, why, remedy)
         coupling = ("coupling", "coupling_tolerance")
         yield from _refused("solver", data.get("solver"), coupling, why, remedy)

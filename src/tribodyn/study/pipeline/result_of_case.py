@@ -23,6 +23,7 @@ if TYPE_CHECKING:
     from tribodyn.errors import ModelWarning
     from tribodyn.measurement import Recording
     from tribodyn.study.faults.sensors import Sensors
+    from tribodyn.study.rated_parts import PartRatings
     from tribodyn.study.rating import CaseRating, RatedMesh
     from tribodyn.types import Array
 
@@ -70,12 +71,16 @@ class ResultOfCase(ABC):
     def _rated_meshes(self) -> Iterable[RatedMesh]:
         """Meshes under their loads whose load capacity is asked for by ``[rating]``."""
 
+    def _rated_parts(self) -> PartRatings | None:
+        """Bearings and shafts of a machine, if its case has ``[rating]``."""
+        return None
+
     @cached_property
     def rating(self) -> CaseRating | None:
-        """Load capacity of the gears; None without ``[rating]``."""
+        """Load capacity of gears, bearings and shafts; None without ``[rating]``."""
         from tribodyn.study.rating import case_rating
 
-        return case_rating(self._rated_meshes())
+        return case_rating(self._rated_meshes(), self._rated_parts())
 
     @cached_property
     def _summary(self) -> Figures:

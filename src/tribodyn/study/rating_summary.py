@@ -1,0 +1,166 @@
+"""Verdict, lives and factors of a rating as tables and sentences: terminal, report and page."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+if TYPE_CHECKING:
+    from tribodyn.study.rated_parts import BearingRating, Verdict
+    from tribodyn.study.rating import CaseRating, MeshRating
+
+
+class RatingTable(NamedTuple):
+    """A table of a rating."""
+
+    title: str
+    head: tuple[str, ...]
+    rows: list[tuple[str, ...]]
+
+
+#: What helps against a mode of failure.
+_REMEDIES = {
+    "pitting": "a harder flank or a better grade, more face width, finer flanks, thicker oil, or a "
+    "lead that lowers K_Hbeta",
+    "bending": "a larger module, a larger root fillet, a positive profile shift, or shot peening",
+    "scuffing (flash)": "an oil of a higher load stage, tip relief, smoother flanks or cooler oil",
+    "scuffing (integral)": "an oil of a higher load stage, tip relief, smoother flanks or cooler "
+    "oil",
+    "micropitting": "smoother flanks, thicker or cooler oil, tip relief, or an oil of a higher "
+    "load stage in the micropitting test",
+    "bearing life": "a bearing of a higher load rating, cleaner oil, cooler or thicker oil, or a "
+    "bearing further from the mesh",
+    "shaft fatigue": "a larger radius or diameter at the notch, a smoother surface, or a stronger "
+    "steel",
+}
+_HEAD = ("factor", "value", "unit", "source", "branch")
+_LIVES = ("basic_life", "reference_life", "modified_life")
+
+
+def verdict_table(rating: CaseRating) -> RatingTable:
+    """Safety of each part against each mode of failure, the least margin first."""
+    head = (
+        *("mode of failure", "part", "safety", "required", "margin", "computed loads", "where"),
+        "load",
+    )
+    return RatingTable("Safeties", head, [_row(verdict) for verdict in rating.verdicts()])
+
+
+def _row(verdict: Verdict) -> tuple[str, ...]:
+    computed = "" if verdict.computed is None else f"{verdict.computed:.3f}"
+    margin = f"{100.0 * verdict.margin:+.1f} %"
+    numbers = f"{verdict.safety:.3f}", f"{verdict.required:g}", margin, computed
+    return verdict.mode, verdict.part, *numbers, verdict.where, verdict.load
+
+
+def damage_table(rating: CaseRating) -> RatingTable:
+    """Damage of each gear by load case and in total, by Miner."""
+    cases = [case.name for case in rating.spectra[0].rating.cases] if rating.spectra else []
+    rows = []
+    for each in rating.spectra:
+        for name, damage in zip(each.gears, (each.rating.pinion, each.rating.wheel), strict=True):
+            for mode in ("pitting", "bending"):
+                values = getattr(damage, f"{mode}_damage")
+                parts = (f"{value:.3g}" for value in (*values, sum(values)))
+                rows.append((mode, name, each.mesh, *parts))
+    return RatingTable(
+        "Damage by load case", ("mode of failure", "gear", "mesh", *cases, "total"), rows
+    )
+
+
+def bearing_table(rating: CaseRating) -> RatingTable:
+    """Lives of all bearings, with the load, the viscosity ratio and a_ISO under each load."""
+    head = ("bearing", "load", "basic life", "by elements", "modified life", "P", "kappa", "a_ISO")
+    rows = []
+    for each in rating.parts.bearings:
+        if not each.lives:
+            rows.append((each.bearing, each.reason, *[""] * 6))
+        for life in each.lives:
+            factors = [_number(life.factors, name) for name in ("P", "kappa", "a_ISO")]
+            hours = (_hours(getattr(life, name)) for name in _LIVES)
+            rows.append((each.bearing, life.load, *hours, *factors))
+        if len(each.lives) > 1:
+            rows.append((each.bearing, "all load cases", *_lives_of(each), *[""] * 3))
+    return RatingTable("Bearings: life in hours", head, rows)
+
+
+def _lives_of(bearing: BearingRating) -> Iterator[str]:
+    return (_hours(getattr(bearing, name)) for name in _LIVES)
+
+
+def _hours(life: float | None) -> str:
+    return "" if life is None else f"{life / 3600.0:.4g}"
+
+
+def _number(factors: Mapping[str, Any], name: str) -> str:
+    return f"{factors[name]:.4g}{' N' if name == 'P' else ''}" if name in factors else ""
+
+
+def factor_tables(rating: CaseRating) -> Iterator[RatingTable]:
+    """Every factor with its value, its source and the branch taken, by mesh and part."""
+    for each in rating.ratings:
+        title = f"{each.mesh}, {each.load}: {' and '.join(each.gears)}"
+        yield RatingTable(title, _HEAD, _factors(each))
+    for bearing in rating.parts.bearings:
+        for life in bearing.lives:
+            title = f"bearing {bearing.bearing}, {life.load}"
+            yield RatingTable(title, _HEAD, [_factor(n, f) for n, f in life.factors.items()])
+    for notch in rating.parts.notches:
+        title = f"shaft {notch.shaft}, notch {notch.notch}, {notch.load}"
+        yield RatingTable(title, _HEAD, [_factor(n, f) for n, f in notch.factors.items()])
+
+
+def _factors(rating: MeshRating) -> list[tuple[str, ...]]:
+    """Rows of all factors of a mesh, then those of its gears."""
+    standard = rating.standard
+    rows = [_factor(name, factor) for name, factor in standard.factors.items()]
+    for gear, each in zip(rating.gears, standard.gears.values(), strict=True):
+        own = {name: f for name, f in each.factors.items() if standard.factors.get(name) is not f}
+        rows += [_factor(f"{name} of {gear}", factor) for name, factor in own.items()]
+    computed = rating.computed
+    rows += [
+        (f"{name} computed", f"{computed.factors[name]:.6g}", "", "motion and load of the run", "")
+        for name in computed.overridden
+    ]
+    for role, gear in zip(standard.gears, rating.gears, strict=True):
+        for name, value in rating.root_stress.get(role, {}).items():
+            unit = "Pa" if name.endswith("stress") else ""
+            label = f"{name.replace('_', ' ')} of {gear}"
+            rows.append((label, f"{value:.6g}", unit, "root by finite elements", "beside Y_F Y_S"))
+    return rows
+
+
+def _factor(name: str, factor: Any) -> tuple[str, ...]:
+    return name, f"{float(factor):.6g}", factor.unit, factor.source, factor.branch
+
+
+def sentences(rating: CaseRating) -> list[str]:
+    """What limits the design and what would help, the life of the bearings, what is not rated."""
+    lines = [limits_in_words(rating)] if rating.verdicts() else []
+    if (life := rating.system_life) is not None:
+        rated = [each for each in rating.parts.bearings if each.life is not None]
+        lines.append(f"Life of {len(rated)} bearings together: {_hours(life)} h.")
+    reasons: dict[str, list[str]] = {}
+    for each in rating.parts.bearings:
+        if each.reason:
+            reasons.setdefault(each.reason, []).append(each.bearing)
+    for reason, names in reasons.items():
+        plural = "s" if len(names) > 1 else ""
+        lines.append(f"Bearing{plural} {', '.join(names)}: {reason}.")
+    return lines
+
+
+def limits_in_words(rating: CaseRating) -> str:
+    """What limits the design, and what would help."""
+    verdicts = rating.verdicts()
+    first = verdicts[0]
+    place = f"{first.mode} of {first.part} under {first.load}"
+    lacking = [verdict for verdict in verdicts if verdict.margin < 0.0]
+    if not lacking:
+        reserve = f"its safety {first.safety:.3f} is {100.0 * first.margin:.1f} % above"
+        return (
+            f"All safeties suffice. The design is limited by {place}: {reserve} the required one."
+        )
+    text = f"{len(lacking)} of {len(verdicts)} safeties are too low. The design is limited by "
+    text += f"{place}: safety {first.safety:.3f}, required {first.required:g}. It would help: "
+    return f"{text}{_REMEDIES[first.mode]}."
