@@ -38,6 +38,7 @@ __all__ = ["ANY", "FILES", "LINES", "import_circles", "lines_of_code", "measures
 #: cases: the friction experiment, a study of papers, came from study
 #: notebooks: tables of results, progress as text, short tracebacks and warnings in IPython.
 #: rating: root stress by finite elements, computed load sharing
+#: machine, study: life of bearings, fatigue of shafts of a case
 LINES: dict[str, int] = {
     "__init__": 103,
     "__main__": 3,
@@ -49,7 +50,7 @@ LINES: dict[str, int] = {
     "cases": 1376,
     "checkpoints": 142,
     "checks": 56,
-    "cli": 3059,
+    "cli": 3024,
     "compiled": 236,
     "contact": 422,
     "cookbook": 99,
@@ -65,7 +66,7 @@ LINES: dict[str, int] = {
     "interrupt": 215,
     "losses": 929,
     "lubricant": 554,
-    "machine": 5616,
+    "machine": 5621,
     "measurement": 3381,
     "members": 3,
     "mesh": 5698,
@@ -80,7 +81,7 @@ LINES: dict[str, int] = {
     "report": 1781,
     "signals": 1754,
     "stiffness": 5170,
-    "study": 16997,
+    "study": 17737,
     "surrogate": 777,
     "types": 7,
     "uncertainty": 290,
@@ -89,7 +90,7 @@ LINES: dict[str, int] = {
     "variants": 1056,
 }
 #: Modules of the package, and its annotations without a type.
-FILES, ANY = 778, 2661
+FILES, ANY = 780, 2685
 
 _NO_CODE = {
     tokenize.COMMENT, tokenize.NL, tokenize.NEWLINE, tokenize.INDENT, tokenize.DEDENT,
