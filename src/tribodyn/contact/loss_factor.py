@@ -83,10 +83,10 @@ def _helical_share(contact: PathOfContact, age: Array) -> Array:
 
     def integral(phase: Array) -> Array:
         turns = np.floor(phase)
-        rest = phase - turns
-        start = np.clip(np.searchsorted(kinks, rest, side="right") - 1, 0, first.size - 1)
-        inside = mean_inverse(first[start], pair.contact_line_length(rest))
-        return np.asarray(turns * sums[-1] + sums[start] + (rest - kinks[start]) * inside)
+        fraction = phase - turns
+        start = np.clip(np.searchsorted(kinks, fraction, side="right") - 1, 0, first.size - 1)
+        inside = mean_inverse(first[start], pair.contact_line_length(fraction))
+        return np.asarray(turns * sums[-1] + sums[start] + (fraction - kinks[start]) * inside)
 
     line = pair.common_face_width / (math.cos(pair.base_helix_angle) * pair.overlap_ratio)
     return np.asarray(line * (integral(age + pair.overlap_ratio) - integral(age)))

@@ -236,6 +236,6 @@ def _pressure(row: _Row, ratio: Array) -> Array:
 
 
 def _shear(row: _Row, ratio: Array) -> Array:
-    near = np.minimum(ratio, _FAR)
-    fit = row.A1 * near**row.a1 * np.exp(-row.a2 * near + row.a3 * near**2)
+    limited = np.minimum(ratio, _FAR)
+    fit = row.A1 * limited**row.a1 * np.exp(-row.a2 * limited + row.a3 * limited**2)
     return np.where(ratio > _FAR, row.A2 * np.exp(-0.25 * ratio), fit)

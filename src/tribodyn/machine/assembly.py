@@ -75,7 +75,7 @@ def system(machine: Machine | MachineStructure, *, phases: bool = False) -> Syst
             frictions += law[1]
         else:
             contacts.append(_contact(structure, name, phases))
-    whole = System(
+    equations = System(
         mass=structure.mass,
         damping=structure.damping,
         stiffness=structure.stiffness + frame_terms(structure, machine.operation.speed)[1],
@@ -86,17 +86,17 @@ def system(machine: Machine | MachineStructure, *, phases: bool = False) -> Syst
         balance=structure.balance,
         gyroscopic=gyroscopic if gyroscopic.any() else None,
     )
-    return _without_drift(structure, whole) if structure.frame else whole
+    return _without_drift(structure, equations) if structure.frame else equations
 
 
-def _without_drift(structure: MachineStructure, whole: System) -> System:
+def _without_drift(structure: MachineStructure, equations: System) -> System:
     """System without the Coriolis forces of a free rotation, whose mean speed is that of a load."""
     springs = [
         Contact(structure.mesh(name), structure.mesh_stiffness(name))
         for name in structure.machine.meshes
     ]
-    plain = without_free_rotation(replace(whole, contacts=springs, frictions=()))
-    return replace(whole, gyroscopic=plain.gyroscopic)
+    plain = without_free_rotation(replace(equations, contacts=springs, frictions=()))
+    return replace(equations, gyroscopic=plain.gyroscopic)
 
 
 def _contact(structure: MachineStructure, name: str, phases: bool) -> Contact:
@@ -116,8 +116,8 @@ def _contact(structure: MachineStructure, name: str, phases: bool) -> Contact:
 def _clock(machine: Machine, name: str, phases: bool) -> dict[str, Any]:
     """Periods of a mesh in one of the clock or of each phase, and where its first begins."""
     mesh = machine.meshes[name]
-    one = machine.clock.cycles[name] // mesh.period
-    cycles = machine.phases.cycles[name] if phases else one
+    single = machine.clock.cycles[name] // mesh.period
+    cycles = machine.phases.cycles[name] if phases else single
     return {"cycles": cycles, "offset": mesh.offset / mesh.period}
 
 

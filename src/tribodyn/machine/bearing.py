@@ -125,8 +125,8 @@ class Bearing:
                     _check_pair(self, name, unit, 1 if way in ("axial", "torsional") else 2)
         parts = [f"{way}_stiffness" for way in _UNITS if np.any(getattr(self, f"{way}_stiffness"))]
         parts += [name for name in ("stiffness", "rolling") if getattr(self, name) is not None]
-        whole = {"stiffness", "rolling"} & set(parts)
-        if whole and len(parts) > 1:
+        exclusive = {"stiffness", "rolling"} & set(parts)
+        if exclusive and len(parts) > 1:
             why = "A matrix and a rolling bearing hold the stiffness of all directions"
             where = Argument(f"Bearing.{parts[-1]}")
             raise InputError(

@@ -398,6 +398,6 @@ def _parts(group: str, parts: Any, kind: type) -> Mapping[str, Any]:
 
 def _missing(where: str, name: str, kind: str, parts: Iterable[str]) -> Iterable[Problem]:
     if name not in (names := list(parts)):
-        known = ", ".join(names) or "none"
+        listed = ", ".join(names) or "none"
         remedy = did_you_mean(name, names, f"Add the {kind}, or correct the name")
-        yield Problem(f'there is no {kind} "{name}"', where, f"Known: {known}", remedy)
+        yield Problem(f'there is no {kind} "{name}"', where, f"Known: {listed}", remedy)

@@ -142,8 +142,8 @@ def machine_modes(machine: Machine | MachineStructure, speed: float | None = Non
     if structure.frame is not None:  # what its turning stores counts for the carrier
         carrier = f"shafts.{structure.frame}"
         elements[carrier] = elements.get(carrier, 0.0) + frame_terms(structure, speed)[1]
-    rest = _with_mean_stiffness(structure)
-    modes = natural_modes(_turning(structure, rest, speed), elements=elements)
+    mean_system = _with_mean_stiffness(structure)
+    modes = natural_modes(_turning(structure, mean_system, speed), elements=elements)
     elastic = _reliable(structure, modes.frequency)
     shape = modes.shape[elastic].astype(complex)
     return MachineModes(
@@ -160,19 +160,19 @@ def machine_modes(machine: Machine | MachineStructure, speed: float | None = Non
 
 def machine_frequencies(structure: MachineStructure, speeds: Array) -> list[Array]:
     """Natural frequencies [Hz] at each speed of the input [rad/s], as :func:`machine_modes`."""
-    rest = _with_mean_stiffness(structure)
+    mean_system = _with_mean_stiffness(structure)
     if structure.frame is None:
         turning = [structure.gyroscopic(float(speed)) if speed else None for speed in speeds]
-        rows = frequencies_at(linear_system(rest), turning)
+        rows = frequencies_at(linear_system(mean_system), turning)
     else:  # their stiffness depends on the speed too
-        rows = [natural_modes(_turning(structure, rest, float(n))).frequency for n in speeds]
+        rows = [natural_modes(_turning(structure, mean_system, float(n))).frequency for n in speeds]
     return [each[_reliable(structure, each)] for each in rows]
 
 
-def _turning(structure: MachineStructure, rest: System, speed: float) -> System:
+def _turning(structure: MachineStructure, mean_system: System, speed: float) -> System:
     """System with the mean stiffness of its meshes at a speed of the input [rad/s]."""
     return replace(
-        rest,
+        mean_system,
         stiffness=structure.stiffness + frame_terms(structure, speed)[1],
         gyroscopic=structure.gyroscopic(speed) if speed else None,
     )

@@ -130,11 +130,11 @@ def _at_rest(system: System, nodes: Nodes) -> tuple[Mask, Array]:
     push = nodes.force_direction
     if lowest.all() and not system.frictions:
         return np.array(lowest), push
-    rest, closed = _Rest(system, nodes), np.ones(nodes.stiffness.shape, dtype=bool)
+    still, closed = _Rest(system, nodes), np.ones(nodes.stiffness.shape, dtype=bool)
     load = np.zeros((*nodes.stiffness.shape[:2], len(system.frictions)))
     for _ in range(_ROUNDS):
         carrying = np.where(closed, nodes.stiffness, 0.0)
-        compression = rest.compression(carrying, push)
+        compression = still.compression(carrying, push)
         updated = lowest | (compression > nodes.gap)
         done = np.array_equal(updated, closed)
         if system.frictions:
@@ -165,9 +165,12 @@ class _Rest:
         mean = np.einsum("rsja,rsjb->ab", spring, feel + np.zeros_like(spring))
         matrix = np.asarray(system.stiffness) * np.outer(scale, scale)
         left, values, right = np.linalg.svd(matrix + basis.T @ mean @ basis)
-        held = values > _ZERO * values[0]
+        nonzero = values > _ZERO * values[0]
         # Motion along the directions of the contacts per force, and the forces that move freely.
-        reach, free = (basis @ right[held].T / values[held]) @ left[:, held].T, left[:, ~held]
+        reach, free = (
+            (basis @ right[nonzero].T / values[nonzero]) @ left[:, nonzero].T,
+            left[:, ~nonzero],
+        )
         self._nodes, self._feel, self._square = nodes, feel, reach @ reach.T
         self._still, self._lost = np.eye(len(basis)) - reach @ basis.T @ mean, mean.T @ basis @ free
         self._project = scale[:, None] * np.hstack((reach.T, free))

@@ -290,7 +290,7 @@ class ModalEngine:
         q, v = with_middles(compiled.grid.width / frequency, parts)
         moved = forces(compiled.system, nodes, frequency, q, v, extra=extra)
         outputs = np.concatenate((q, v), axis=-1) @ statistics.outputs.T
-        apart = (moved.deflection <= nodes.gap) & has_gap(nodes)
+        open_contacts = (moved.deflection <= nodes.gap) & has_gap(nodes)
         weight, share = nodes.weight / cycles, statistics.of_contacts[statistics.contacts :, 4]
         signals = (moved.deflection, moved.contact), (moved.acceleration, outputs)
         for rows, of_kind in zip((statistics.of_contacts, statistics.others), signals, strict=True):
@@ -299,7 +299,7 @@ class ModalEngine:
             rows[:, 1, lane] += np.einsum("rs,crsj->j", weight, values**2)
             rows[:, 2, lane] = np.minimum(rows[:, 2, lane], values.min(axis=(0, 1, 2)))
             rows[:, 3, lane] = np.maximum(rows[:, 3, lane], values.max(axis=(0, 1, 2)))
-        share[:, lane] += np.einsum("rs,crsj->j", weight, 1.0 * apart)
+        share[:, lane] += np.einsum("rs,crsj->j", weight, 1.0 * open_contacts)
 
 
 class ModalMarcher:

@@ -224,13 +224,13 @@ def _parabola(tau: Array) -> Array:
 
 def _advanced(z: ComplexArray, weights: _Weights, tangent: Array) -> tuple[ComplexArray, Array]:
     """Disturbance of the modes (m, k) at the end of a part, and of the forces (3 s, k)."""
-    seen = weights.signals @ np.concatenate((z.real, z.imag))
+    signals = weights.signals @ np.concatenate((z.real, z.imag))
     r2, s = tangent.shape[2], tangent.shape[1]
-    first = tangent[0] @ seen[:r2]
+    first = tangent[0] @ signals[:r2]
     later = np.zeros((2 * s, 2 * r2))
     later[:s, :r2], later[s:, r2:] = tangent[1], tangent[2]
     direct = later @ weights.direct
-    right = later @ seen[r2:] + direct[:, :s] @ first
+    right = later @ signals[r2:] + direct[:, :s] @ first
     forces = np.concatenate((first, np.linalg.solve(np.eye(2 * s) - direct[:, s:], right)))
     return weights.decay[:, None] * z + weights.force @ forces, forces
 
@@ -241,14 +241,14 @@ def _step_weights(modes: Any, output: ComplexArray, h: float) -> _Weights:
     full_step, full = _integrals(values * h)
     half_step, half = _integrals(0.5 * values * h)
     first, second, third = full
-    whole = h * np.stack((first - 3.0 * second + 4.0 * third, 4.0 * second - 8.0 * third,
+    step_weights = h * np.stack((first - 3.0 * second + 4.0 * third, 4.0 * second - 8.0 * third,
                           4.0 * third - second))  # fmt: skip
     begin, middle, end = half
     part = h * np.stack((0.5 * (begin - 1.5 * middle + end), middle - end,
                          0.5 * (end - 0.5 * middle)))  # fmt: skip
     force, inner = (
         np.concatenate([each[:, None] * modes.input for each in parts], axis=1)
-        for parts in (whole, part)
+        for parts in (step_weights, part)
     )
     signals = np.concatenate((output, output * half_step, output * full_step))
     direct = np.concatenate(((output @ inner).real, (output @ force).real))
@@ -263,10 +263,10 @@ def _integrals(x: ComplexArray) -> tuple[ComplexArray, tuple[ComplexArray, ...]]
     small: Mask = np.abs(x) < 1.0
     divisor = np.where(small, 1.0, x)
     second = 0.5 + x * series
-    near = (1.0 + x * (1.0 + x * second), 1.0 + x * second, second, series)
+    expanded = (1.0 + x * (1.0 + x * second), 1.0 + x * second, second, series)
     step = np.exp(x)
     first = (step - 1.0) / divisor
     far_second = (first - 1.0) / divisor
     far = (step, first, far_second, (far_second - 0.5) / divisor)
-    exponential, *parts = (np.where(small, a, b) for a, b in zip(near, far, strict=True))
+    exponential, *parts = (np.where(small, a, b) for a, b in zip(expanded, far, strict=True))
     return exponential, tuple(parts)

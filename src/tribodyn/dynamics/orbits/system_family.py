@@ -95,11 +95,11 @@ def family_of(
         moving = at(ends[0] + part * (ends[1] - ends[0]))
         return part, sample_system(moving.system, steps), moving.frequency
 
-    known: dict[float, tuple[float, Compiled, float]] = {}
+    compiled_at: dict[float, tuple[float, Compiled, float]] = {}
     family: SystemFamily | None = None
     for intervals in _INTERVALS:
         parts = [0.5 - 0.5 * float(np.cos(np.pi * k / intervals)) for k in range(intervals + 1)]
-        fresh = [part for part in parts if not any(abs(part - old) < 1e-12 for old in known)]
+        fresh = [part for part in parts if not any(abs(part - old) < 1e-12 for old in compiled_at)]
         new = in_threads(member, fresh, processors())
         if not all(is_modal(each.system) for _, each, _ in new):
             return None
@@ -114,8 +114,8 @@ def family_of(
         if family is not None:
             values = [ends[0] + part * (ends[1] - ends[0]) for part in fresh]
             left = max(family.difference(v, e) for v, e in zip(values, entries, strict=True))
-        known |= dict(zip(fresh, new, strict=True))
-        family = SystemFamily(ends, [known[part] for part in sorted(known)])
+        compiled_at |= dict(zip(fresh, new, strict=True))
+        family = SystemFamily(ends, [compiled_at[part] for part in sorted(compiled_at)])
         if intervals > _INTERVALS[0] and left <= _ACCURATE:
             return family
     return None

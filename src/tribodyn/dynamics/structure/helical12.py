@@ -139,10 +139,10 @@ def helical12(
     )
     force, balance = np.zeros(inertia.size), balance_direction(torque_balance, driver)
     force[_SPINS] = torques(pair_of("torque", torque, "N*m", positive=False), driver)
-    held = None
+    held_torque = None
     if balance is not None:
-        held = np.zeros(inertia.size)
-        held[_SPINS] = balance
+        held_torque = np.zeros(inertia.size)
+        held_torque[_SPINS] = balance
     return System(
         mass=np.diag(inertia),
         damping=np.diag(damping),
@@ -150,7 +150,7 @@ def helical12(
         force=force,
         contacts=carried(contact, mesh, mesh_force),
         names=HELICAL12_NAMES,
-        balance=held,
+        balance=held_torque,
     )
 
 

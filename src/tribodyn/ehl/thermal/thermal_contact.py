@@ -171,9 +171,9 @@ class Temperatures:
 def _columns(grid: DiscreteContact, case: ContactCase) -> tuple[Index, Array]:
     """Nodes of the columns, sparse in the inlet, and the edges between them, in intervals."""
     fine = max(1, round(_FINE / grid.dx))
-    near = np.arange(grid.n, int(np.searchsorted(grid.X, _NEAR)), -fine)
-    far = np.arange(near[-1], -1, -_SPARSE * fine)[1:]
-    at = np.concatenate([near, far])[::-1]
+    fine_columns = np.arange(grid.n, int(np.searchsorted(grid.X, _NEAR)), -fine)
+    far = np.arange(fine_columns[-1], -1, -_SPARSE * fine)[1:]
+    at = np.concatenate([fine_columns, far])[::-1]
     edges = np.concatenate([[at[0]], 0.5 * (at[1:] + at[:-1]), [at[-1]]])
     return np.ascontiguousarray(at), edges
 

@@ -78,7 +78,7 @@ def with_heat(
 ) -> ThermalLineContactSolution:
     """A solution with the temperatures that belong to it."""
     shear, compression, first, second, carried = heated.balance.tolist()
-    made = shear + compression
+    generated = shear + compression
     fields = {each.name: getattr(solution, each.name) for each in dataclass_fields(solution)}
     temperature = heated.temperature
     return ThermalLineContactSolution(
@@ -95,7 +95,7 @@ def with_heat(
         compression_heat=compression,
         carried_heat=carried,
         body_heat=np.array([first, second]),
-        heat_balance_error=(made - first - second - carried) / max(shear, 1e-300),
+        heat_balance_error=(generated - first - second - carried) / max(shear, 1e-300),
         thermal_passes=heated.passes,
         thermal_model=model,
         _mean_viscosity=heated.viscosity,

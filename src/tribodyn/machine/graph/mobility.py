@@ -77,11 +77,11 @@ class Mobility:
                 contradictions += [name] * (value != 0)
                 continue
             pivot, factor = next(iter(terms.items()))
-            known = {s: -f / factor for s, f in terms.items() if s != pivot}, -value / factor
-            solved[pivot] = known
+            solution = {s: -f / factor for s, f in terms.items() if s != pivot}, -value / factor
+            solved[pivot] = solution
             for shaft, (others, constant) in solved.items():
                 if pivot in others:
-                    solved[shaft] = _substituted(others, constant, {pivot: known})
+                    solved[shaft] = _substituted(others, constant, {pivot: solution})
         return solved, contradictions
 
     @property

@@ -90,8 +90,8 @@ def support_problems(
             yield Problem("the shaft has no bearing", where, why, remedy)
             continue
         arms = [(bearing, carried_along(bearing.position)) for bearing in supports]
-        held = sum((arm.T @ held_by(bearing) @ arm for bearing, arm in arms), np.zeros((6, 6)))
-        lateral = held[np.ix_([1, 2, 4, 5], [1, 2, 4, 5])]
+        support = sum((arm.T @ held_by(bearing) @ arm for bearing, arm in arms), np.zeros((6, 6)))
+        lateral = support[np.ix_([1, 2, 4, 5], [1, 2, 4, 5])]
         length = np.array([1.0, 1.0, shaft.length, shaft.length])
         scaled = lateral / np.outer(length, length)
         if np.linalg.eigvalsh(scaled)[0] < 1e-9 * np.abs(scaled).max():
@@ -104,7 +104,7 @@ def support_problems(
                 "It needs radial stiffness in y and z at two places, or tilting stiffness",
                 "Add a bearing, or give tilting_stiffness",
             )
-        if held[0, 0] <= 0.0 and abs(force := pushed.get(name, 0.0)) > 1e-6:
+        if support[0, 0] <= 0.0 and abs(force := pushed.get(name, 0.0)) > 1e-6:
             yield Problem(
                 f"no bearing holds the shaft along its axis, and its meshes push it with "
                 f"{force:.6g} N",

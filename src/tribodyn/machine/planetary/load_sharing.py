@@ -114,13 +114,13 @@ def sampled_shares(pin_errors: Array, thickness_errors: Array, **stage: Any) -> 
     spring, along, error = _planet_springs(system, stage)
     thick = 0.5 + 0.5 * [*force_ratios(stage.get("double_planets")).values()][-1]
     sense = 1.0 if stage["force_per_planet"] > 0.0 else -1.0
-    stiffness, rest = np.asarray(system.stiffness), np.asarray(system.force)
+    stiffness, load = np.asarray(system.stiffness), np.asarray(system.force)
     units = np.eye(spring.size)  # what a pin that is 1 m ahead adds to the forces
     pushed = [planetary_plane_model(**stage, pin_errors=0.1 * unit).force for unit in units]
-    ahead = 10.0 * (np.array(pushed) - rest)
+    ahead = 10.0 * (np.array(pushed) - load)
     forces = [
         _equilibrium(
-            stiffness, rest + pins @ ahead, spring, sense * along, sense * (error - thick * excess)
+            stiffness, load + pins @ ahead, spring, sense * along, sense * (error - thick * excess)
         )
         for pins, excess in zip(pin_errors, thickness_errors, strict=True)
     ]

@@ -159,8 +159,8 @@ class BevelSector:
         first[:, self.up.shape[1] :] = first[:, self.up.shape[1] - 1 : self.up.shape[1]]
         inner = right + np.stack([first, np.zeros_like(first)], axis=-1)
         layer = 0.5 * (right + inner)
-        rest = inner[:, None] + across[:, None, None] * (left - inner)[:, None]
-        tooth = np.concatenate([right[:, None], layer[:, None], rest], axis=1)
+        inner_nodes = inner[:, None] + across[:, None, None] * (left - inner)[:, None]
+        tooth = np.concatenate([right[:, None], layer[:, None], inner_nodes], axis=1)
         top = np.concatenate([self._root(0), tooth[:, :, -1], self._root(1)], axis=1)
         steps = np.cumsum(np.concatenate([[0.0], 1.5 ** np.arange(size.body)]))
         levels = _middles(steps / steps[-1])
@@ -265,8 +265,8 @@ class BevelSector:
         stiffness = hexahedra_stiffness(points[elements], stress)
         stiffness = turned_stiffness(stiffness, self.directions()[elements])
         freedoms = node_freedoms(elements)
-        held = np.isin(elements, self._at(self.mesh[0].fixed))
-        freedoms[np.repeat(held, 3, axis=1)] = -1
+        fixed = np.isin(elements, self._at(self.mesh[0].fixed))
+        freedoms[np.repeat(fixed, 3, axis=1)] = -1
         groups = np.arange(len(elements)).reshape(self.size.face, -1)
         retained = np.concatenate(
             [

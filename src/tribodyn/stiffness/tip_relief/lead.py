@@ -220,7 +220,7 @@ def _least(value: Callable[[Array], float], bounds: list[tuple[float, float]]) -
     grid = [np.array([a, b]) for a in (0.0, 0.3, 0.6) for b in np.linspace(0.0, 1.0, 7)]
     start = min(grid, key=lambda place: value(place * span + low))
     steps = np.array([[0.0, 0.0], [0.2, 0.0], [0.0, -0.1]])
-    found = minimize(
+    optimum = minimize(
         lambda place: value(place * span + low), start, method="Nelder-Mead",
         bounds=[(0.0, 1.0)] * 2,
         options={
@@ -228,7 +228,7 @@ def _least(value: Callable[[Array], float], bounds: list[tuple[float, float]]) -
             "xatol": _ENOUGH, "fatol": 1e-5, "maxfev": 200,
         },
     )  # fmt: skip
-    return np.asarray(found.x * span + low)
+    return np.asarray(optimum.x * span + low)
 
 
 class _FaceLoads:
