@@ -289,9 +289,9 @@ def default_table(data: Any, over: str = "") -> Any:
     if not firsts:
         return data.to_dataframe() if data.dims else pandas.DataFrame()
     if over and over not in firsts:
-        known = ", ".join(dict.fromkeys(firsts))
+        listed = ", ".join(dict.fromkeys(firsts))
         remedy = did_you_mean(over, firsts, "Choose one of these")
-        raise InputError(f'no variable over "{over}"', Argument("over"), f"It has {known}", remedy)
+        raise InputError(f'no variable over "{over}"', Argument("over"), f"It has {listed}", remedy)
     over = over or max(dict.fromkeys(firsts), key=lambda dim: (firsts.count(dim), data.sizes[dim]))
     columns: dict[str, Any] = {}
     units: dict[str, str] = {}

@@ -164,8 +164,8 @@ def section_compliance(
 ) -> tuple[Array, Array]:
     """Compliance of a crack for a Young's modulus of one, on elements that are graded to it."""
     depth = line.depth / gear.normal_module
-    near = (line.start(gear), min(size.flank, depth / _OVER_CRACK)) if graded else None
-    mesh, others = _sound_ring(gear, poissons_ratio, size, near)
+    refined = (line.start(gear), min(size.flank, depth / _OVER_CRACK)) if graded else None
+    mesh, others = _sound_ring(gear, poissons_ratio, size, refined)
     base = gear.base_radius
     low = gear.roll_angle(max(gear.form_radius, base)) * base
     radius = np.linspace(
@@ -305,12 +305,12 @@ def ring_displacement(
 
 @lru_cache(maxsize=8)
 def _sound_ring(
-    gear: SpurGear, poissons_ratio: float, size: MeshSize, near: tuple[float, float] | None
+    gear: SpurGear, poissons_ratio: float, size: MeshSize, refined: tuple[float, float] | None
 ) -> tuple[SectorMesh, Array]:
     """Mesh of a sector, and the stiffness of all others between its right and its left cut."""
     from scipy.sparse.linalg import splu
 
-    mesh = tooth_mesh(gear, held_radius(gear), size, near)
+    mesh = tooth_mesh(gear, held_radius(gear), size, refined)
     matrix = _stiffness(mesh, poissons_ratio)
     cuts, turn = _cut_freedoms(mesh)
     inner = np.setdiff1d(np.arange(matrix.shape[0]), np.append(cuts, _freedoms(mesh.fixed)))

@@ -120,9 +120,9 @@ class FaceGeometry(MeshGeometry):
         if overlap == 0.0:
             count = math.ceil(ratio - _ROUNDING) if greatest else math.floor(ratio + _ROUNDING)
             return self._longest_line * count
-        (part, whole), (face_part, face_whole) = math.modf(ratio), math.modf(overlap)
+        (part, integer), (face_part, face_whole) = math.modf(ratio), math.modf(overlap)
         common = min(part, face_part) if greatest else max(0.0, part + face_part - 1.0)
-        return self._longest_line * (whole + (part * face_whole + common) / overlap)
+        return self._longest_line * (integer + (part * face_whole + common) / overlap)
 
     @cached_property
     def least_contact_line_length(self) -> float:

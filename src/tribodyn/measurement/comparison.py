@@ -393,8 +393,8 @@ def _computed(computed: Any, data: Any, signal: str, count: int) -> tuple[Array,
     """Orders of the mesh, amplitudes and unit of a signal; with faults as in a recording."""
     name = _name_in_data(data, signal)
     faults = getattr(getattr(computed, "case", None), "faults", None)
-    whole = name is None or faults or hasattr(computed, "mesh_spectra")
-    if _has_turning_motion(computed) and whole:
+    several_turns = name is None or faults or hasattr(computed, "mesh_spectra")
+    if _has_turning_motion(computed) and several_turns:
         try:
             unit = computed.turning_motion.signal(signal)[1]
         except InputError:

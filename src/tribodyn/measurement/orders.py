@@ -110,8 +110,8 @@ def _window_gain(window: str, away: Array) -> Array:
     """Transform of a window over that at its centre, at a distance in inverse lengths."""
     coefficients = np.abs(WINDOWS[window])  # about the middle of the block
     shift = np.arange(coefficients.size)
-    apart = np.asarray(away)[..., None]
-    return np.asarray(0.5 * (np.sinc(apart - shift) + np.sinc(apart + shift)) @ coefficients)
+    offset = np.asarray(away)[..., None]
+    return np.asarray(0.5 * (np.sinc(offset - shift) + np.sinc(offset + shift)) @ coefficients)
 
 
 def order_spectrum(

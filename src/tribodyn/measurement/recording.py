@@ -314,12 +314,12 @@ def _aligned(
     start, end = max(begin.values()), min(begin[name] + v.size for name, v in samples.items())
     if end - start < 2:
         raise InputError(what, str(path), f"They have no time in common: {starts}", remedy)
-    rest = max(abs(late[name] - begin[name]) for name in late)
+    excess = max(abs(late[name] - begin[name]) for name in late)
     warn(
         "channels-aligned",
         f"{path}: {what} ({starts} after the first). They are cut to the {end - start} samples "
         f"from {start / rate:.7g} to {end / rate:.7g} s that all of them have"
-        + (f", and remain up to {rest:.2g} of a sample apart." if rest > _SAME_START else "."),
+        + (f", and remain up to {excess:.2g} of a sample apart." if excess > _SAME_START else "."),
         stacklevel=3,
     )
     return {name: v[start - begin[name] : end - begin[name]] for name, v in samples.items()}

@@ -211,12 +211,12 @@ def _of_stages(result: MachineResult) -> Iterator[_Place]:
 
 def _of_meshes(result: MachineResult) -> Iterator[_Place]:
     """Maps of the meshes, those of planets with equal teeth once, and how shafts move them."""
-    load, drawn = result.operation, set[int]()
+    load, tables = result.operation, set[int]()
     for number, (mesh, table) in enumerate(load.tables.items(), 1):
-        if id(table) not in drawn:
+        if id(table) not in tables:
             heading = f"Mesh {mesh}: maps over the face"
             yield _Place(plot.face_maps, table, f"face-maps-{number}", heading)
-        drawn.add(id(table))
+        tables.add(id(table))
     for number, (mesh, errors) in enumerate(load.misalignment.items(), 1):
         if isinstance(errors, Misalignment):
             study, heading = result.mounting_study(mesh), "contact with deflected shafts"

@@ -50,8 +50,8 @@ def _parts_modes_report_data(
         progress.start("Natural modes")
         modes = machine_modes(structure)
         campbell = campbell_of(structure, _diagram_speeds(ends), modes)
-    drawn = ((plot.machine_modes, modes), (plot.machine_campbell, campbell))
-    figures = [figure_with_caption(*each) for each in drawn if not each[0].missing(each[1])]
+    pictures = ((plot.machine_modes, modes), (plot.machine_campbell, campbell))
+    figures = [figure_with_caption(*each) for each in pictures if not each[0].missing(each[1])]
     progress.finish()
     statements = [f"{figures[-1][1].layout.title.text}.", *axial_notes(modes)]
     facts = modes_facts(modes, campbell)

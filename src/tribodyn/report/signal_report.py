@@ -379,8 +379,8 @@ def _diagnosis(analysis: SignalAnalysis) -> list[Figure]:
         demodulated = partial(narrowband_demodulation, average)
         of = f" over a turn of the {name}"
         figures.append(_computed(plot.narrowband_demodulation, demodulated, of))
-    whole = partial(cepstrum, analysis.signal, analysis.sample_rate)
-    figures.append(_computed(plot.cepstrum, whole))
+    of_signal = partial(cepstrum, analysis.signal, analysis.sample_rate)
+    figures.append(_computed(plot.cepstrum, of_signal))
     if analysis.kurtogram is not None:
         figures.append(_sketched(plot.kurtogram, analysis.kurtogram))
     if analysis.coherence is not None:

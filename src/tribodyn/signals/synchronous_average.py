@@ -277,8 +277,8 @@ def time_synchronous_average(
     mean = (clean * turns).sum(axis=0) / number
     variance = (clean * (turns - mean) ** 2).sum(axis=0) / (number - 1.0)
     inner = slice(1, -1) if count > _TRIMMED else slice(None)
-    apart = _without_mesh(turns[inner], teeth, 2, 1)
-    error = np.sqrt(apart.var(axis=0, ddof=1) / count)
+    averages = _without_mesh(turns[inner], teeth, 2, 1)
+    error = np.sqrt(averages.var(axis=0, ddof=1) / count)
     begin = round((angle[0] + resampled.rotation[0]) * per_turn / (2.0 * np.pi))
     return SynchronousAverage(
         2.0 * np.pi * np.arange(per_turn) / per_turn,

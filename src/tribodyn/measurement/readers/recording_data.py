@@ -272,10 +272,10 @@ def _header_rates(
         within = (f"{scope}.", f"{scope}/") if scope else ""
         inside = [name for name in headers if name.startswith(within)]
         single = [name for name in inside if len(stems[name]) > len(scope) + 1]
-        alike = [name for name in single if channel.startswith(stems[name])]
-        longest = max((len(stems[name]) for name in alike), default=0)
+        candidates = [name for name in single if channel.startswith(stems[name])]
+        longest = max((len(stems[name]) for name in candidates), default=0)
         others = {name for name in single if any(each.startswith(stems[name]) for each in channels)}
-        nearest = [name for name in alike if len(stems[name]) == longest]
+        nearest = [name for name in candidates if len(stems[name]) == longest]
         chosen = nearest or [name for name in inside if name not in others]
         if chosen:
             return {k: v for name in chosen for k, v in headers[name].items()}
