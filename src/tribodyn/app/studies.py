@@ -14,7 +14,7 @@ from tribodyn.model import REQUIRED, Option, choice, file_path, integer, number,
 from tribodyn.nomenclature import GEARS
 from tribodyn.report.study_report_data import MEASUREMENT
 from tribodyn.study.case.values import FaultError, Plain, read_value
-from tribodyn.study.studies.needs import PAIR_MESH, PAIRS, kind_of, study_meshes, takes
+from tribodyn.study.studies.needs import PAIR_MESH, study_meshes, takes
 from tribodyn.study.studies.needs import STUDIES as NEEDS
 from tribodyn.study.studies.range_syntax import toml_value
 
@@ -75,9 +75,7 @@ def _time(unit: str, default: float, high: float, meaning: str) -> Option:
 
 
 def offered(kind: str, case: Case | MachineCase) -> bool:
-    """Whether the page offers a study for a case; motions of a named mesh it does not."""
-    if kind in ("basins", "bifurcation", "continuation", "lyapunov") and kind_of(case) not in PAIRS:
-        return False
+    """Whether the page offers a study for a case."""
     return takes(kind, case) and (not NEEDS[kind].of_mesh or bool(study_meshes(kind, case)))
 
 
@@ -106,6 +104,7 @@ STUDIES: dict[str, Study] = {
         "Bifurcation",
         "The motion over one value: jumps, doubled periods, chaos.",
         {
+            "mesh": _MESH,
             "key": choice(REQUIRED, list, meaning="what varies"),
             "values": _text(REQUIRED, "its range with the number of points", "400..3500 rpm:60"),
             "sweep": choice(
@@ -119,6 +118,7 @@ STUDIES: dict[str, Study] = {
         "Branch of motions",
         "The periodic motion over one value, stable or not: where it turns back and jumps.",
         {
+            "mesh": _MESH,
             "key": choice(REQUIRED, list, meaning="what varies"),
             "ends": _text(REQUIRED, "its first and last value", "3000..9000 rpm"),
             "periods": integer(1, 1, 16, _GUARD, meaning="mesh cycles until the motion repeats"),
@@ -131,6 +131,7 @@ STUDIES: dict[str, Study] = {
         "Basins",
         "Which of several motions a disturbed start comes to.",
         {
+            "mesh": _MESH,
             "transmission_error": _text(
                 None, "its range; about the static one where it is empty", "-20..40 um"
             ),

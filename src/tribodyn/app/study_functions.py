@@ -65,7 +65,7 @@ def _of(answer: StudyReportData, kind: str, case: Case, target: Path) -> Shown:
 def _sweep(case: Case, values: Values, progress: Progress, target: Path) -> Shown:
     from tribodyn import plot
     from tribodyn.report.study_report_data import figure_with_caption
-    from tribodyn.study.pipeline.summary_labels import in_words
+    from tribodyn.study.pipeline.summary_figures import in_words
     from tribodyn.study.studies.sweep import sweep
 
     result = sweep(case, dict(_varied(values)), by="study", progress=progress)
@@ -91,7 +91,7 @@ def _bifurcation(case: Case, values: Values, progress: Progress, target: Path) -
     from tribodyn.study.studies.bifurcation import Findings, bifurcation
 
     low, high, points = _read("values", values["values"], read_range)
-    options = {name: values[name] for name in ("sweep", "cycles", "transient")}
+    options = {name: values[name] for name in ("mesh", "sweep", "cycles", "transient")}
     result = bifurcation(
         case,
         values["key"],
@@ -187,7 +187,7 @@ def _continuation(case: Case, values: Values, progress: Progress, target: Path) 
 
     ends, step = _ends("ends", values["ends"]), values["longest_step"]
     answer = continuation_report_data(
-        case, values["key"], ends, values["periods"], step, "study", progress
+        case, values["key"], ends, values["periods"], step, "study", progress, values["mesh"]
     )
     return _of(answer, "continuation", case, target)
 
@@ -199,7 +199,9 @@ def _basins(case: Case, values: Values, progress: Progress, target: Path) -> Sho
         _ends(name, values[name]) if values[name] else None
         for name in ("transmission_error", "rate")
     )
-    answer = basins_report_data(case, error, rate, values["points"], progress=progress)
+    answer = basins_report_data(
+        case, error, rate, values["points"], progress=progress, mesh=values["mesh"]
+    )
     return _of(answer, "basins", case, target)
 
 

@@ -6,19 +6,23 @@ import json
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pytest
+import xarray
 
 pytest.importorskip("dash", reason="the page needs Dash")
 
+from tests.unit.study.test_machine_case import SMALL
 from tests.unit.study.test_machine_run import GEARED
 
 from tribodyn.app import results, worker
 from tribodyn.app.session import TabSession
-from tribodyn.app.studies import STUDIES, compute, first_values, with_paths
+from tribodyn.app.studies import STUDIES, compute, first_values, form_of, with_paths
 from tribodyn.app.workspace import Workspace
 from tribodyn.cases.load import load_case
 from tribodyn.errors import InputError
 from tribodyn.progress import SILENT
+from tribodyn.study import bifurcation
 from tribodyn.study.faults.sensors import sensors_of
 from tribodyn.study.machine.read import read_any_case
 
@@ -78,9 +82,8 @@ def test_the_machine_is_drawn_with_speeds_and_assumptions(desk: TabSession) -> N
         assert part in text
     assert "two-stage-spur" in texts(results.files(desk))
     kinds = {kind for kind, study in STUDIES.items() if study.title in texts(results.studies(desk))}
-    of_mesh = {"harris", "losses", "film", "relief", "friction-from-loss"}
-    assert kinds == {"sweep", "sobol", "modes", "run-up", "recording", *of_mesh}
-    desk.choose_study("bifurcation")  # of a stale page
+    assert kinds == {*STUDIES}
+    desk.choose_study("experiment")  # no study of the page
     assert desk.study == ""
 
 
@@ -98,6 +101,31 @@ def test_studies_of_one_mesh_list_the_meshes_that_they_take(desk: TabSession) ->
     assert desk.values["harris"]["mesh"] == desk.case.meshes[0]
     desk.choose_study("relief")  # flanks of hypoid gears are relieved by their cutter
     assert desk.study == "harris"
+
+
+@pytest.mark.parametrize("kind", ["bifurcation", "continuation", "basins"])
+def test_motions_are_those_of_the_chosen_mesh(kind: str, tmp_path: Path) -> None:
+    """Meshes of constant springs have no computed teeth, but move."""
+    case = read_any_case(SMALL, "small.toml")
+    first = first_values(kind, case)
+    assert first["mesh"] == "first"
+    fields = form_of(kind, first, case, ())["groups"][0]["fields"]
+    assert fields[0]["names"] == [["first", "first"], ["second", "second"]]
+    with pytest.raises(InputError, match='no mesh "third"'):
+        compute(kind, case, first | {"mesh": "third"}, SILENT, tmp_path / "result")
+
+
+@pytest.mark.slow
+@pytest.mark.filterwarnings("ignore::tribodyn.errors.ModelWarning")
+def test_a_diagram_of_the_page_is_that_of_the_command(tmp_path: Path) -> None:
+    case = read_any_case(SMALL, "small.toml")
+    values = {"values": "1200..1234 rpm:2", "cycles": "4", "transient": "2", "mesh": "second"}
+    compute("bifurcation", case, first_values("bifurcation", case) | values, SILENT, tmp_path / "b")
+    names = {"mesh": "second", "cycles": 4, "transient": 2, "keep": 4}
+    diagram = bifurcation(case, between=("1200 rpm", "1234 rpm"), points=2, **names)
+    with xarray.open_dataset(tmp_path / "b" / "bifurcation.nc", engine="h5netcdf") as data:
+        assert data.attrs["signal"] == "mesh second"
+        np.testing.assert_array_equal(data["rms"], diagram.rms)
 
 
 def test_a_relief_of_a_mesh_is_that_of_its_gears(tmp_path: Path) -> None:

@@ -92,15 +92,31 @@ def mesh_names(case: Case | MachineCase) -> tuple[str, ...]:
     parts: Any = case
     if kind_of(case) in PAIRS:
         return (PAIR_MESH,)
-    if (stage := parts.lone_stage) is not None:
-        return tuple(parts.machine().planets[stage].mesh_names(stage))
+    if planets := _planet_meshes(parts):
+        return tuple(planets)
     groups = {parts.tooth_group(name): name for name in reversed(parts.meshes_with_teeth)}
     return tuple(reversed(groups.values()))
 
 
-def study_meshes(study: str, case: Case | MachineCase) -> tuple[str, ...]:
-    """Meshes of a case, of :func:`mesh_names`, that have what a study of one mesh needs."""
+def _planet_meshes(parts: Any) -> dict[str, tuple[str, ...]]:
+    """Names of the meshes of a stage by itself, by the name of their kind; none of other cases."""
+    stage = parts.lone_stage
+    return {} if stage is None else parts.machine().planets[stage].mesh_names(stage)
+
+
+def motion_meshes(case: Case | MachineCase) -> tuple[str, ...]:
+    """Names of the meshes that a study of motions can follow; of equal planets the first."""
     parts: Any = case
+    if kind_of(case) in PAIRS:
+        return (PAIR_MESH,)
+    return tuple(_planet_meshes(parts)) or tuple(parts.machine().meshes)
+
+
+def study_meshes(study: str, case: Case | MachineCase) -> tuple[str, ...]:
+    """Meshes of a case that have what a study of one mesh needs."""
+    parts: Any = case
+    if STUDIES[study] == _MOTION:
+        return motion_meshes(case)
     names = mesh_names(case)
     if kind_of(case) in PAIRS:
         return names
@@ -121,8 +137,7 @@ def mesh_pair(study: str, case: Case | MachineCase, mesh: str | None = None) -> 
     name = _named_mesh(study, mesh, names, every, " with computed teeth")
     if kind_of(case) in PAIRS:
         return MeshPair(parts, ("gears.pinion", "gears.wheel"))
-    if (stage := parts.lone_stage) is not None:
-        name = parts.machine().planets[stage].mesh_names(stage).get(name, (name,))[0]
+    name = _planet_meshes(parts).get(name, (name,))[0]
     meshes = parts.meshes_with_teeth
     listed = {m: MeshPair(p, g) for m, (_, p, g) in zip(meshes, parts.mesh_pairs(), strict=True)}
     pair, gears = listed[name]
@@ -137,13 +152,13 @@ def _named_mesh(
     study: str, mesh: str | None, names: Sequence[str], every: Sequence[str], kind: str = ""
 ) -> str:
     """Mesh that a study is about: the only one of ``names``, or one of ``every`` by its name."""
-    known = f"Meshes{kind}: {', '.join(names)}"
+    listed_names = f"Meshes{kind}: {', '.join(names)}"
     if mesh is None and len(names) > 1:
         remedy = f'Name it: mesh = "{names[0]}", of a command --mesh {names[0]}'
-        raise InputError(f"{study} is about one mesh", Argument("mesh"), known, remedy)
+        raise InputError(f"{study} is about one mesh", Argument("mesh"), listed_names, remedy)
     if mesh not in (None, *every):
         remedy = did_you_mean(str(mesh), names, "Name one of these")
-        raise InputError(f'there is no mesh "{mesh}"{kind}', Argument("mesh"), known, remedy)
+        raise InputError(f'there is no mesh "{mesh}"{kind}', Argument("mesh"), listed_names, remedy)
     return mesh or names[0]
 
 
@@ -151,14 +166,11 @@ def mesh_in_motion(study: str, case: Case | MachineCase, mesh: str | None = None
     """Mesh of a case that a study of its motions is about, by its name in the machine."""
     require(study, case)
     parts: Any = case
+    names = motion_meshes(case)
     if kind_of(case) in PAIRS:
-        return _named_mesh(study, mesh, (PAIR_MESH,), (PAIR_MESH,))
-    machine = parts.machine()
-    equal = {} if parts.lone_stage is None else machine.planets[parts.lone_stage].mesh_names(
-        parts.lone_stage)  # fmt: skip
-    names = tuple(equal) or tuple(machine.meshes)
-    name = _named_mesh(study, mesh, names, (*names, *machine.meshes))
-    return str(equal.get(name, (name,))[0])
+        return _named_mesh(study, mesh, names, names)
+    name = _named_mesh(study, mesh, names, (*names, *parts.machine().meshes))
+    return str(_planet_meshes(parts).get(name, (name,))[0])
 
 
 def _deflected(case: Any, mesh: str, pair: Case) -> Case:
