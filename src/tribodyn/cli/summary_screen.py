@@ -6,8 +6,7 @@ from collections.abc import Iterator, Mapping
 from textwrap import shorten
 
 from tribodyn.cli.console import table
-from tribodyn.study.pipeline.summary_figures import by_topic, figure_of, is_chief
-from tribodyn.study.pipeline.summary_labels import split_key
+from tribodyn.study.pipeline.summary_figures import by_topic, figure_of, is_chief, split_key
 
 _WIDTH = 100
 #: Kinds with a figure in each row; of the others each part has a row.

@@ -12,8 +12,7 @@ from tribodyn.plot.theme.labels import display_unit, displayed, engineering, rea
 from tribodyn.study.machine.modes import MODES_HEAD, axial_notes, nearest_first
 from tribodyn.study.machine.modes import mode_rows as part_rows
 from tribodyn.study.pipeline.assembly import ORDERS
-from tribodyn.study.pipeline.summary_figures import by_topic, figure_of
-from tribodyn.study.pipeline.summary_labels import in_words, split_key
+from tribodyn.study.pipeline.summary_figures import by_topic, figure_of, in_words, split_key
 from tribodyn.study.studies.modes import Mode, mode_rows
 from tribodyn.study.studies.needs import PAIRS, kind_of
 from tribodyn.units import convert

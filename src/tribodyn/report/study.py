@@ -22,8 +22,7 @@ from tribodyn.report.provenance import (
     version,
 )
 from tribodyn.study.pipeline.save import write_file
-from tribodyn.study.pipeline.summary_figures import figure_of
-from tribodyn.study.pipeline.summary_labels import in_words
+from tribodyn.study.pipeline.summary_figures import figure_of, in_words
 
 if TYPE_CHECKING:
     from tribodyn.analysis import Bifurcation

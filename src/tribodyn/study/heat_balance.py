@@ -76,8 +76,8 @@ class Temperatures(NamedTuple):
 
     def changes(self) -> dict[str, float]:
         """Values of the table ``[lubricant]``."""
-        known = {"temperature": self.oil, "gear_temperature": self.gears}
-        return {name: value for name, value in known.items() if value is not None}
+        temperatures = {"temperature": self.oil, "gear_temperature": self.gears}
+        return {name: value for name, value in temperatures.items() if value is not None}
 
 
 class _Pass(NamedTuple):

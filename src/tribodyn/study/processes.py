@@ -17,6 +17,7 @@ import threading
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager, suppress
 from contextvars import ContextVar
+from functools import partial
 from queue import Empty, SimpleQueue
 from typing import IO, Any, TypeVar
 
@@ -88,17 +89,9 @@ class _Helper:
             refuse_stopped(STOPPED * int(stop_flag()[0]))
         return None
 
-    def discard_results(self, most: int) -> int:
-        """Discard the available results, at most ``most``; return their number."""
-        for number in range(most):
-            try:
-                result = self._results.get_nowait()
-            except Empty:
-                return number
-            if result is None:
-                self._results.put(None)  # for the next caller
-                raise _LostError
-        return most
+    def busy(self) -> bool:
+        """Whether a submitted item has no result yet."""
+        return self._results.empty()
 
     def warm_up(self, function: bytes, item: Any, wanted: Callable[[], bool]) -> None:
         """Import what the function needs by a call whose result is discarded."""
@@ -190,25 +183,19 @@ class Helpers:
         """Call a function of every item in the first helper; return a check whether it is busy."""
         if not self._helpers:
             return lambda: False
-        helper, pickled_function = self._helpers[0], pickle.dumps(function)
         with suppress(_LostError):
-            for item in items:
-                helper.submit(pickled_function, item)
-        pending = len(items)
-
-        def busy() -> bool:
-            nonlocal pending
-            with suppress(_LostError):
-                pending -= helper.discard_results(pending)
-                return pending > 0
-            return False
-
-        return busy
+            self._helpers[0].submit(pickle.dumps(partial(_call_with_each, function)), items)
+        return self._helpers[0].busy
 
     def end(self) -> None:
         """Kill all processes."""
         for helper in self._helpers:
             helper.end()
+
+
+def _call_with_each(function: Callable[[Item], None], items: Sequence[Item]) -> None:
+    for item in items:
+        function(item)
 
 
 _current: ContextVar[Helpers | None] = ContextVar("helpers", default=None)

@@ -259,11 +259,10 @@ class Store:
 
     def state(self, missing: Mapping[str, str]) -> StudyState:
         """Progress of the study."""
-        done = sum(facts["members"] for facts in self.chunks.values())
-        failed = reasons(self.chunks.values())
-        title, count = self.study.title, self.study.layout.count
-        damaged = self.damaged
-        return StudyState(title, count, done, *failed, damaged=damaged, missing=missing)
+        state = Manifest(self.folder).state()
+        return replace(
+            state, running=False, seconds_left=None, damaged=self.damaged, missing=missing
+        )
 
 
 def _plain(facts: Mapping[str, Any]) -> Any:

@@ -9,7 +9,7 @@ import pytest
 from tribodyn.plot.theme.labels import engineering
 from tribodyn.report.numbers import HEADLINES, describe, headlines, number_tables
 from tribodyn.study import SUMMARY
-from tribodyn.study.pipeline.summary_labels import in_a_sentence, in_words
+from tribodyn.study.pipeline.summary_figures import in_a_sentence, in_words
 from tribodyn.units import parse
 
 

@@ -14,7 +14,7 @@ from tribodyn.plot.theme.curves import FROM_ZERO, curves
 from tribodyn.plot.theme.labels import axis_label, displayed, rounded
 from tribodyn.plot.theme.panels import Panel, Row, event_lines, stack, stack_rows
 from tribodyn.plot.theme.style import MUTED, Trace, marked
-from tribodyn.study.pipeline.summary_labels import in_words
+from tribodyn.study.pipeline.summary_figures import in_words
 from tribodyn.study.studies.sweep_result import OF_PARTS, level_keys
 
 if TYPE_CHECKING:

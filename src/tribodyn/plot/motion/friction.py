@@ -22,7 +22,7 @@ from tribodyn.plot.theme.style import (
     heat,
     line,
 )
-from tribodyn.study.pipeline.summary_labels import in_a_sentence
+from tribodyn.study.pipeline.summary_figures import in_a_sentence
 
 if TYPE_CHECKING:
     from tribodyn.cases.papers.friction_claims import FrictionExperiment

@@ -28,8 +28,7 @@ from tribodyn.plot.theme.style import (
     line,
     marked,
 )
-from tribodyn.study.pipeline.summary_figures import figure_of
-from tribodyn.study.pipeline.summary_labels import in_a_sentence, in_words
+from tribodyn.study.pipeline.summary_figures import figure_of, in_a_sentence, in_words
 from tribodyn.units import convert
 
 if TYPE_CHECKING:

@@ -13,8 +13,13 @@ from tribodyn.drawing import FIGURES, bound_figure, figures_of
 from tribodyn.errors import did_you_mean
 from tribodyn.record import Parts, default_table, html_table
 from tribodyn.study.pipeline.store import MOTIONS, write_result
-from tribodyn.study.pipeline.summary_figures import Figures, by_topic, figure_of, summary_rows
-from tribodyn.study.pipeline.summary_labels import in_words
+from tribodyn.study.pipeline.summary_figures import (
+    Figures,
+    by_topic,
+    figure_of,
+    in_words,
+    summary_rows,
+)
 
 if TYPE_CHECKING:
     import pandas

@@ -81,11 +81,11 @@ def write_result(
             facts = {"tables": json.dumps({n: files[id(t)] for n, t in load.tables.items()})}
             if number == 0:  # written last: it has the checksums of the others
                 others = {path.name: _checksum(path) for path in sorted(place.iterdir())}
-                said = [(warning.code, warning.message) for warning in result.warnings]
-                facts |= {"warnings": json.dumps(said), "files": json.dumps(others)}
+                warning_texts = [(warning.code, warning.message) for warning in result.warnings]
+                facts |= {"warnings": json.dumps(warning_texts), "files": json.dumps(others)}
                 facts["version"] = tribodyn.__version__
-            kept = Parts(parts.variables, parts.coordinates, {**parts.attributes, **facts})
-            write_dataset(kept, place / f"{_of_load(number)}{result._MOTION}.nc")
+            stored_parts = Parts(parts.variables, parts.coordinates, {**parts.attributes, **facts})
+            write_dataset(stored_parts, place / f"{_of_load(number)}{result._MOTION}.nc")
         if csv:
             (place / "response.csv").write_text(result.to_csv(), encoding="utf-8")
         write_report_of(result, place / "report.html")
@@ -123,8 +123,8 @@ def read_stored(folder: Path) -> Stored:
         tables = {file: MeshTable.load(folder / file) for file in dict.fromkeys(files.values())}
         loads.append(StoredLoad({name: tables[file] for name, file in files.items()}, data))
     first = loads[0].data.attrs
-    said = tuple(ModelWarning(*each) for each in json.loads(first["warnings"]))
-    return Stored(motion, summary, said, loads)
+    model_warnings = tuple(ModelWarning(*each) for each in json.loads(first["warnings"]))
+    return Stored(motion, summary, model_warnings, loads)
 
 
 def figures_of_load(summary: Mapping[str, float], load: str = "") -> Figures:

@@ -36,8 +36,10 @@ def common_lines(levels: Any, machine: Machine) -> dict[str, Array | tuple[str, 
         bearings.setdefault(name, []).append(number)
     labels = line_labels(machine)
     lines = {line: line.rpartition(" x ") for line in levels.line}
-    kept = {line: f"{labels[mesh]} x {k}" for line, (mesh, _, k) in lines.items() if mesh in labels}
-    places = [levels.line.index(line) for line in kept]
+    stage_lines = {
+        line: f"{labels[mesh]} x {k}" for line, (mesh, _, k) in lines.items() if mesh in labels
+    }
+    places = [levels.line.index(line) for line in stage_lines]
 
     def greatest(values: Array, groups: Mapping[str, list[int]]) -> Array:
         """The greatest of each group, in the last axis."""
@@ -46,7 +48,7 @@ def common_lines(levels: Any, machine: Machine) -> dict[str, Array | tuple[str, 
     return {
         "mesh": tuple(meshes),
         "bearing": tuple(bearings),
-        "line": tuple(kept.values()),
+        "line": tuple(stage_lines.values()),
         "order": levels.order[places],
         "mesh_force": greatest(levels.mesh_force, meshes),
         "transmission_error": greatest(levels.transmission_error, meshes),

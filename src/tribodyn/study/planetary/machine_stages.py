@@ -370,7 +370,7 @@ def stage_figures(result: Any) -> dict[str, dict[str, float]]:
     outward = centrifugal_loads(machine)
     for name, stage in machine.planets.items():
         suns = stage.mesh_names(name)["sun"]
-        rest = np.array([result.static.meshes[mesh].force for mesh in suns])
+        static_force = np.array([result.static.meshes[mesh].force for mesh in suns])
         columns = [motion.mesh.index(mesh) for mesh in suns]
         moving = motion.mean(motion.mesh_force[:, columns])
         pins = [motion.bearing.index(f"{name}_pin{i + 1}") for i in range(stage.count)]
@@ -379,9 +379,9 @@ def stage_figures(result: Any) -> dict[str, dict[str, float]]:
         moved = result.response.fine.position @ sun.T
         figures[name] = {
             **motion_of_stage(machine, name, stage, result.power_flow),
-            "planets_unloaded": float((rest == 0.0).sum()),
+            "planets_unloaded": float((static_force == 0.0).sum()),
             "sun_orbit": float(np.hypot(*motion.rms(moved))),
-            "load_factor": float(rest.max() / rest.mean()),
+            "load_factor": float(static_force.max() / static_force.mean()),
             "dynamic_load_factor": float(moving.max() / moving.mean()),
             "mean_pin_force": float(np.hypot(pin[:, 1], pin[:, 2]).max()),
             "peak_pin_force": float(motion.radial_force[:, pins].max()),

@@ -211,9 +211,9 @@ def plane_data(structure: MachineStructure, name: str) -> dict[str, Any]:
         data[f"{key}_inertia"] = inertia
         data[f"{key}_mass"] = 1.0 / float(mobility[0]) if mobility[0] else inertia
     for role, shaft in shafts.items():
-        held = [b.stiffness_matrix for b in machine.bearings.values() if b.shaft == shaft]
-        data[f"{role}_support"] = sum(float(each[1, 1]) for each in held)
-        turning = sum(float(each[3, 3]) for each in held)
+        supports = [b.stiffness_matrix for b in machine.bearings.values() if b.shaft == shaft]
+        data[f"{role}_support"] = sum(float(each[1, 1]) for each in supports)
+        turning = sum(float(each[3, 3]) for each in supports)
         data[f"{role}_torsional_support"] = turning / float(np.abs(rows[role][2]).max()) ** 2
     return {
         **data,

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
+from itertools import product
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -13,6 +14,7 @@ from tribodyn.study.case.to_models import locate_errors
 from tribodyn.study.pipeline.preview import gearbox_losses_of
 from tribodyn.study.pipeline.tooth_contact import mesh_of, read_speeds, read_torques
 from tribodyn.study.studies.needs import mesh_pair, require
+from tribodyn.study.studies.runner import run_each
 
 if TYPE_CHECKING:
     from tribodyn.losses import GearboxLosses, RigPowerFlow
@@ -77,19 +79,19 @@ def loss_map(
     torques = torques if torque is not None else list(STEPS * torques[0])
     speeds = speeds if speed is not None else list(STEPS * speeds[0])
     turns = case.speed_ratio
-    model_warnings: list[ModelWarning] = []
-    progress.start("Tooth contact", len(torques) * len(speeds))
-    lost = np.empty((len(torques), len(speeds)))
-    for row, load in enumerate(torques):
-        for column, turning in enumerate(speeds):
-            point = {"operation.torque": load * turns, "operation.speed": turning / turns}
-            with locate_errors(case), collected() as point_warnings:
-                at_point = mesh_of(case.replace(point), friction_alone=True)
-                lost[row, column] = at_point.mean_friction_power
-            model_warnings += {warning.code: warning for warning in point_warnings}.values()
-            progress.advance()
-    progress.finish()
-    _warn_once(model_warnings, lost.size)
+
+    def lost_at(point: tuple[float, float]) -> tuple[float, dict[str, ModelWarning]]:
+        keys = {"operation.torque": point[0] * turns, "operation.speed": point[1] / turns}
+        with locate_errors(case), collected() as point_warnings:
+            mesh = mesh_of(case.replace(keys), friction_alone=True)
+        return mesh.mean_friction_power, {each.code: each for each in point_warnings}
+
+    points = list(product(torques, speeds))
+    values, warned = zip(
+        *run_each(lost_at, points, task="Tooth contact", progress=progress), strict=True
+    )
+    _warn_once([each for point in warned for each in point.values()], len(points))
+    lost = np.reshape(values, (len(torques), len(speeds)))
     with locate_errors(case):
         return gearbox_losses_of(case, lost, pinion_torque=torques, pinion_speed=speeds)
 

@@ -293,8 +293,8 @@ def continuation(
     pair = case if case.lumped else None
     with many_motions(case):
         every = partial(moving_at, case, over, name)
-        known = {value: every(value) for value in (first, last)}
-        start, count = known[first], steps or max(each.steps for each in known.values())
+        structures = {value: every(value) for value in (first, last)}
+        start, count = structures[first], steps or max(each.steps for each in structures.values())
         same = over == "operation.speed" and pair is not None and contact_without_speed(pair)
         smooth = None if pair is not None else family_of(every, (first, last), count)
 

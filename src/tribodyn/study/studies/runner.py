@@ -129,9 +129,11 @@ def run_groups(
         pickled = groups.pickled()
         with helpers(len(missing) // _ITEMS_PER_PROCESS if pickled else 0) as workers:
             if pickled and workers.count:
-                rest = [inputs[number] for number in numbers]
-                first_call = rest[0][: groups.warm_up] if rest else None
-                workers.each(compute, pickled, rest, lambda n, v: keep(numbers[n], v), first_call)
+                remaining = [inputs[number] for number in numbers]
+                first_call = remaining[0][: groups.warm_up] if remaining else None
+                workers.each(
+                    compute, pickled, remaining, lambda n, v: keep(numbers[n], v), first_call
+                )
             else:
                 in_threads(lambda n: keep(n, compute(inputs[n])), numbers, os.cpu_count() or 1)
     except KeyboardInterrupt:

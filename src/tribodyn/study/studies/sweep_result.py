@@ -18,8 +18,7 @@ from tribodyn.drawing import draw, write_report_of
 from tribodyn.errors import InputError, TribodynError, did_you_mean
 from tribodyn.record import Parts, Record, html_table, record
 from tribodyn.study.pipeline.save import new_directory
-from tribodyn.study.pipeline.summary_figures import figure_of, in_order
-from tribodyn.study.pipeline.summary_labels import in_words
+from tribodyn.study.pipeline.summary_figures import figure_of, in_order, in_words
 from tribodyn.study.studies.study_axes import Axis
 from tribodyn.types import Array
 from tribodyn.validated_files import csv_text, write_dataset

@@ -312,8 +312,8 @@ def _of_machine(
     """Figures of a machine or a stage at the median of the values, and at each of them."""
     medians = {key: float(np.median(column)) for key, column in values.items()}
     middle = {key: case[key] if key in case.uncertain else medians[key] for key in values}
-    drawn = {key: np.append(middle[key], column) for key, column in values.items()}
-    progress.start("Variants", len(next(iter(drawn.values()))))
-    points = points_of_values(case, drawn, progress)
+    columns = {key: np.append(middle[key], column) for key, column in values.items()}
+    progress.start("Variants", len(next(iter(columns.values()))))
+    points = points_of_values(case, columns, progress)
     progress.finish()
     return ensemble_of(points, values, seed, case.title)

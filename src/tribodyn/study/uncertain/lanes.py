@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from tribodyn.dynamics.equations.program import compile_system
-from tribodyn.errors import Argument, InputError, quiet
+from tribodyn.errors import Argument, ComputationError, InputError, quiet, warn
 from tribodyn.nonlinear.parameter_map import SCALES
 from tribodyn.progress import SILENT, Progress
 from tribodyn.study.case.provenance import effective
@@ -139,6 +139,20 @@ def points_of_values(
         check_spread_key(case, key, column)
     rows = [dict(zip(values, row, strict=True)) for row in zip(*values.values(), strict=True)]
     return points_under(case, rows, progress)
+
+
+def successful(
+    points: list[SweepPoint], noun: str, spread: str, fewest: int, why: str = ""
+) -> list[SweepPoint]:
+    """Points that could be computed; others are reported, an error if there are too few."""
+    good = [point for point in points if not point.failed]
+    if len(good) < len(points):
+        first = next(filter(None, (point.failed for point in points)))
+        what = f"{len(points) - len(good)} of {len(points)} {noun} cannot be computed: {first}"
+        if len(good) < fewest:
+            raise ComputationError(what, "", why, f"Narrow the {spread}, or correct the case")
+        warn("ensemble-failed", f"{what}. They are left out: narrow the {spread}")
+    return good
 
 
 def _factor(case: Case, key: str, column: Array) -> str | None:

@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from tribodyn.drawing import draw
-from tribodyn.errors import ComputationError, warn
 from tribodyn.record import Record, fact, quantity, record
+from tribodyn.study.uncertain.lanes import successful
 from tribodyn.types import Array
 
 if TYPE_CHECKING:
@@ -81,24 +81,18 @@ class MachineEnsemble(Record):
 
 
 def ensemble_of(
-    points: list[SweepPoint], values: Mapping[str, Array], seed: int, title: str
+    points: list[SweepPoint], keys: Iterable[str], seed: int, title: str
 ) -> MachineEnsemble:
     """Ensemble of the points of its variants; the first point is the middle."""
-    failed = [point.failed for point in points if point.failed]
-    good = [number for number, point in enumerate(points[1:]) if not point.failed]
-    if failed:
-        what = f"{len(failed)} of {len(points)} variants cannot be computed: {failed[0]}"
-        if points[0].failed or len(good) < _FEWEST:
-            raise ComputationError(what, "", "", "Narrow the tolerances, or correct the case")
-        warn("ensemble-failed", f"{what}. They are left out: narrow the tolerances")
-    kept = [points[number + 1] for number in good]
-    names = [n for n in points[0].figures if all(n in point.figures for point in kept)]
+    fewest = len(points) if points[0].failed else 1 + _FEWEST
+    middle, *variants = successful(points, "variants", "tolerances", fewest)
+    names = [n for n in middle.figures if all(n in point.figures for point in variants)]
     return MachineEnsemble(
-        input=np.array(list(values)),
-        value=np.stack(list(values.values()), axis=1)[good],
+        input=np.array(list(keys)),
+        value=np.array([point.values for point in variants]),
         figure=np.array(names),
-        middle=np.array([points[0].figures[name] for name in names]),
-        sample=np.array([[point.figures[name] for name in names] for point in kept]),
+        middle=np.array([middle.figures[name] for name in names]),
+        sample=np.array([[point.figures[name] for name in names] for point in variants]),
         seed=seed,
         title=title,
     )

@@ -8,13 +8,13 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from tribodyn.checks import require_whole
-from tribodyn.errors import Argument, ComputationError, InputError, warn
+from tribodyn.errors import Argument, InputError
 from tribodyn.progress import SILENT, Progress
 from tribodyn.study.pipeline.summary_figures import figure_of
 from tribodyn.study.studies.sweep_result import OF_PARTS, level_keys
 from tribodyn.study.uncertain.cycles import steady_cycles
 from tribodyn.study.uncertain.data_set import DataSet
-from tribodyn.study.uncertain.lanes import draw, lanes_of, points_of_values
+from tribodyn.study.uncertain.lanes import draw, lanes_of, points_of_values, successful
 from tribodyn.study.uncertain.vibration_data import data_set
 
 if TYPE_CHECKING:
@@ -135,22 +135,16 @@ def _of_parts(
     progress.start("Operating points", settings["size"])
     points = points_of_values(case, inputs, progress)
     progress.finish()
-    failed = [point.failed for point in points if point.failed]
-    good = np.array([not point.failed for point in points])
-    if failed:
-        what = f"{len(failed)} of {len(points)} operating points cannot be computed: {failed[0]}"
-        if not good.any():
-            raise ComputationError(what, "", "", "Narrow the ranges, or correct the case")
-        warn("ensemble-failed", f"{what}. They are left out: narrow the ranges")
-    figures = [point.figures for point in points if not point.failed]
+    good = successful(points, "operating points", "ranges", 1)
+    figures = [point.figures for point in good]
     names = [name for figure in OF_PARTS for name in level_keys(figures[0], figure)]
     response = {name: np.array([each[name] for each in figures]) for name in names}
     response = _vibrating(response, figures[0])
     if not response:
         what, why = "no level of the parts varies", "Nothing excites a vibration of this case"
         raise InputError(what, Argument("case"), why, "Give its meshes computed teeth")
-    columns = {**{key: column[good] for key, column in inputs.items()}, **response}
-    data = data_set("operating_data", case, columns, settings)
+    columns = dict(zip(inputs, np.array([point.values for point in good]).T, strict=True))
+    data = data_set("operating_data", case, columns | response, settings)
     units = {name: figure_of(name).unit or "1" for name in response}
     return DataSet(data.columns, {**data.units, **units}, data.case, data.settings, data.version)
 

@@ -15,7 +15,7 @@ from tribodyn.record import Record, fact, quantity, record
 from tribodyn.study.pipeline.summary import SUMMARY
 from tribodyn.study.pipeline.summary_figures import in_order, is_figure
 from tribodyn.study.studies.sweep_result import OF_PARTS, SHOWN
-from tribodyn.study.uncertain.lanes import distributions_of, points_of_values
+from tribodyn.study.uncertain.lanes import distributions_of, points_of_values, successful
 from tribodyn.types import Array
 from tribodyn.uncertainty import sobol_indices as indices_of
 
@@ -189,12 +189,10 @@ class _Runs:
         rows = _rows(values)
         new = [row for row in dict.fromkeys(rows) if row not in self.summaries]
         columns = np.array(new).reshape(len(new), len(values)).T
-        drawn = dict(zip(values, columns, strict=True))
-        points = points_of_values(self.case, drawn, self.progress) if new else []
-        if failed := [point for point in points if point.failed]:
-            what = f"{len(failed)} of {len(points)} variants cannot be computed: {failed[0].failed}"
-            why = "Shares of a variance need every variant"
-            raise ComputationError(what, "", why, "Narrow the tolerances")
+        sampled = dict(zip(values, columns, strict=True))
+        points = points_of_values(self.case, sampled, self.progress) if new else []
+        why = "Shares of a variance need every variant"
+        points = successful(points, "variants", "tolerances", len(points), why)
         self.summaries |= {row: point.figures for row, point in zip(new, points, strict=True)}
         return np.arange(len(rows), dtype=float)
 

@@ -101,14 +101,14 @@ def vibration_data(
     require_positive("interval", interval, "s")
     count, rows = require_whole("trajectories", trajectories), require_whole("samples", samples)
     spread = dict((case.uncertain or SPREAD) if distributions is None else distributions)
-    again = rows if over == "time" and redraw else 1
-    sampled = draw(case, spread, count * again, seed=seed)
-    first = {name: values.reshape(count, again)[:, 0] for name, values in sampled.items()}
+    draws = rows if over == "time" and redraw else 1
+    sampled = draw(case, spread, count * draws, seed=seed)
+    first = {name: values.reshape(count, draws)[:, 0] for name, values in sampled.items()}
     lanes = lanes_of(case, first, progress)
     if over == "cycle":
         columns = _over_cycle(lanes, rows, progress)
     else:
-        if again > 1 and (keys := sorted(set(spread) - set(SCALES))):
+        if draws > 1 and (keys := sorted(set(spread) - set(SCALES))):
             what = f"{', '.join(keys)} cannot change while the gears turn"
             why = "A key is that of a whole run"
             remedy = "Give redraw=False, or spread the factors "
@@ -188,11 +188,13 @@ def _over_time(
         )
     marched = _March(case, lanes)
     signals = {name: np.empty((lanes.count, rows)) for name in SIGNALS}
-    again = {name: np.asarray(values).reshape(lanes.count, -1) for name, values in sampled.items()}
+    factors = {
+        name: np.asarray(values).reshape(lanes.count, -1) for name, values in sampled.items()
+    }
     progress.start("Rows over time", rows)
     for row, (cycle_number, place) in enumerate(zip(cycle, at, strict=True)):
-        if again and next(iter(again.values())).shape[1] > 1:
-            marched.change({name: values[:, row] for name, values in again.items()})
+        if factors and next(iter(factors.values())).shape[1] > 1:
+            marched.change({name: values[:, row] for name, values in factors.items()})
         values_by_name = marched.at(
             int(cycle_number), float(np.clip(place - cycle_number, 0.0, 1.0))
         )
