@@ -5,7 +5,8 @@ from __future__ import annotations
 import csv
 import math
 import os
-from collections.abc import Mapping
+from collections.abc import Callable, Iterator, Mapping
+from contextlib import contextmanager
 from dataclasses import dataclass, replace
 from functools import partial
 from pathlib import Path
@@ -159,7 +160,7 @@ def read_study(content: str, name: str = "study.toml") -> Study:
         raise InputError(source.place(faults))
     reader = _Reader(data, Path(name).parent)
     study = reader.study(name)
-    if reader.faults or study is None:
+    if study is None:
         raise InputError(source.place(reader.faults))
     return study
 
@@ -174,6 +175,19 @@ class _Reader:
     def put(self, key: str, problem: Problem) -> None:
         """Record an error of a key."""
         self.faults.append((key, problem))
+
+    @contextmanager
+    def _errors(
+        self, key: str, locate: Callable[[str, Problem], tuple[str, Problem]] | None = None
+    ) -> Iterator[None]:
+        """Record the errors of a block at a key, or where ``locate`` puts them."""
+        try:
+            yield
+        except FaultError as fault:
+            self.put(key, fault.problem)
+        except InputError as error:
+            locate = locate or (lambda key, problem: (key, replace(problem, where="")))
+            self.faults += [locate(key, problem) for problem in error.problems]
 
     def study(self, name: str) -> Study | None:
         """The study, or None after an error."""
@@ -191,11 +205,16 @@ class _Reader:
             self.put("compute", Problem(what, "", why, 'Write compute = "summary"'))
         if self.faults or case is None:
             return None
-        layout, request = self._layout(case, kind, varies[0], top)
+        free = SCALES if kind == "motions" else ()
+        if varies[0] == "axes":
+            layout, request = self._grid(case, free)
+        elif varies[0] == "samples":
+            layout, request = self._sampled(case)
+        else:
+            layout, request = self._listed(case, top["table"], free)
         if layout is None:
             return None
-        chunk = top["chunk"] or KINDS[kind].chunk
-        title = top["title"] or case.title
+        chunk, title = top["chunk"] or KINDS[kind].chunk, top["title"] or case.title
         return Study(title, case, kind, keep, chunk, layout, request, name)
 
     def _values(
@@ -209,56 +228,45 @@ class _Reader:
             why = f"{place} has: {', '.join(allowed)}"
             self.put(path + key, Problem(f"{key}: unknown key", "", why, remedy))
         for key, option in options.items():
-            if key not in data:
-                if option.required:
-                    remedy = f"Add for example {key} = {option.example}"
-                    self.put(path + key, Problem(f"{key} is missing", "", option.meaning, remedy))
-                values[key] = None if option.required else option.default
+            if key in data:
+                with self._errors(path + key):
+                    values[key] = read_value(option, key, data[key])
                 continue
-            try:
-                values[key] = read_value(option, key, data[key])
-            except FaultError as fault:
-                self.put(path + key, fault.problem)
+            values[key] = None if option.required else option.default
+            if option.required:
+                remedy = f"Add for example {key} = {option.example}"
+                self.put(path + key, Problem(f"{key} is missing", "", option.meaning, remedy))
         return values
 
     def _keep(self, kind: str) -> tuple[str, ...]:
         names, figures = self.data.get("keep", []), KINDS[kind].figures
-        known = KINDS[kind].has_figure
+        has_figure = KINDS[kind].has_figure
         if not isinstance(names, list) or not all(isinstance(name, str) for name in names):
             remedy = f'Write for example keep = ["{next(iter(figures))}"]'
             self.put("keep", Problem(f"keep = {written(names)}", "", "It is a list", remedy))
             return ()
-        for name in (name for name in names if not known(name)):
+        for name in (name for name in names if not has_figure(name)):
             remedy = did_you_mean(name, figures, "List the names by: tribodyn run CASE --json")
             gives = ", ".join(figures) if len(figures) <= _LISTED else "the figures of a summary"
             why = f'compute = "{kind}" gives {gives}'
             self.put("keep", Problem(f'there is no figure "{name}"', "", why, remedy))
-        return tuple(in_order(filter(known, names), figures))
+        return tuple(in_order(filter(has_figure, names), figures))
 
     def _case(self, name: str | None) -> Case | MachineCase | None:
         """The case with the values that all members share."""
         if name is None:
             return None
-        try:
-            case: Any = load_case(name if name in all_files() else self.folder / name)
-            changes = self._keys("set", self.data)
-            changed: Case | MachineCase = case.replace(changes, by="set") if changes else case
-            return changed
-        except InputError as error:
-            for problem in error.problems:
-                self._tell("case", problem)
-        except (OSError, ValueError) as error:
-            self.put("case", Problem(f"{written(name)} cannot be read: {error}"))
+        with self._errors("case", _at_key):
+            try:
+                case: Any = load_case(name if name in all_files() else self.folder / name)
+                changes = self._keys("set", self.data)
+                changed: Case | MachineCase = case.replace(changes, by="set") if changes else case
+                return changed
+            except InputError:
+                raise
+            except (OSError, ValueError) as error:
+                raise InputError(f"{written(name)} cannot be read: {error}") from None
         return None
-
-    def _tell(self, key: str, problem: Problem) -> None:
-        """Record an error of a value of the case at its key in the study file, if there is one."""
-        table, _, inner = str(problem.where).partition(" ")
-        if table in _KEYED and inner:
-            self.put(f"{table}.{inner}", replace(problem, where=""))
-        else:
-            what = f"{problem.where}: {problem.what}" if problem.where else problem.what
-            self.put(key, replace(problem, what=what, where=""))
 
     def _keys(self, name: str, data: Mapping[str, Any]) -> dict[str, Any]:
         """Values of a table by dotted key of the case."""
@@ -266,49 +274,23 @@ class _Reader:
         if not isinstance(table, dict):
             self.put(name, Problem(f"{written(table)}", "", "It is a table", f"Write [{name}]"))
             return {}
-        try:
+        with self._errors(name):
             return _flat(table)
-        except InputError as error:
-            self.put(name, error.problems[0])
         return {}
-
-    def _layout(
-        self, case: Case | MachineCase, kind: str, varies: str, top: Mapping[str, Any]
-    ) -> tuple[Layout | None, Mapping[str, Any]]:
-        """The members and their specification."""
-        free = SCALES if kind == "motions" else ()
-        if varies == "axes":
-            return self._grid(case, free)
-        if varies == "samples":
-            return self._sampled(case)
-        return self._listed(case, top["table"], free)
 
     def _grid(self, case: Case | MachineCase, free: Any) -> tuple[Layout | None, Mapping[str, Any]]:
         axes: list[Axis] = []
-        wrong = bool(self.faults)
         for key, entry in self._keys("axes", self.data).items():
-            try:
-                entry = read_values(entry) if isinstance(entry, str) else entry
-                if not isinstance(entry, tuple | list):
-                    raise UnreadError("It is text with a range, or a list of values")
-                axes.append(_factors(key, entry) if key in free else _axis(case, key, entry))
-            except UnreadError as fault:
-                what = f"cannot read {written(entry)}"
-                self.put(f"axes.{key}", Problem(what, "", str(fault), _EXAMPLE))
-                wrong = True
-            except InputError as error:
-                for problem in error.problems:
-                    self.put(f"axes.{key}", replace(problem, where=""))
-                wrong = True
-        wrong = wrong or bool(self.faults)
-        if not axes and not wrong:
+            with self._errors(f"axes.{key}"):
+                values = _ranges(entry)
+                axes.append(_factors(key, values) if key in free else _axis(case, key, values))
+        if not axes and not self.faults:
             self.put("axes", Problem("nothing varies", "", "", _EXAMPLE))
         elif (count := math.prod(len(axis.values) for axis in axes)) > MOST:
             why = f"The limit is {MOST:g}"
             self.put("axes", Problem(f"{count:g} members", "", why, "Use fewer values"))
-            wrong = True
-        grid = Grid(tuple(axes))
-        return (grid if axes and not wrong else None), {"axes": [axis.key for axis in axes]}
+        grid = None if self.faults else Grid(tuple(axes))
+        return grid, {"axes": [axis.key for axis in axes]}
 
     def _sampled(self, case: Case | MachineCase) -> tuple[Layout | None, Mapping[str, Any]]:
         table = self.data["samples"]
@@ -322,42 +304,61 @@ class _Reader:
         if self.faults:
             return None, {}
         options = {"method": values["method"], "seed": values["seed"]}
-        try:
+        with self._errors("samples.over", _at_distribution):
             samples = draw(case, over, values["size"], **options)
-        except InputError as error:
-            for problem in error.problems:
-                key = str(problem.where).removeprefix("distributions ")
-                self.put(f"samples.over.{key}", replace(problem, where=""))
-            return None, {}
-        floats = {key: column.tolist() for key, column in samples.items()}
-        units = {key: _unit(case, key) for key in samples}
-        request = {"over": {key: str(each) for key, each in over.items()}, **options}
-        return listed(floats, units), request
+            columns = {key: column.tolist() for key, column in samples.items()}
+            units = {key: _unit(case, key) for key in samples}
+            request = {"over": {key: str(each) for key, each in over.items()}, **options}
+            return listed(columns, units), request
+        return None, {}
 
     def _listed(
         self, case: Case | MachineCase, path: str | None, free: Any
     ) -> tuple[Layout | None, Mapping[str, Any]]:
         key = "table" if path is not None else "cases"
-        try:
-            rows = _read_csv(self.folder / path) if path is not None else _rows(self.data["cases"])
-        except InputError as error:
-            for problem in error.problems:
-                self._tell(key, problem)
-            return None, {}
-        values: dict[str, list[Any]] = {name: [] for name in rows[0][1]}
-        wrong = False
+        rows: list[tuple[str, dict[str, Any]]] = []
+        with self._errors(key, _at_key):
+            rows = _rows(self.data["cases"]) if path is None else _read_csv(self.folder / path)
+        values: dict[str, list[Any]] = {name: [] for _, row in rows[:1] for name in row}
         for place, row in rows:
             for name, entry in row.items():
-                try:
+                with self._errors(key, partial(_in_row, place)):
                     value = _factor(name, entry) if name in free else _value(case, name, entry)
                     values[name].append(value)
-                except InputError as error:
-                    wrong = True
-                    for problem in error.problems:
-                        located = replace(problem, where="", what=f"{place}: {problem.what}")
-                        self.put(key, located)
+        if self.faults:
+            return None, {}
         units = {name: _unit(case, name) for name in values}
-        return (None if wrong else listed(values, units)), {"cases": sorted(values)}
+        return listed(values, units), {"cases": sorted(values)}
+
+
+def _at_key(key: str, problem: Problem) -> tuple[str, Problem]:
+    """Put an error of a value of the case at its key in the study file, if there is one."""
+    table, _, inner = str(problem.where).partition(" ")
+    if table in _KEYED and inner:
+        return f"{table}.{inner}", replace(problem, where="")
+    what = f"{problem.where}: {problem.what}" if problem.where else problem.what
+    return key, replace(problem, what=what, where="")
+
+
+def _at_distribution(key: str, problem: Problem) -> tuple[str, Problem]:
+    name = str(problem.where).removeprefix("distributions ")
+    return f"{key}.{name}", replace(problem, where="")
+
+
+def _in_row(place: str, key: str, problem: Problem) -> tuple[str, Problem]:
+    return key, replace(problem, where="", what=f"{place}: {problem.what}")
+
+
+def _ranges(entry: Any) -> Any:
+    """Range or list of values of an axis."""
+    try:
+        values = read_values(entry) if isinstance(entry, str) else entry
+        if isinstance(values, tuple | list):
+            return values
+        why = "It is text with a range, or a list of values"
+    except UnreadError as fault:
+        why = str(fault)
+    raise InputError(f"cannot read {written(entry)}", "", why, _EXAMPLE)
 
 
 def _flat(table: Mapping[str, Any], prefix: str = "") -> dict[str, Any]:
