@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from tribodyn.drawing import report_of
+from tribodyn.errors import collected
 from tribodyn.report.figure_blocks import Block, figure_blocks
 from tribodyn.report.numbers import (
     MOST_MODES,
@@ -18,6 +19,7 @@ from tribodyn.report.numbers import (
 )
 from tribodyn.report.provenance import case_text, operating_point, provenance, version
 from tribodyn.study.pipeline.save import write_file
+from tribodyn.study.rating_summary import factor_tables, main_tables, sentences
 
 if TYPE_CHECKING:
     from tribodyn.study import Result
@@ -88,6 +90,7 @@ def render_report(result: Result | MachineResult) -> str:
             modes=modes_of(result),
             most_modes=MOST_MODES,
             compared=compared_friction(summary),
+            rating=_rating(result),
             blocks=blocks,
             warnings=[str(warning) for warning in result.warnings],
             assumptions=result.assumptions,
@@ -108,13 +111,26 @@ def result_content(result: Result | MachineResult) -> dict[str, Any]:
     tables = [["Natural modes", list(modes.head), modes.rows]] if modes.rows else []
     for each in number_tables(summary):
         tables.append(["All numbers", *each.cells(), each.title])
+    rating = _rating(result) or {}
+    for table in (*rating.get("tables", ()), *rating.get("factors", ())):
+        rows = [list(row) for row in table.rows]
+        tables.append(["Load capacity", [*table.head], rows, table.title])
     return {
         "cards": [[card.label, card.value, card.unit] for card in headlines(summary)],
-        "sentences": [],
+        "sentences": rating.get("sentences", []),
         "warnings": [str(warning) for warning in result.warnings],
         "tables": tables,
         "blocks": figure_blocks(result),
     }
+
+
+def _rating(result: Result | MachineResult) -> dict[str, Any] | None:
+    """Sentences, tables and factors of the load capacity; None without ``[rating]``."""
+    with collected():  # the run has raised the warnings of its models
+        if (rating := result.rating) is None:
+            return None
+        factors = [*factor_tables(rating)]
+        return {"sentences": sentences(rating), "tables": main_tables(rating), "factors": factors}
 
 
 def _lines(citations: Any) -> list[str]:

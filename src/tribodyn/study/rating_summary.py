@@ -17,6 +17,12 @@ class RatingTable(NamedTuple):
     head: tuple[str, ...]
     rows: list[tuple[str, ...]]
 
+    @property
+    def numeric(self) -> list[bool]:
+        """Whether each column holds numbers."""
+        columns = zip(*self.rows, strict=True)
+        return [all(not c or c[0] in "+-.0123456789" for c in column) for column in columns]
+
 
 #: What helps against a mode of failure.
 _REMEDIES = {
@@ -94,6 +100,12 @@ def _hours(life: float | None) -> str:
 
 def _number(factors: Mapping[str, Any], name: str) -> str:
     return f"{factors[name]:.4g}{' N' if name == 'P' else ''}" if name in factors else ""
+
+
+def main_tables(rating: CaseRating) -> list[RatingTable]:
+    """Verdict, damage by load case and lives of bearings, as far as there are any."""
+    tables = verdict_table(rating), damage_table(rating), bearing_table(rating)
+    return [each for each in tables if each.rows]
 
 
 def factor_tables(rating: CaseRating) -> Iterator[RatingTable]:

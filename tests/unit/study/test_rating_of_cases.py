@@ -149,6 +149,20 @@ def test_a_case_without_a_rating_has_none():
     assert td.run(case).rating is None
 
 
+def test_report_and_page_have_verdict_and_factors(result):
+    from tribodyn.report.html import render_report, result_content
+
+    page, content = render_report(result), result_content(result)
+    section = page[page.index('id="load-capacity"') : page.index('id="numbers"')]
+    rating = result.rating
+    assert all(f"<td>{v.mode}</td>" in section for v in rating.verdicts())
+    assert "The design is limited by" in section
+    assert "<td>K_Hbeta</td>" in section
+    tables = [rows for topic, _, rows, *_ in content["tables"] if topic == "Load capacity"]
+    assert [row[0] for row in tables[0]] == [v.mode for v in rating.verdicts()]
+    assert content["sentences"]
+
+
 @pytest.mark.parametrize(
     ("tables", "text"),
     [

@@ -10,14 +10,7 @@ from cyclopts import Parameter
 from tribodyn.cli.console import say, say_json, show_warnings, table
 from tribodyn.cli.settings import CaseName, Flag, Settings, changed_any_case
 from tribodyn.errors import InputError, ModelWarning
-from tribodyn.study.rating_summary import (
-    RatingTable,
-    bearing_table,
-    damage_table,
-    factor_tables,
-    sentences,
-    verdict_table,
-)
+from tribodyn.study.rating_summary import RatingTable, factor_tables, main_tables, sentences
 
 
 def rate(
@@ -57,10 +50,7 @@ def rate(
         return
     conditions = rating.ratings[0].standard.conditions if rating.ratings else None
     say(f"{ready.title}{f': ISO 6336:{conditions.edition}' if conditions else ''}")
-    tables = [verdict_table(rating)]
-    tables += [damage_table(rating)] if rating.spectra else []
-    tables += [bearing_table(rating)] if rating.bearings else []
-    for each in tables:
+    for each in main_tables(rating):
         _say(each)
     for line in sentences(rating):
         say(line)
