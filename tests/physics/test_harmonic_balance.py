@@ -200,9 +200,7 @@ def test_a_motion_that_does_not_repeat_names_the_contact():
         motion = harmonic_balance(machine, 0.31, steps=32, tolerance=1e-30)
     assert not motion.converged
     messages = [str(entry.message) for entry in caught]
-    assert any(
-        "Contact 0 has the largest residual" in text or "Contact 1 has" in text for text in messages
-    )
+    assert any("The largest residual is that of contact" in text for text in messages)
     # An integrated period stands in for the motion.
     start = motion.position[0], motion.velocity[0]
     again = simulate(machine, 0.31, 1, start, steps=512, extra_force=motion.extra_force)

@@ -118,7 +118,7 @@ def _clock(machine: Machine, name: str, phases: bool) -> dict[str, Any]:
     mesh = machine.meshes[name]
     single = machine.clock.cycles[name] // mesh.period
     cycles = machine.phases.cycles[name] if phases else single
-    return {"cycles": cycles, "offset": mesh.offset / mesh.period}
+    return {"cycles": cycles, "offset": mesh.offset / mesh.period, "name": f"mesh {name}"}
 
 
 def mesh_contacts(structure: MachineStructure, system: System) -> list[tuple[Contact, ...]]:

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from tribodyn.dynamics import Contact, System
-from tribodyn.dynamics.harmonic.newton import solve_linear
+from tribodyn.dynamics.harmonic.newton import newton, solve_linear
 from tribodyn.dynamics.harmonic.phase_balance import _Points, _Search
 from tribodyn.dynamics.harmonic.phase_response import phase_response
 
@@ -40,7 +40,7 @@ def search_motion(points):
     """Motion with smooth stiffnesses on grids of the meshes."""
     search = search_of(*(lambda x, a=a: 2e8 * (1 + a * np.cos(2 * np.pi * x)) for a in (0.2, 0.3)))
     residual = search.residual(points)
-    solution = search.solve(residual, None, 1e-8)
+    solution = newton(residual, search.linear(residual), 1e-10)
     return phase_response(search.rows, residual, solution.state, points=points.fine)
 
 

@@ -74,6 +74,8 @@ class Contact:
         functions of the phase of that shaft [m]. Harmonic balance takes them.
     turning_cycles : tuple of int or sequence of these
         For each turning error, the turns of its shaft in one period of each phase.
+    name : str
+        Name of the mesh or support in messages; its number by default.
 
     Raises
     ------
@@ -106,6 +108,7 @@ class Contact:
     ramp_gap: Entry = ()
     turning_error: Any = ()
     turning_cycles: Any = ()
+    name: str = ""
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "events", read_events(self.events, "Contact.events"))
@@ -192,6 +195,11 @@ class LoadFriction:
     def __repr__(self) -> str:
         """One line."""
         return f"LoadFriction(load={self.load}, contacts={self.contacts})"
+
+
+def contact_label(system: System, contact: int) -> str:
+    """Name of a contact in messages."""
+    return system.contacts[contact].name or f"contact {contact}"
 
 
 def no_direction(where: str) -> InputError:

@@ -23,7 +23,7 @@ from tribodyn.dynamics.equations.orbit_coordinates import (
     structure_coordinates,
     warn_of_unbalanced,
 )
-from tribodyn.dynamics.equations.system import System
+from tribodyn.dynamics.equations.system import System, contact_label
 from tribodyn.dynamics.harmonic.newton import Residual, Solution, newton, refined
 from tribodyn.dynamics.harmonic.orbit_response import orbit_response, starting_state
 from tribodyn.dynamics.harmonic.phase_balance import phase_balance
@@ -151,7 +151,8 @@ def harmonic_balance(
         (``unstable-orbit``) or depends on the steps by more than 1 % of its size (``step-size``).
         Floquet multipliers are those that ``stability`` asks for. A motion over several phases has
         no period: it is a :class:`PhaseResponse`, which gives the motion at any time, and its
-        spectral lines with the cycles of each phase.
+        spectral lines with the cycles of each phase. Where that is not converged, a time
+        integration from it stands in for it, over the cycles that the warning states.
 
     Raises
     ------
@@ -416,7 +417,7 @@ def _not_converged(residual: Residual, solution: Solution, tolerance: float) -> 
     )
     return (
         f"no periodic motion was found: certified error {solution.error:.2e}, limit "
-        f"{tolerance:.0e}. Contact {worst} has the largest residual, "
-        f"{1e6 * distance[worst]:.3g} um; {reason}. A time integration stands in for "
-        "it. Try another start or simulate over time"
+        f"{tolerance:.0e}. The largest residual is that of "
+        f"{contact_label(contacts.system, worst)}, {1e6 * distance[worst]:.3g} um; {reason}. "
+        "A time integration stands in for it. Try another start or simulate over time"
     )

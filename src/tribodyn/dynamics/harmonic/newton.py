@@ -19,7 +19,7 @@ from tribodyn.types import Array, Mask
 #: Newton steps, halvings of a step, and steps over which the residual may rise.
 _LIMIT, _HALVINGS, _MEMORY = 40, 4, 3
 #: Accuracy of a linear solution and its largest number of vectors.
-_LINEAR, VECTORS = 1e-4, 120
+LINEAR, VECTORS = 1e-4, 120
 #: Residual over the size of the motion that is rounding.
 _ROUNDING = 3e-14
 
@@ -96,7 +96,11 @@ class Residual:
 
         return product
 
-    def correction(self, state: State, accuracy: float = _LINEAR) -> tuple[Array, int]:
+    def accuracy(self, norms: list[float]) -> float:
+        """Accuracy of the linear solution after steps that left residuals of these norms."""
+        return LINEAR
+
+    def correction(self, state: State, accuracy: float = LINEAR) -> tuple[Array, int]:
         """Newton step of a motion, and the number of products that it took."""
         if np.linalg.norm(state.residual, axis=1).max(initial=0.0) <= _ROUNDING * state.size:
             return -state.residual, 0  # rounding: a body that nothing holds would magnify it
@@ -175,7 +179,7 @@ def newton(
     best: tuple[float, State] = (np.inf, state)
     halved = 0
     for count in range(limit + 1):
-        step, products = residual.correction(state)
+        step, products = residual.correction(state, residual.accuracy(norms))
         krylov += products
         error = float(np.linalg.norm(step, axis=1).max(initial=0.0)) / state.size
         if error < 0.5 * best[0]:

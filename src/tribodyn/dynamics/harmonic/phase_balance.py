@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any, NamedTuple
@@ -15,16 +16,21 @@ from tribodyn.dynamics.equations.orbit_coordinates import (
     static_start,
 )
 from tribodyn.dynamics.equations.phases import read_frequencies
-from tribodyn.dynamics.equations.system import System
+from tribodyn.dynamics.equations.system import System, contact_label
 from tribodyn.dynamics.harmonic.meshwise_inverse import MeshwiseInverse
 from tribodyn.dynamics.harmonic.newton import Solution, newton
 from tribodyn.dynamics.harmonic.phase_grid import PhaseGrid
 from tribodyn.dynamics.harmonic.phase_residual import Part, PhaseResidual, parts_of
-from tribodyn.dynamics.harmonic.phase_response import PhaseResponse, phase_response, sum_lines
+from tribodyn.dynamics.harmonic.phase_response import (
+    PhaseResponse,
+    marched_response,
+    phase_response,
+    sum_lines,
+)
 from tribodyn.dynamics.harmonic.phase_rows import PhaseRows
 from tribodyn.dynamics.modal.closed_structure import ClosedStructure
 from tribodyn.dynamics.modal.contact_equations import close_contacts
-from tribodyn.errors import InputError, warn
+from tribodyn.errors import ComputationError, InputError, warn
 from tribodyn.types import Array, Index, Mask
 
 #: Points over a phase of meshes, and over one that only turns shafts, with which an automatic
@@ -105,35 +111,49 @@ class _Search:
             [np.tile(x @ part.structure.along, (part.grid.size, 1)) for part in residual.parts]
         )
 
-    def solve(self, residual: PhaseResidual, y: Array | None, tolerance: float) -> Solution:
-        """Newton's method; where it fails, with damping at the contacts that is removed again."""
-        if y is None:
-            rest = self.still(residual)
-            y = rest + residual.correction(residual.at(rest, closed=True))[0]  # linear equations
-        best = newton(residual, y, 0.01 * tolerance, patience=_PATIENCE)
-        if best.error <= tolerance:
-            return best
+    def linear(self, residual: PhaseResidual) -> Array:
+        """Motion with the contacts that are closed at rest."""
+        rest = self.still(residual)
+        return rest + residual.correction(residual.at(rest, closed=True))[0]
+
+    def damped(self, residual: PhaseResidual, y: Array, tolerance: float) -> Solution:
+        """Newton's method with damping at the contacts that is removed in steps."""
         stiffness = self.rows.means.nodes.stiffness
         critical = stiffness.reshape(-1, stiffness.shape[-1]).mean(axis=0)
         fastest = max(abs(self.rows.rate(mesh.cycles)) for mesh in self.rows.meshes)
         for part in (*_ADDED, 0.0):
             residual.excess = part * critical / (np.pi * fastest)
-            trial = newton(residual, y, 0.01 * tolerance, _TRIES)
-            if trial.error < 1e-3:
-                y = trial.state.y
-        return min(best, trial, key=lambda solution: solution.error)
+            trial = newton(residual, y, 0.01 * tolerance, _TRIES, _PATIENCE)
+            if not trial.error < 1e-3:
+                break
+            y = trial.state.y
+        residual.excess = 0.0 * critical
+        return trial if part == 0.0 else Solution(residual.at(y), np.inf, 0, 0)
 
     def first(
         self, points: _Points, start: PhaseResponse | None, tolerance: float, free: bool
     ) -> tuple[_Points, PhaseResidual, Solution]:
         """Motion on the first grids, with more points if they are free and it is not found."""
+        known = None
         while True:
-            residual = self.residual(points)
-            y = None if start is None else self._resampled(start, residual)
-            solution = self.solve(residual, y, tolerance)
-            if solution.error <= tolerance or not free or max(points.fine) >= _LAST:
+            residual = self.residual(points, known)
+            y = self.linear(residual) if start is None else self._resampled(start, residual)
+            solution = newton(residual, y, 0.01 * tolerance, patience=_PATIENCE)
+            grids = (np.repeat([True, both], len(points.fine)) for both in (True, False))
+            trials = [points.doubled(which) for which in grids]
+            more = min(trials, key=self.size) if self.size(trials[0]) > _MOST else trials[0]
+            last = not free or max(points.fine) >= _LAST or self.size(more) > _MOST
+            if last and not solution.error <= tolerance:
+                damped = self.damped(residual, y, tolerance)
+                solution = min(solution, damped, key=lambda each: each.error)
+            if last or solution.error <= tolerance:
                 return points, residual, solution
-            points = points.doubled(np.ones(2 * len(points.fine), dtype=bool))
+            points, known = more, residual
+
+    def size(self, points: _Points) -> int:
+        """Number of unknowns on grids with so many points over each phase."""
+        widths = [math.prod(points.shape(p.axes)) * p.along.shape[1] for p in self.parts]
+        return sum(widths)
 
     def _resampled(self, start: PhaseResponse, residual: PhaseResidual) -> Array:
         """Motion of the parts of another solution."""
@@ -186,22 +206,44 @@ def phase_balance(
         if steps is not None or step_error <= limit:
             break
         more, before = points.doubled(poor), errors
-        finer = search.residual(more, residual)
-        if finer.size > most:
+        if search.size(more) > most:
             break
+        finer = search.residual(more, residual)
         start_y = residual.refined(solution.state.y, finer)
         better = newton(finer, start_y, 0.01 * tolerance, patience=_PATIENCE)
         if not better.error <= tolerance:
             break
         points, residual, solution = more, finer, better
     converged = bool(solution.error <= tolerance)
-    if not converged:
-        warn("steady-state", _not_converged(residual, solution, tolerance), stacklevel=3)
-    elif step_error > _LIMIT:
-        warn("step-size", _coarse(points, step_error, steps is None), stacklevel=3)
     error = max(solution.error, float(np.finfo(float).eps))
     facts = {"error": error, "step_error": step_error, "converged": converged}
-    return phase_response(search.rows, residual, solution.state, points=points.fine, **facts)
+    motion = phase_response(search.rows, residual, solution.state, points=points.fine, **facts)
+    if not converged:
+        return _integrated(search, residual, solution, tolerance, motion)
+    if step_error > _LIMIT:
+        warn("step-size", _coarse(points, step_error, steps is None), stacklevel=3)
+    return motion
+
+
+def _integrated(
+    search: _Search, residual: PhaseResidual, solution: Solution, tolerance: float,
+    motion: PhaseResponse,
+) -> PhaseResponse:  # fmt: skip
+    """Motion over time from one that is no solution, with a warning."""
+    text = f"{_not_converged(search, residual, solution, tolerance)}. "
+    meshes = search.rows.meshes
+    slowest = min(meshes, key=lambda mesh: abs(search.rows.rate(mesh.cycles)))
+    label = contact_label(search.rows.system, int(slowest.contacts[0]))
+    try:
+        marched = marched_response(motion, search.structure)
+        cycles = abs(int(slowest.cycles @ np.array(marched.turns)))
+        text += f"A time integration over {cycles} cycles of {label}, the slowest, stands in for it"
+    except (ComputationError, InputError) as error:
+        marched = motion
+        text += f"A time integration from it failed as well: {error.problems[0].what}"
+    remedy = "Try another start, more load or more damping"
+    warn("steady-state", f"{text}. {remedy}", stacklevel=4)
+    return marched
 
 
 def _first_points(rows: PhaseRows) -> _Points:
@@ -238,7 +280,9 @@ def _coarse(points: _Points, step_error: float, automatic: bool) -> str:
     )
 
 
-def _not_converged(residual: PhaseResidual, solution: Solution, tolerance: float) -> str:
+def _not_converged(
+    search: _Search, residual: PhaseResidual, solution: Solution, tolerance: float
+) -> str:
     """Message that names the contact with the largest residual."""
     worst: tuple[float, str] = (-1.0, "")
     for part, state in zip(residual.parts, solution.state.parts, strict=True):
@@ -250,12 +294,12 @@ def _not_converged(residual: PhaseResidual, solution: Solution, tolerance: float
         rows, share = part.structure.rows, np.mean(state.law.side[:, number] == 0.0)
         mesh = next(mesh for mesh in rows.meshes if number in mesh.contacts)
         text = (
-            f"Contact {part.structure.members[number]}, whose mesh runs at "
-            f"{abs(rows.rate(mesh.cycles)):.6g} Hz, has the largest residual, "
-            f"{1e6 * distance[number]:.3g} um; it is open for {100.0 * share:.3g} % of the motion"
+            f"{contact_label(search.rows.system, int(part.structure.members[number]))} at "
+            f"{abs(rows.rate(mesh.cycles)):.6g} Hz, {1e6 * distance[number]:.3g} um; it is open "
+            f"for {100.0 * share:.3g} % of the motion"
         )
         worst = max(worst, (float(distance[number]), text))
     return (
         f"no motion over the phases was found: certified error {solution.error:.2e}, limit "
-        f"{tolerance:.0e}. {worst[1]}. Try another start, more steps or more damping"
+        f"{tolerance:.0e}. The largest residual is that of {worst[1]}"
     )

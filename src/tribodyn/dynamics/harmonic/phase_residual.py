@@ -17,6 +17,7 @@ import numpy as np
 from tribodyn.dynamics.equations.system import System
 from tribodyn.dynamics.harmonic.meshwise_inverse import MeshwiseInverse
 from tribodyn.dynamics.harmonic.newton import (
+    LINEAR,
     VECTORS,
     Residual,
     State,
@@ -31,6 +32,8 @@ from tribodyn.types import Array, ComplexArray, Index, Mask
 
 #: Bytes of the vectors of a linear solution, and the fewest of them.
 _MEMORY, _FEWEST = 2**29, 30
+#: Largest part of a residual that a linear solution leaves.
+_LOOSE = 0.1
 
 
 @dataclass(frozen=True, eq=False)
@@ -262,6 +265,12 @@ class PhaseResidual(Residual):
                     total = 2.0 * np.sqrt(np.sum(size[beyond[rows[1:], axis]] ** 2))
                     left_out[axis] = max(left_out[axis], varies * total)
         return left_out / state.size
+
+    def accuracy(self, norms: list[float]) -> float:
+        """Accuracy of the linear solution after steps that left residuals of these norms."""
+        # Source: Eisenstat and Walker (1996), SIAM J. Sci. Comput. 17, 16, choice 2.
+        fell = norms[-1] / norms[-2] if len(norms) > 1 else 1.0
+        return float(np.clip(0.9 * fell**2, LINEAR, _LOOSE))
 
     def nearly(self, state: State) -> Callable[[Array], Array]:
         """Product with an approximate inverse of the derivative: that of each part alone."""

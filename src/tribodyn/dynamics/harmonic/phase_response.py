@@ -9,10 +9,12 @@ import numpy as np
 
 from tribodyn.dynamics.equations.motion import forces
 from tribodyn.dynamics.harmonic.newton import State
+from tribodyn.dynamics.harmonic.phase_march import PhaseMarch
 from tribodyn.dynamics.harmonic.phase_residual import PhaseResidual
 from tribodyn.dynamics.harmonic.phase_rows import PhaseRows
+from tribodyn.dynamics.modal.closed_structure import ClosedStructure
 from tribodyn.dynamics.time.response import FineSamples, Response
-from tribodyn.errors import real_numbers, require_one_of
+from tribodyn.errors import real_numbers, require_between, require_one_of
 from tribodyn.record import record
 from tribodyn.types import Array, ComplexArray, Index, Mask
 
@@ -20,6 +22,8 @@ from tribodyn.types import Array, ComplexArray, Index, Mask
 _ROUNDING = 1e-14
 #: Steps per cycle of the fastest phase in the record, and most steps of it.
 _RECORDED, _MOST = 64, 4096
+#: Logarithm of the decay after which a time integration has settled.
+_SETTLED = 5.0
 #: Numbers that are held at once while lines are summed up.
 _TOGETHER = 2**22
 #: Samples per cycle of the fastest phase along the closed line, most cycles of it, and cycles over
@@ -53,7 +57,9 @@ class PhaseResponse(Response):
     points : tuple of int
         Points over each phase with which the motion was found.
     turns : tuple of int
-        Cycles of each phase along the closed line of ``fine``.
+        Cycles of each phase along the closed line of ``fine``. Where harmonic balance does not
+        converge, ``fine`` is a time integration over so many cycles, after it has settled, and
+        lines are those of these samples.
     """
 
     frequencies: Array = field(default_factory=lambda: np.zeros(0))
@@ -61,6 +67,7 @@ class PhaseResponse(Response):
     turns: tuple[int, ...] = ()
     _rows: PhaseRows = field(default=None, repr=False)  # type: ignore[assignment]
     _all_lines: tuple[Index, ComplexArray] = field(default=None, repr=False)  # type: ignore[assignment]
+    _march: PhaseMarch | None = field(default=None, repr=False)
 
     def at(self, time: Any) -> Response:
         """Motion at given times.
@@ -80,12 +87,16 @@ class PhaseResponse(Response):
         Raises
         ------
         InputError
-            If a time is not a number.
+            If a time is not a number, or negative where the motion is a time integration.
         """
         times = real_numbers("time", time).reshape(-1)
         points = times[:, None] * self.frequencies % 1.0
-        numbers, values = self._all_lines
-        motion = sum_lines(points, numbers, values[:, : 2 * len(self.names)])
+        if self._march is None:
+            numbers, values = self._all_lines
+            motion = sum_lines(points, numbers, values[:, : 2 * len(self.names)])
+        else:
+            require_between("time", times, 0.0, np.inf, "s")
+            motion = self._march.states(times)
         samples = self._samples(points, motion)
         weight = np.full(times.size, 1.0 / max(times.size, 1))
         phase = times * self.frequencies[0]
@@ -233,6 +244,35 @@ def _along(line: tuple[int, ...], response: PhaseResponse) -> FineSamples:
     return FineSamples(phase, time, np.full(count, 1.0 / count), **samples)
 
 
+def marched_response(motion: PhaseResponse, structure: ClosedStructure) -> PhaseResponse:
+    """Integrate over time from the state of a motion at the time zero."""
+    start, line = motion.at([0.0]), np.array(motion.turns)
+    state = np.concatenate((start.position[0], start.velocity[0]))
+    march = PhaseMarch(motion._rows, structure, motion.extra_force, [state])
+    fastest = int(np.argmax(line))
+    span = line[fastest] / motion.frequencies[fastest]
+    count = motion.fine.phase.size
+    phase = np.arange(count) / count
+    time = min(span, _SETTLED / max(structure.decay, 1e-300)) + span * phase
+    samples = motion._samples(time[:, None] * motion.frequencies % 1.0, march.states(time))
+    fine = FineSamples(phase, time, motion.fine.weight, **samples)
+    numbers = motion._all_lines[0]
+    numbers = numbers[np.argsort(np.abs(numbers).sum(axis=1), kind="stable")]
+    first = np.sort(
+        np.unique(np.abs(numbers @ line), return_index=True)[1]
+    )  # each sample line once
+    numbers, orders = numbers[first], numbers[first] @ line
+    turned = np.exp(-2j * np.pi * (numbers @ motion.frequencies) * time[0])[:, None]
+    lines = []
+    for name in _QUANTITIES:
+        spectrum = np.fft.rfft(samples[name], axis=0)[np.abs(orders)] * (2.0 / count)
+        lines.append(np.where((orders < 0)[:, None], spectrum.conj(), spectrum) * turned)
+    values = np.concatenate(lines, axis=1)
+    values[~numbers.any(axis=1)] /= 2.0
+    whole = replace(motion, fine=fine, engine="modal", _all_lines=(numbers, values), _march=march)
+    return _recorded(whole)
+
+
 def phase_response(
     rows: PhaseRows, residual: PhaseResidual, state: State, **facts: Any
 ) -> PhaseResponse:
@@ -260,10 +300,13 @@ def phase_response(
         step_number=structure.rate / fastest, frequencies=frequency, turns=closed_line(frequency),
         _rows=rows, _all_lines=_cosines(numbers, lines, frequency), **none, **facts,
     )  # fmt: skip
-    whole = replace(whole, fine=_along(whole.turns, whole))
-    # The record: a cycle of the slowest phase if that is short enough.
-    fastest = _RECORDED * float(frequency.max())
-    count = min(int(np.ceil(fastest / float(frequency.min()))), _MOST)
+    return _recorded(replace(whole, fine=_along(whole.turns, whole)))
+
+
+def _recorded(whole: PhaseResponse) -> PhaseResponse:
+    """Motion with a record: a cycle of the slowest phase if that is short enough."""
+    fastest = _RECORDED * float(whole.frequencies.max())
+    count = min(int(np.ceil(fastest / float(whole.frequencies.min()))), _MOST)
     history = whole.at(np.arange(count) / fastest)
     names = ("time", "phase", "position", "velocity", "acceleration", "deflection", "contact_force")
     columns = {name: getattr(history, name) for name in names}

@@ -17,7 +17,7 @@ from tribodyn.dynamics._engine.statistics import Statistics
 from tribodyn.dynamics.equations.compiled import Compiled, compile_lanes, sample_system
 from tribodyn.dynamics.equations.motion import forces, has_gap, with_middles
 from tribodyn.dynamics.equations.nodes import Nodes, ramp_count, springs
-from tribodyn.dynamics.equations.system import System
+from tribodyn.dynamics.equations.system import System, contact_label
 from tribodyn.dynamics.modal.closed_structure import ClosedStructure
 from tribodyn.dynamics.modal.contact_equations import close_contacts, with_dead_zone
 from tribodyn.dynamics.modal.modal_kernel import (
@@ -235,9 +235,10 @@ class ModalMotion:
         if not reason:
             return
         at = step / self.compiled.grid.steps / frequency
+        label = contact_label(self.compiled.system, contact)
         causes = {
             UNSETTLED: ("the contact forces of a step do not settle", "Use more steps"),
-            CHATTER: (f"contact {contact} opens and closes without end", "Use more steps"),
+            CHATTER: (f"{label} opens and closes without end", "Use more steps"),
         }
         default = "the motion grows without bounds", "Check damping, friction and the step"
         what, remedy = causes.get(reason, default)
