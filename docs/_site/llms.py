@@ -6,11 +6,14 @@ from typing import Any
 
 from _site.gallery import DOCS, entries
 from tribodyn.cookbook import recipes
+from tribodyn.scope import features, statement
 
-_HEAD = """# tribodyn
+_HEAD = f"""# tribodyn
 
-> Gear tribo-dynamics in Python: from gear and lubricant data to tooth contact, oil film, friction,
-> mesh stiffness, transmission error and the nonlinear vibration of a gear pair.
+> Gear tribo-dynamics in Python: {statement("summary")}.
+> Gears: {statement("gears")}.
+
+Not in this version: {"; ".join(each.text for each in features() if not each.modelled)}.
 
 Start from the recipe nearest to the question: each is a script that runs as it stands and uses
 public names only. `tribodyn cookbook NAME` prints it; `tribodyn explain WORDS` explains any key,

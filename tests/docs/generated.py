@@ -2,6 +2,7 @@
 
 import re
 import sys
+from textwrap import fill, indent
 
 from contents import page as contents_page
 from pages import ROOT
@@ -11,6 +12,7 @@ sys.path.insert(0, str(ROOT / "docs"))
 from _site.names import described, packages
 
 from tribodyn.aliases import RENAMED
+from tribodyn.scope import PROGRAMS, program_table, scope_table, statement
 from tribodyn.study import Case
 from tribodyn.study.case.reference import reference_tables, start_toml
 from tribodyn.study.case.section import Table
@@ -53,6 +55,31 @@ def _needs(text: str) -> str:
     """The page on the command line with the table of studies between its marks."""
     block = f"<!-- needs -->\n{needs_table()}\n<!-- end -->"
     return re.sub(r"<!-- needs -->\n.*?<!-- end -->", lambda _: block, text, flags=re.DOTALL)
+
+
+def _scope(text: str) -> str:
+    """A page with what the table of the scope says between its marks."""
+    texts = {"table": scope_table(), "gears": fill(f"It models {statement('gears')}.", 110)}
+    texts |= {name: program_table(name) for name in PROGRAMS}
+    return re.sub(
+        r"<!-- scope (\w+) -->\n.*?<!-- end -->",
+        lambda mark: f"<!-- scope {mark[1]} -->\n{texts[mark[1]]}\n<!-- end -->",
+        text,
+        flags=re.DOTALL,
+    )
+
+
+def _citation(text: str) -> str:
+    """The abstract of the citation."""
+    abstract = fill(f"{statement('summary').capitalize()}. Gears: {statement('gears')}.", 98)
+    block = f"abstract: >-\n{indent(abstract, '  ')}\nauthors:"
+    return re.sub(r"abstract: >-\n.*?authors:", lambda _: block, text, flags=re.DOTALL)
+
+
+def _description(text: str) -> str:
+    """The description of the package."""
+    line = f'description = "Gear tribo-dynamics: {statement("summary")}"'
+    return re.sub(r'^description = ".*"$', lambda _: line, text, count=1, flags=re.MULTILINE)
 
 
 def _bibliography(text: str) -> str:
@@ -113,7 +140,11 @@ _DEPRECATED = (
 
 #: What writes a page, or a part of it, anew.
 GENERATED = {
-    "README.md": (_start,),
+    "README.md": (_start, _scope),
+    "CITATION.cff": (_citation,),
+    "pyproject.toml": (_description,),
+    "docs/scope.md": (_scope,),
+    **{f"docs/coming-from-{name}.md": (_scope,) for name in PROGRAMS.values()},
     "docs/command-line.md": (_needs,),
     "docs/case-file.md": (_start, _tables),
     "docs/faults.md": (_faults,),

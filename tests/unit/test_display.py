@@ -35,7 +35,7 @@ def public_classes() -> set[type]:
     return {each for each in members if isinstance(each, type)}
 
 
-@pytest.mark.parametrize("name", [*td.cases()])
+@pytest.mark.parametrize("name", [*td.cases(machines=True)])
 def test_cases_are_one_line_and_print_their_table(name: str) -> None:
     case = td.load_case(name)
     assert one_line(case)

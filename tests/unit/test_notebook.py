@@ -33,7 +33,7 @@ def shell(monkeypatch: pytest.MonkeyPatch) -> Shell:
 
 
 def call_of_a_user(script: str) -> None:
-    exec(compile(script, "/home/user/cell.py", "exec"), {"td": td})
+    exec(compile(script, "cell-1.py", "exec"), {"td": td})
 
 
 @pytest.mark.parametrize(
@@ -48,7 +48,7 @@ def test_tracebacks_end_at_the_line_of_the_user(shell: Shell, script: str) -> No
     kind, error, traceback = shell.shown
     while traceback.tb_next is not None:
         traceback = traceback.tb_next
-    assert traceback.tb_frame.f_code.co_filename == "/home/user/cell.py"
+    assert traceback.tb_frame.f_code.co_filename == "cell-1.py"
     assert traceback.tb_lineno == 2
     assert error.__cause__ is None
     assert error.__suppress_context__

@@ -7,6 +7,7 @@ from typing import Annotated, Any, NamedTuple
 from cyclopts import App, Parameter
 
 import tribodyn
+from tribodyn.scope import statement
 from tribodyn.study.studies.needs import help_line
 
 WELCOME = """\
@@ -254,7 +255,7 @@ def make_app() -> App:
     """Build the command line; nothing heavy is imported."""
     app = App(
         name="tribodyn",
-        help="Gear tribo-dynamics: tooth contact, friction, stiffness and vibration.",
+        help=f"Gear tribo-dynamics: {statement('summary')}. Gears: {statement('gears')}.",
         version=tribodyn.__version__,
         version_flags=["--version"],
         suppress_keyboard_interrupt=False,

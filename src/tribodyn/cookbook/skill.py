@@ -6,6 +6,7 @@ from pathlib import Path
 
 from tribodyn.cookbook.recipe import TOPICS, recipes
 from tribodyn.errors import OutputExistsError
+from tribodyn.scope import features, statement
 
 _TEMPLATE = Path(__file__).with_name("SKILL.md")
 _SKILL_NAME = "tribodyn"
@@ -39,8 +40,15 @@ def write_skill(folder: str | Path, *, force: bool = False) -> Path:
     (skill / "scripts").mkdir(parents=True, exist_ok=True)
     for recipe in recipes().values():
         (skill / "scripts" / recipe.file_name).write_text(recipe.script, "utf-8")
-    listing = "\n".join(_listing())
-    text = _TEMPLATE.read_text("utf-8").replace("<!-- recipes -->", listing)
+    texts = {
+        "recipes": "\n".join(_listing()),
+        "summary": statement("summary"),
+        "gears": statement("gears"),
+        "missing": "; ".join(each.text for each in features() if not each.modelled),
+    }
+    text = _TEMPLATE.read_text("utf-8")
+    for mark, listing in texts.items():
+        text = text.replace(f"<!-- {mark} -->", listing)
     (skill / "SKILL.md").write_text(text, "utf-8")
     return skill
 

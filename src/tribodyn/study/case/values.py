@@ -23,6 +23,7 @@ from tribodyn.arguments.quantities import UnitRefusedError, magnitude, quantity_
 from tribodyn.errors import Problem, shortened
 from tribodyn.model import REQUIRED, Option
 from tribodyn.nomenclature import GEARS
+from tribodyn.scope import not_modelled
 from tribodyn.study.case.section import Choice, Section, Table, section_at
 
 
@@ -40,11 +41,12 @@ def _terms() -> dict[str, Term]:
 
     text = files("tribodyn.study.case").joinpath("texts", "words.toml").read_text(encoding="utf-8")
     entries = tomllib.loads(text).values()
-    return {
+    listed = {
         name: Term(**{k: v for k, v in entry.items() if k != "words"})
         for entry in entries
         for name in entry["words"]
     }
+    return listed | {name: Term(text, page="scope.md") for name, text in not_modelled().items()}
 
 
 def find_term(text: str) -> Term | None:
