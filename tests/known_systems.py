@@ -107,3 +107,46 @@ def everything_varies(stiffness=1.0, friction=0.02, more=(), **loads):
         [first, second, *more],
         **loads,
     )
+
+
+def plain_slope(system, frequencies):
+    """Right-hand side over time of a system over phases, as its equations are printed."""
+    inverse, size = np.linalg.inv(system.mass), system.size
+
+    def value(entry, x):
+        result = np.asarray(entry(np.array([x])) if callable(entry) else entry, dtype=float)
+        return result.reshape(-1) if result.size > 1 else float(result.reshape(-1)[0])
+
+    def along(function, cycles, offset, time):
+        rate = float(np.dot(cycles, frequencies))
+        x, step = (rate * time + offset) % 1.0, 1e-5
+        slope = (value(function, x + step) - value(function, x - step)) / (2 * step)
+        return value(function, x), rate * slope
+
+    def slope(time, state):
+        q, v = state[:size], state[size:]
+        force = np.asarray(system.force) - system.stiffness @ q - system.damping @ v
+        contact_forces = []
+        for contact in system.contacts:
+            x = (float(np.dot(contact.cycles, frequencies)) * time + contact.offset) % 1.0
+            errors = [along(contact.error, contact.cycles, contact.offset, time)]
+            errors += [along(term.error, term.cycles, 0.0, time) for term in contact.turning]
+            h, gap = value(contact.direction, x), value(contact.gap, x)
+            d, rate = np.array([h @ q, h @ v]) - np.sum(errors, axis=0)
+            beyond = d - np.sign(d) * gap if abs(d) > gap else 0.0
+            touching = abs(d) > gap or gap == 0.0
+            normal = value(contact.stiffness, x) * beyond
+            normal += value(contact.damping, x) * rate * touching
+            rubbing = 0.0 if contact.friction is None else value(contact.friction, x)
+            force = force - (h + rubbing) * normal
+            contact_forces.append(normal)
+        for friction in system.frictions:
+            total = sum(contact_forces[j] for j in friction.contacts)
+            contact = system.contacts[friction.contacts[0]]
+            x = (float(np.dot(contact.cycles, frequencies)) * time + contact.offset) % 1.0
+            load = min(abs(total) / friction.load, friction.limit)
+            coefficient = np.polyval(np.atleast_1d(value(friction.coefficients, x))[::-1], load)
+            force = force - value(friction.direction, x) * coefficient * total
+        return np.concatenate((v, inverse @ force))
+
+    return slope
