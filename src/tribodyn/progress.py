@@ -80,17 +80,7 @@ def left(seconds: float | None) -> str:
 
 
 class TextProgress:
-    """Progress as text, of computations that take longer than an interval.
-
-    Parameters
-    ----------
-    write : callable
-        Receives each text.
-    interval : float
-        Least time between two texts [s].
-    clock : callable
-        Returns the time [s].
-    """
+    """Progress as text that ``write`` receives, at most once in an interval [s]."""
 
     def __init__(
         self,

@@ -11,7 +11,7 @@ import pytest
 from references.cracked_solid import COMPLIANCE, CRACK_END, FACE
 from references.cracked_tooth import RADII
 from references.gear_compliance import MODULUS, POISSON, outline_of
-from tribodyn.arrays.bspline import bspline_integrals
+from tribodyn.arrays.splines import bspline_integrals
 from tribodyn.errors import InputError
 from tribodyn.faults import Crack, crack_compliance, crack_influence, turning_mesh
 from tribodyn.gear import Material, SpurGear, SpurPair, cylindrical_pair

@@ -18,9 +18,8 @@ from tribodyn.stiffness.fe3d.bevel import (
     _below,
     unit_flank_compliances,
 )
-from tribodyn.stiffness.fe3d.bevel_sector import BevelSector
+from tribodyn.stiffness.fe3d.bevel_sector import BevelSector, hexahedra_stiffness
 from tribodyn.stiffness.fe3d.bevel_tooth import BevelTooth
-from tribodyn.stiffness.fe3d.block import hexahedra_stiffness
 from tribodyn.stiffness.fe3d.sections import elasticity
 
 NU = 0.3

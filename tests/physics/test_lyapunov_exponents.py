@@ -16,8 +16,7 @@ from tribodyn.dynamics import Contact, System, simulate
 from tribodyn.dynamics._engine.blocks import march
 from tribodyn.dynamics.equations.compiled import compile_for
 from tribodyn.errors import ComputationError, InputError
-from tribodyn.nonlinear.lyapunov_carrier import Carrier
-from tribodyn.nonlinear.lyapunov_products import grouped_products
+from tribodyn.nonlinear.lyapunov_carrier import Carrier, grouped_products
 from tribodyn.nonlinear.lyapunov_tangent import TangentTables
 
 TURN = 2.0 * np.pi

@@ -17,7 +17,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from tribodyn.arrays.bspline import bspline_slopes, bspline_values, clamped_knots
+from tribodyn.arrays.splines import bspline_slopes, bspline_values, clamped_knots
 from tribodyn.compiled import announce, source_digest
 from tribodyn.faults.cracked_tooth import (
     SQUARE,

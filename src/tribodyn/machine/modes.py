@@ -6,7 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from tribodyn.arrays.eigenvectors import leading
+from tribodyn.arrays.linear_algebra import leading
 from tribodyn.dynamics.equations.system import Contact, System
 from tribodyn.dynamics.linear.linear_system import linear_system
 from tribodyn.dynamics.linear.natural_modes import frequencies_at, natural_modes

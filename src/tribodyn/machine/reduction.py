@@ -6,7 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from tribodyn.arrays.eigenvectors import groups_of_equal, standard_rotation
+from tribodyn.arrays.linear_algebra import groups_of_equal, standard_rotation
 from tribodyn.errors import InputError, require_between, require_positive
 from tribodyn.machine.machine import Machine
 from tribodyn.machine.static.balance import static_balance

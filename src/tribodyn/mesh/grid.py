@@ -14,9 +14,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from tribodyn.arrays.memo import Memo
-from tribodyn.arrays.monotone import monotone_cubic
-from tribodyn.arrays.products import times
+from tribodyn.arrays.linear_algebra import times
+from tribodyn.arrays.memory import Memo
+from tribodyn.arrays.splines import monotone_cubic
 from tribodyn.errors import InputError
 from tribodyn.types import Array, ComplexArray, Index
 

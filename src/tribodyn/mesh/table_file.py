@@ -13,7 +13,7 @@ from typing import Any, NoReturn, cast
 import numpy as np
 
 from tribodyn import units
-from tribodyn.arrays.monotone import monotone_cubic
+from tribodyn.arrays.splines import monotone_cubic
 from tribodyn.errors import InputError
 from tribodyn.mesh.force_law import at_rest
 from tribodyn.mesh.gears import (

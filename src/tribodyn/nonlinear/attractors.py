@@ -15,7 +15,7 @@ from typing import Any
 
 import numpy as np
 
-from tribodyn.arrays.products import each_times, lengths
+from tribodyn.arrays.linear_algebra import each_times, lengths
 from tribodyn.checkpoints import Checkpoints
 from tribodyn.dynamics._engine.blocks import march, marching_on, on_gpu
 from tribodyn.dynamics.equations.compiled import Compiled

@@ -6,7 +6,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from tribodyn.arrays.products import lengths
+from tribodyn.arrays.linear_algebra import lengths
 from tribodyn.dynamics.equations.compiled import Compiled
 from tribodyn.dynamics.orbits.steady_state import steady_state
 from tribodyn.errors import ComputationError, InputError, quiet

@@ -11,7 +11,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from tribodyn.arrays.products import lengths
+from tribodyn.arrays.linear_algebra import lengths
 from tribodyn.dynamics.equations.compiled import Compiled
 from tribodyn.dynamics.equations.orbit_coordinates import static_start
 from tribodyn.nonlinear.attractors import Motions, settle

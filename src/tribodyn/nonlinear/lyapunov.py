@@ -19,8 +19,13 @@ from tribodyn.dynamics.equations.system import System
 from tribodyn.dynamics.modal.modal_march import compile_motion
 from tribodyn.dynamics.time.simulate import read_force, read_start
 from tribodyn.errors import ComputationError, InputError
-from tribodyn.nonlinear.lyapunov_carrier import ALIGN, Carrier, carrier_of
-from tribodyn.nonlinear.lyapunov_products import floquet_growth, repeats_after
+from tribodyn.nonlinear.lyapunov_carrier import (
+    ALIGN,
+    Carrier,
+    carrier_of,
+    floquet_growth,
+    repeats_after,
+)
 from tribodyn.nonlinear.survey import Verdict
 from tribodyn.progress import SILENT, Progress
 from tribodyn.record import Parts, Record, fact, quantity, record

@@ -15,7 +15,7 @@ from typing import Any, Literal, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from tribodyn.arrays.products import each_times, lengths
+from tribodyn.arrays.linear_algebra import each_times, lengths
 from tribodyn.checkpoints import Checkpoints
 from tribodyn.dynamics._engine.statistics import Statistics
 from tribodyn.dynamics.equations.compiled import Compiled, compile_lanes

@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from tribodyn.arrays.memo import Memo
+from tribodyn.arrays.memory import Memo
 from tribodyn.dynamics.time.response import FineSamples, Response, sample_extremes
 from tribodyn.errors import Argument, InputError, require_positive
 from tribodyn.record import Record, quantity, record

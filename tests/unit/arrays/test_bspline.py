@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from scipy.interpolate import BSpline, make_interp_spline
 
-from tribodyn.arrays.bspline import (
+from tribodyn.arrays.splines import (
     bspline_integrals,
     bspline_slopes,
     bspline_values,

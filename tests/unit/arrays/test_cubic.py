@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from scipy.interpolate import CubicSpline, RectBivariateSpline
 
-from tribodyn.arrays.cubic import spline
+from tribodyn.arrays.splines import spline
 
 
 @pytest.mark.parametrize("count", [4, 5, 40])

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from scipy.stats import ortho_group, unitary_group
 
-from tribodyn.arrays.eigenvectors import groups_of_equal, leading, standard_rotation
+from tribodyn.arrays.linear_algebra import groups_of_equal, leading, standard_rotation
 from tribodyn.dynamics import Contact, System, natural_modes
 from tribodyn.machine import planetary_modes, planetary_plane_model
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from tribodyn.arrays.memo import Memo
+from tribodyn.arrays.memory import Memo
 
 
 def test_a_value_is_computed_once_for_equal_arrays_and_anew_for_others() -> None:

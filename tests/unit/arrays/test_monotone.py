@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from scipy.interpolate import PchipInterpolator
 
-from tribodyn.arrays.monotone import monotone_cubic
+from tribodyn.arrays.splines import monotone_cubic
 
 
 @pytest.mark.parametrize("shape", [(2,), (3,), (40,), (40, 3)])

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from tribodyn.arrays.products import times
+from tribodyn.arrays.linear_algebra import times
 
 RANDOM = np.random.default_rng(3)
 MATRIX = RANDOM.standard_normal((4, 3))

@@ -8,7 +8,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from tribodyn.arrays.bspline import bspline_integrals, bspline_values, interpolation_knots
+from tribodyn.arrays.splines import bspline_integrals, bspline_values, interpolation_knots
 from tribodyn.errors import InputError
 from tribodyn.gear import Material, SpurGear, cylindrical_pair, spur_pair
 from tribodyn.stiffness import LoadedContact, loaded_contact

@@ -12,7 +12,7 @@ from tribodyn import analysis
 from tribodyn.dynamics import Contact, System
 from tribodyn.dynamics.equations.compiled import compile_for
 from tribodyn.errors import ComputationError, InputError
-from tribodyn.nonlinear.start_plane import MESH_PLANE, start_plane
+from tribodyn.nonlinear.basins import MESH_PLANE, start_plane
 
 pytestmark = pytest.mark.filterwarnings("ignore::tribodyn.errors.ModelWarning")
 

@@ -13,8 +13,8 @@ from typing import Any
 
 import numpy as np
 
-from tribodyn.arrays.products import Allocator, times
-from tribodyn.arrays.workspace import Memory, new_memory
+from tribodyn.arrays.linear_algebra import Allocator, times
+from tribodyn.arrays.memory import Memory, new_memory
 from tribodyn.dynamics.equations.entry import Entry, entry_values, varies
 from tribodyn.dynamics.equations.grid import (
     Grid,

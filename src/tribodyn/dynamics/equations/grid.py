@@ -14,7 +14,7 @@ from typing import Any
 
 import numpy as np
 
-from tribodyn.arrays.memo import Memo
+from tribodyn.arrays.memory import Memo
 from tribodyn.dynamics.equations.clock import table_of
 from tribodyn.dynamics.equations.entry import (
     Entry,

@@ -13,7 +13,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from tribodyn.arrays.products import times
+from tribodyn.arrays.linear_algebra import times
 from tribodyn.dynamics.equations.grid import Grid, unrepeated
 from tribodyn.dynamics.equations.nodes import Nodes, friction_force, ramp_force
 from tribodyn.dynamics.equations.system import System

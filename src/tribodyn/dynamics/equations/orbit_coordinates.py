@@ -15,8 +15,8 @@ from typing import NamedTuple, Protocol
 
 import numpy as np
 
-from tribodyn.arrays.memo import Memo
-from tribodyn.arrays.products import each_times
+from tribodyn.arrays.linear_algebra import each_times
+from tribodyn.arrays.memory import Memo
 from tribodyn.dynamics.equations.compiled import Compiled
 from tribodyn.dynamics.equations.grid import unrepeated
 from tribodyn.dynamics.equations.motion import compression

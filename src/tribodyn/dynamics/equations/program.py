@@ -14,8 +14,8 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from tribodyn.arrays.products import Allocator, each_times, times
-from tribodyn.arrays.workspace import Memory, new_memory
+from tribodyn.arrays.linear_algebra import Allocator, each_times, times
+from tribodyn.arrays.memory import Memory, new_memory
 from tribodyn.dynamics.equations.entry import varies as depends_on_phase
 from tribodyn.dynamics.equations.grid import Grid, build_grid, system_events, unrepeated
 from tribodyn.dynamics.equations.nodes import Nodes, coefficient_count, evaluate_nodes

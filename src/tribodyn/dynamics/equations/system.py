@@ -18,7 +18,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from tribodyn.arrays.memo import Memo
+from tribodyn.arrays.memory import Memo
 from tribodyn.checks import require_flag, require_number, require_whole
 from tribodyn.dynamics.equations.clock import on_clock, refuse_several_clocks
 from tribodyn.dynamics.equations.entry import Entry, read_events, varies

@@ -7,7 +7,7 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 from numpy.typing import ArrayLike
 
-from tribodyn.arrays.eigenvectors import groups_of_equal, leading, standard_rotation
+from tribodyn.arrays.linear_algebra import groups_of_equal, leading, standard_rotation
 from tribodyn.dynamics.equations.system import System
 from tribodyn.dynamics.linear.linear_system import LinearSystem, ModePhase, linear_system
 from tribodyn.errors import InputError

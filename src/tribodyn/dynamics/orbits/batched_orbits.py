@@ -15,7 +15,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from tribodyn.arrays.workspace import Memory, new_memory, reused_memory
+from tribodyn.arrays.memory import Memory, new_memory, reused_memory
 from tribodyn.dynamics._engine.blocks import WIDTH
 from tribodyn.dynamics.equations.batched_tables import (
     batch_rates,

@@ -7,7 +7,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from tribodyn.arrays.workspace import Memory
+from tribodyn.arrays.memory import Memory
 from tribodyn.dynamics._engine.blocks import LaneBlock, lane_blocks
 from tribodyn.dynamics._engine.method import RungeKutta4
 from tribodyn.dynamics.equations.grid import Grid

@@ -3,7 +3,6 @@
 | module | what it answers |
 |---|---|
 | ``area_case`` | a point or elliptical contact as the user gives it, its scales and its grid |
-| ``far_field`` | pressure of the oil outside the grid |
 | ``multigrid`` | full multigrid with elastic films by FFT |
 | ``point_contact`` | the solver of points and ellipses |
 | ``solution`` | their result |

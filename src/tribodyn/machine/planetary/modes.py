@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
-from tribodyn.arrays.eigenvectors import standard_rotation
+from tribodyn.arrays.linear_algebra import standard_rotation
 from tribodyn.dynamics.equations.system import System
 from tribodyn.dynamics.linear.natural_modes import natural_modes
 from tribodyn.errors import Argument, InputError

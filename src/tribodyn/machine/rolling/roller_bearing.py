@@ -128,17 +128,7 @@ class RollerBearing(RollingElementBearing):
         )
 
     def lamina_loads(self, displacement: ArrayLike) -> Array:
-        """Load of each lamina of each roller.
-
-        Parameters
-        ----------
-        displacement : (5,) array [m, rad]
-            x, y, z, theta_y, theta_z of the inner ring against the outer ring.
-
-        Returns
-        -------
-        (rollers, laminae) array [N]
-        """
+        """Loads (rollers, laminae) [N] at a displacement (5,) of the inner ring [m, rad]."""
         return self._forces(*self._local(np.asarray(displacement, dtype=float)))
 
     def _forces(self, axial: Array, radial: Array, tilt: Array) -> Array:

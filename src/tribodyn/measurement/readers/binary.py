@@ -228,10 +228,8 @@ def mat(path: Path) -> RecordingData:
         variables = loadmat(path, squeeze_me=True, struct_as_record=True)
     twice = dict.fromkeys(m[1] for w in raised if (m := _DUPLICATE.search(str(w.message))))
     if twice:
-        repeated = ", ".join([*list(twice)[:5], *(["..."] if len(twice) > 5 else [])])
-        message = (
-            f"{path} holds {repeated} twice: the second of each is read; save each variable once"
-        )
+        names = ", ".join([*list(twice)[:5], *(["..."] if len(twice) > 5 else [])])
+        message = f"{path} holds {names} twice: the second of each is read; save each variable once"
         warn("duplicate-variables", message)
     named: dict[str, Any] = {}
     for name, value in variables.items():

@@ -14,7 +14,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from tribodyn.arrays.monotone import monotone_cubic
+from tribodyn.arrays.splines import monotone_cubic
 from tribodyn.ehl.steady.batch import Films
 from tribodyn.mesh.cycle import PairsInContact, PathPositions, lobatto_polynomial
 from tribodyn.types import Array, Index, Mask

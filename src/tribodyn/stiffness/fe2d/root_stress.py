@@ -37,11 +37,8 @@ class RootUnitStress(NamedTuple):
 
 
 def surface_stress(nodes: Array, line: Index, displacement: Array) -> tuple[Array, Array]:
-    """Stress along a free edge of quadratic elements of Young's modulus one, and its points.
-
-    ``displacement`` has the shape (nodes, 2, cases). Only the strain along a free edge of a plane
-    body makes stress there; the edges have it best at their two points of Gauss.
-    """
+    """Stress for Young's modulus one at the Gauss points of a free edge, and these points."""
+    # The displacement has the shape (nodes, 2, cases). Strain along the edge alone makes stress.
     values, slopes = quadratic_shapes(np.polynomial.legendre.leggauss(2)[0])
     edges = line[np.arange(0, line.size - 2, 2)[:, None] + np.arange(3)]
     tangent = np.einsum("ga,eax->egx", slopes, nodes[edges]).reshape(-1, 2)

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from tribodyn.arrays.bspline import bspline_slopes, bspline_values, clamped_knots
+from tribodyn.arrays.splines import bspline_slopes, bspline_values, clamped_knots
 from tribodyn.types import Array
 
 

@@ -7,7 +7,7 @@ from typing import Protocol
 
 import numpy as np
 
-from tribodyn.arrays.bspline import bspline_values, interpolation_knots
+from tribodyn.arrays.splines import bspline_values, interpolation_knots
 from tribodyn.progress import SILENT, Progress
 from tribodyn.stiffness.fe3d.condense import eliminated
 from tribodyn.types import Array, Index

@@ -9,10 +9,14 @@ import numpy as np
 
 from tribodyn.gear import SpurGear
 from tribodyn.stiffness.fe2d.tooth_mesh import MeshSize, SectorMesh, tooth_mesh
-from tribodyn.stiffness.fe3d.annulus import annulus_radii, annulus_stiffness
-from tribodyn.stiffness.fe3d.condense import condensed
+from tribodyn.stiffness.fe3d.condense import condensed, eliminated
 from tribodyn.stiffness.fe3d.face import FaceBasis, FaceSize, face_basis
-from tribodyn.stiffness.fe3d.sections import SectionMatrices, elasticity, element_matrices
+from tribodyn.stiffness.fe3d.sections import (
+    SectionMatrices,
+    annulus_matrices,
+    elasticity,
+    element_matrices,
+)
 from tribodyn.types import Array, Index
 
 #: Least radius of curvature of a load [modules].
@@ -201,3 +205,40 @@ def turned_stiffness(matrix: Array, turn: Array) -> Array:
 def node_freedoms(nodes: Index) -> Index:
     """Freedoms of rows of nodes."""
     return np.reshape(3 * nodes[..., None] + np.arange(3), (*nodes.shape[:-1], -1))
+
+
+#: First radial size over the radius over the order, growth, and largest size over the radius.
+_FIRST, _GROWTH, _LARGEST = 0.6, 1.5, 0.25
+#: Waves times the logarithm of radii beyond which nothing moves.
+_DECAYED = 20.0
+
+
+def annulus_radii(held: float, loaded: float, order: int, first: float) -> Array:
+    """Radii (e, 3) of elements from the held circle to the loaded one, the last size ``first``."""
+    decayed = _DECAYED / max(abs(order), 1)
+    reach = loaded * np.exp(np.clip(np.log(held / loaded), -decayed, decayed))
+    inwards = np.sign(loaded - held)
+    depths, step = [0.0], min(first, _FIRST * loaded / (abs(order) + 1.0))
+    while depths[-1] < abs(loaded - reach):
+        depths.append(depths[-1] + min(step, _LARGEST * (loaded - inwards * depths[-1])))
+        step *= _GROWTH
+    edges = loaded + (reach - loaded) / depths[-1] * np.array(depths[::-1])
+    return np.stack([edges[:-1], 0.5 * (edges[:-1] + edges[1:]), edges[1:]], axis=1)
+
+
+def annulus_stiffness(
+    radii: Array, order: int, twist: float, stress: Array, face: FaceBasis
+) -> Array:
+    """Stiffness (3 z, 3 z) per radian at the loaded circle under loads ``exp(i order angle)``."""
+    matrices = annulus_matrices(radii, order, twist, stress)
+    block = 3 * face.count
+    below = np.zeros((block, block), dtype=complex)
+    for element in range(len(radii)):
+        parts = SectionMatrices(*(part[element] for part in matrices))
+        full = parts.of_solid(face).reshape(3 * block, 3 * block)
+        if element == 0:
+            full = full[block:, block:]
+        else:
+            full[:block, :block] += below
+        below = eliminated(full, full.shape[0] - block)
+    return below

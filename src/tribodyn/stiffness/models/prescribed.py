@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from tribodyn.arrays.monotone import monotone_cubic
+from tribodyn.arrays.splines import monotone_cubic
 from tribodyn.contact import path_of_contact
 from tribodyn.errors import InputError, ModelOption, Problem, require_positive
 from tribodyn.model import number, numbers

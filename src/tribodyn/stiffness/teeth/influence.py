@@ -13,7 +13,7 @@ from functools import cached_property
 import numpy as np
 
 from tribodyn.aliases import with_old_names
-from tribodyn.arrays.cubic import spline
+from tribodyn.arrays.splines import spline
 from tribodyn.errors import Argument, InputError
 from tribodyn.types import Array
 

@@ -8,7 +8,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from tribodyn.arrays.monotone import monotone_cubic
+from tribodyn.arrays.splines import monotone_cubic
 from tribodyn.errors import Argument, InputError, require_positive
 from tribodyn.gear import Material, SpurGear, ToothForm, half_tooth
 from tribodyn.types import Array

@@ -150,7 +150,7 @@ def basins(
         If an argument is out of range.
     """
     from tribodyn.analysis import basins as compute
-    from tribodyn.nonlinear.start_plane import MESH_PLANE
+    from tribodyn.nonlinear.basins import MESH_PLANE
 
     name = mesh_in_motion("basins", case, mesh)
     counts = (points, points) if isinstance(points, int) else tuple(points)
@@ -203,7 +203,7 @@ def _plane_about_equilibrium(
     """Ranges of transmission error and rate about the static equilibrium."""
     from tribodyn.dynamics.equations.orbit_coordinates import static_start
     from tribodyn.dynamics.modal.modal_march import compile_motion
-    from tribodyn.nonlinear.start_plane import MESH_PLANE, start_plane
+    from tribodyn.nonlinear.basins import MESH_PLANE, start_plane
 
     system, frequency, steps, contact = structure
     compiled = compile_motion(system, frequency, steps)
