@@ -85,7 +85,7 @@ LINES: dict[str, int] = {
     "scope": 55,
     "signals": 1754,
     "stiffness": 5161,
-    "study": 17744,
+    "study": 17743,
     "surrogate": 777,
     "types": 7,
     "uncertainty": 290,

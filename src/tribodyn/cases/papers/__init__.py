@@ -1,4 +1,4 @@
-"""Printed tables of the sources, compared with computed figures.
+"""Printed tables and claims of the sources, compared with computed figures.
 
 | Module | What it answers |
 |---|---|
@@ -6,4 +6,6 @@
 | `computations` | which figures of a case can be compared, by name |
 | `jobs` | which computations a page needs, each done once |
 | `comparison` | all rows of some sources, their table and their page |
+| `friction_experiment` | what friction changes in a running pair, all other values held constant |
+| `friction_claims` | verdicts of the experiment on claims of five sources |
 """

@@ -23,6 +23,7 @@ from tribodyn.study.faults.machine_section import defects_of
 from tribodyn.study.faults.motion import turning_motion
 from tribodyn.study.faults.recording import Scatter, recording_of
 from tribodyn.study.faults.sensors import check_sensors, sensors_of
+from tribodyn.study.studies.runner import run_each
 from tribodyn.study.studies.study_axes import Axis, read_axes
 
 if TYPE_CHECKING:
@@ -154,24 +155,24 @@ def record_set(
     sampling = {"sensor": sensor, "duration": duration, "sample_rate": sample_rate}
     card = _card(case, axes, {**sampling, **scatter, "repeats": repeats})
     place = _opened(Path(folder), card)
-    progress.start("Recordings", len(points))
-    units: Mapping[str, str] = {}
-    for number, point in enumerate(points):
+
+    def written(number: int) -> Mapping[str, str]:
         part = place / PART.format(number)
-        if not part.is_file():
-            values = dict(zip((axis.key for axis in axes), point, strict=True))
-            draws = [
-                Scatter(noise, speed_fluctuation, tacho_jitter, _seed(seed, number, draw))
-                for draw in range(repeats)
-            ]
-            try:
-                units = _write(part, case.replace(values), sampling, draws)
-            except InputError:
-                _abandon(place)
-                raise
-        progress.advance()
-    progress.finish()
-    return _finished(place, card, axes, points, units)
+        if part.is_file():
+            return {}
+        values = dict(zip((axis.key for axis in axes), points[number], strict=True))
+        draws = [
+            Scatter(noise, speed_fluctuation, tacho_jitter, _seed(seed, number, draw))
+            for draw in range(repeats)
+        ]
+        return _write(part, case.replace(values), sampling, draws)
+
+    try:
+        units = run_each(written, range(len(points)), task="Recordings", progress=progress)
+    except InputError:
+        _abandon(place)
+        raise
+    return _finished(place, card, axes, points, next(filter(None, units), {}))
 
 
 def _card(
