@@ -46,7 +46,7 @@ from tribodyn.plot.machine.planetary import (
 )
 from tribodyn.plot.machine.power import machine_power
 from tribodyn.plot.machine.side_view import machine
-from tribodyn.plot.mesh.face_maps import face_maps
+from tribodyn.plot.mesh.face_maps import face_maps, rating_maps
 from tribodyn.plot.mesh.lead import lead_optimum
 from tribodyn.plot.mesh.loaded_contact import loaded_contact, loaded_sharing
 from tribodyn.plot.mesh.studies import comprehensive_stiffness, coupling, harris_map, tip_relief_map
@@ -202,6 +202,7 @@ __all__ = [
     "poincare",
     "point_contact",
     "power_flow",
+    "rating_maps",
     "recording",
     "response",
     "result_comparison",

@@ -1,4 +1,4 @@
-"""Load capacity of a mesh from computed fields: load sharing, root stress by finite elements."""
+"""Load capacity of a mesh from computed fields: sharing, root stress, criteria point by point."""
 
 from __future__ import annotations
 
@@ -11,11 +11,14 @@ from tribodyn.errors import collected
 from tribodyn.gear import FlankModification
 from tribodyn.nomenclature import GEARS
 from tribodyn.rating.root_elements import root_stress_by_elements
+from tribodyn.rating.surface.micropitting import heated_film
 
 if TYPE_CHECKING:
+    import xarray
+
     from tribodyn.mesh import MeshTable
     from tribodyn.study.case.case import Case
-    from tribodyn.study.rating import MeshRating
+    from tribodyn.study.rating import MeshRating, RatedMesh
 
 
 def load_sharing_factor(case: Case, table: MeshTable) -> float:
@@ -58,3 +61,78 @@ def root_stresses(rating: MeshRating) -> dict[str, dict[str, float]]:
             "bending_safety": standard.factors["sigma_FG"] / (outer * spread * dynamic),
         }
     return figures
+
+
+#: Keys of pointwise safeties by the names of their maps.
+POINTWISE = {
+    "pitting_safety": "pitting_safety",
+    "scuffing_safety": "scuffing_safety_flash",
+    "micropitting_safety": "micropitting_safety",
+}
+
+
+def rating_maps(rating: MeshRating) -> xarray.Dataset | None:
+    """Criteria at every place of path and face; None without computed teeth."""
+    mesh = rating.rated
+    if mesh is None or (table := mesh.table) is None:
+        return None
+    factors, oil = rating.computed.factors, mesh.common["oil"]
+    outer = factors["K_A"] * factors["K_gamma"] * factors["K_v"]
+    maps = {"pressure": table.over_face("hertz_pressure") * outer**0.5}
+    limit = min(gear.factors["sigma_HG"] for gear in rating.computed.gears.values())
+    maps["pitting_safety"] = limit / maps["pressure"].where(maps["pressure"] > 0.0)
+    if table.flash_temperature is not None and table.friction_coefficient.any():
+        flash = table.over_face("flash_temperature") * outer**0.75
+        mates = 0.5 * (1.0 + max(mesh.meshes_per_turn))
+        bulk = oil.temperature + 0.47 * oil.lubrication_factor * mates * float(flash.mean())
+        maps["friction_coefficient"] = table.over_face("friction_coefficient")
+        maps["contact_temperature"] = bulk + flash
+        if "theta_S" in factors:
+            margin = factors["theta_S"] - oil.temperature
+            maps["scuffing_safety"] = margin / (maps["contact_temperature"] - oil.temperature)
+        film = _film_between_heated_flanks(mesh, flash, factors["theta_MGF"])
+        if film is not None:
+            roughness = sum(mesh.common[role].roughness_ra for role in GEARS) / len(GEARS)
+            maps["specific_film"] = film * outer**-0.13 / roughness
+            if "lambda_GFP" in factors:
+                maps["micropitting_safety"] = maps["specific_film"] / factors["lambda_GFP"]
+    return _dataset(maps)
+
+
+def _film_between_heated_flanks(
+    mesh: RatedMesh, flash: xarray.DataArray, bulk: float
+) -> xarray.DataArray | None:
+    """Film of the run at a bulk temperature [K] and that of the contact; None without a film."""
+    table = mesh.table
+    assert table is not None
+    column = "central_film" if table.minimum_film is None else "minimum_film"
+    if getattr(table, column) is None:
+        return None
+    film = table.over_face(column)
+    if table.film_model == "thermal":  # it has its heat
+        return film
+    oil, stated = mesh.common["oil"], mesh.case.lubricant
+    temperature = oil.temperature if stated is None else stated.gear_temperature or oil.temperature
+    return film * heated_film(oil, temperature, bulk + flash.values, bulk)
+
+
+def _dataset(maps: dict[str, xarray.DataArray]) -> xarray.Dataset:
+    from xarray import Dataset
+
+    units = {"pressure": "Pa", "contact_temperature": "K"}
+    named = {n: each.rename(n).assign_attrs(units=units.get(n, "1")) for n, each in maps.items()}
+    return Dataset(named)
+
+
+def least_safeties(maps: xarray.Dataset | None) -> dict[str, dict[str, float]]:
+    """Least value of each pointwise safety and its place."""
+    least: dict[str, dict[str, float]] = {}
+    for name, key in POINTWISE.items():
+        if maps is not None and name in maps:
+            at = maps[name].where(np.isfinite(maps[name])).argmin(("face_position", "path"))
+            value = maps[name].isel(at)
+            least[key] = {
+                "safety": float(value),
+                **{str(n): float(c) for n, c in value.coords.items()},
+            }
+    return least

@@ -20,6 +20,7 @@ from tribodyn.rating import (
     rate_pair,
     rate_spectrum,
 )
+from tribodyn.record import figure_method
 from tribodyn.study.case.rating_tables import gear_material
 from tribodyn.study.case.to_models import lubricant
 from tribodyn.study.computed_rating import load_sharing_factor
@@ -33,6 +34,8 @@ from tribodyn.study.rated_parts import (
 from tribodyn.types import Array
 
 if TYPE_CHECKING:
+    import xarray
+
     from tribodyn.mesh import MeshTable
     from tribodyn.study.case.case import Case
     from tribodyn.study.pipeline.result import Result
@@ -83,6 +86,30 @@ class MeshRating:
 
         return root_stresses(self)
 
+    @cached_property
+    def maps(self) -> xarray.Dataset | None:
+        """Criteria over path and face from computed pressure, friction, speed and film.
+
+        Pressure, temperature of the contact, film over the mean roughness Ra, and safeties against
+        pitting, scuffing and micropitting, with K_A, K_gamma and the computed K_v; the film is
+        that of the load at rest. None without computed teeth; what the run does not compute, such
+        as a film or friction, has no map.
+        """
+        from tribodyn.study.computed_rating import rating_maps
+
+        return rating_maps(self)
+
+    @cached_property
+    def pointwise(self) -> dict[str, dict[str, float]]:
+        """Least value of each safety of :attr:`maps` with its place on path and face [m]."""
+        from tribodyn.study.computed_rating import least_safeties
+
+        return least_safeties(self.maps)
+
+    plot_maps = figure_method(
+        "rating_maps", "Draw pressure, temperature, film and safeties over path and face."
+    )
+
     def verdicts(self) -> Iterator[Verdict]:
         """Iterate over the safeties of the mesh and of its gears.
 
@@ -106,7 +133,7 @@ class MeshRating:
             ("micropitting", "micropitting_safety", needed.micropitting_safety, "lambda_min"),
         ):
             if (safety := getattr(self.standard, key)) is not None:
-                other = getattr(self.computed, key)
+                other = self.pointwise.get(key, {}).get("safety", getattr(self.computed, key))
                 where = self.standard.factors[factor].branch if factor else "mean of the path"
                 yield Verdict(mode, self.mesh, self.load, safety, required, other, where)
 
@@ -124,6 +151,7 @@ class MeshRating:
             **self.standard.to_dict(),
             "computed_factors": factors,
             "root_stress": self.root_stress,
+            "pointwise": self.pointwise,
             "computed": {
                 name: value
                 for name, value in self.computed.to_dict().items()

@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import json
+import math
 from typing import Any
 
 import pytest
 
 import tribodyn as td
 from tribodyn.cli import main
-from tribodyn.errors import InputError
+from tribodyn.errors import InputError, ModelWarning
 from tribodyn.study import Case
 
 PAIR: dict[str, Any] = {
@@ -133,6 +134,62 @@ def test_root_stress_by_finite_elements_stands_beside_the_standard(result):
         limit = mesh.standard.gears[role].factors["sigma_FG"]
         assert root["bending_safety"] == pytest.approx(limit / root["dynamic_stress"], rel=1e-12)
     assert mesh.to_dict()["root_stress"] == mesh.root_stress
+
+
+@pytest.fixture(scope="module")
+def rubbed() -> Any:
+    tables = {"stiffness": {"model": "analytic"}, "film": {"model": "dowson-higginson"}}
+    with pytest.warns(ModelWarning, match="mixed-lubrication"):
+        return td.run(Case(**changed(PAIR, friction={"law": "iso-6336-22"}, **tables)))
+
+
+def test_criteria_point_by_point_are_those_of_the_standard_with_the_same_loads(rubbed):
+    """Hertz of the whole load at B and D; Dowson-Higginson with the heated oil of the contact."""
+    (mesh,) = rubbed.rating.ratings
+    table, factors, maps = rubbed.mesh, mesh.computed.factors, mesh.maps
+    assert set(mesh.pointwise) == {
+        "pitting_safety", "scuffing_safety_flash", "micropitting_safety",
+    }  # fmt: skip
+    outer = factors["K_A"] * factors["K_gamma"] * factors["K_v"]
+    limit = min(gear.factors["sigma_HG"] for gear in mesh.computed.gears.values())
+    least = limit / (table.hertz_pressure.max() * math.sqrt(outer))
+    assert mesh.pointwise["pitting_safety"]["safety"] == pytest.approx(
+        least, rel=5e-3
+    )  # a jump at B
+    pair = rubbed.case.gear_pair
+    start, end = pair.path_limits
+    inner = [start + pair.base_pitch, end - pair.base_pitch]  # one pair carries between them
+    place = mesh.pointwise["pitting_safety"]["path"]
+    assert min(inner) - 2e-4 < place < max(inner) + 2e-4
+    same = {"K_v": factors["K_v"], "K_Hbeta": 1.0, "K_Halpha": 1.0}
+    speed, torque = mesh.rated.operation
+    even = td.rating.rate_pair(pair, speed=speed, torque=torque, factors=same, **mesh.rated.common)
+    assert mesh.pointwise["micropitting_safety"]["safety"] == pytest.approx(
+        even.micropitting_safety, rel=0.06
+    )
+    at_c = maps["contact_temperature"].interp(path=pair.line_of_action_length / (1 + pair.ratio))
+    bulk = float(maps["contact_temperature"].min())
+    assert float(at_c[0]) == pytest.approx(bulk, abs=1.0)  # nothing slides there
+    hottest = float(maps["contact_temperature"].max())
+    margin = factors["theta_S"] - 353.15
+    assert mesh.pointwise["scuffing_safety_flash"]["safety"] == pytest.approx(
+        margin / (hottest - 353.15), rel=1e-9
+    )
+    by_mode = {verdict.mode: verdict.computed for verdict in mesh.verdicts()}
+    assert by_mode["micropitting"] == mesh.pointwise["micropitting_safety"]["safety"]
+
+
+def test_what_a_run_does_not_compute_has_no_map(result):
+    (mesh,) = result.rating.ratings
+    assert set(mesh.maps) == {"pressure", "pitting_safety"}
+    assert mesh.pointwise.keys() == {"pitting_safety"}
+
+
+def test_maps_of_a_rating_are_drawn(rubbed):
+    (mesh,) = rubbed.rating.ratings
+    drawn = td.plot.rating_maps(mesh)
+    assert len(drawn.data) == 6
+    assert f"{mesh.pointwise['pitting_safety']['safety']:.3g}" in drawn.layout.title.text
 
 
 def test_one_required_safety_holds_for_all_modes():

@@ -104,6 +104,22 @@ def _oil_temperatures(contact: Array, bulk: float) -> tuple[Array, float]:
     return np.minimum(contact, _HOTTEST), min(bulk, _HOTTEST)
 
 
+def sliding_parameter(oil: GearOil, contact: Array, bulk: float) -> tuple[Array, float, float]:
+    """S_GF at contact temperatures [K]; eta_M [Pa s] and alpha_M [1/Pa] at the bulk temperature."""
+    contact, bulk = _oil_temperatures(contact, bulk)
+    eta_m, alpha_m = oil.dynamic_viscosity(bulk), float(pressure_viscosity(oil, np.asarray(bulk)))
+    eta_b = np.array([oil.dynamic_viscosity(temperature) for temperature in contact.ravel()])
+    alpha_b = pressure_viscosity(oil, contact)
+    return alpha_b * eta_b.reshape(contact.shape) / (alpha_m * eta_m), eta_m, alpha_m
+
+
+def heated_film(oil: GearOil, temperature: float, contact: Array, bulk: float) -> Array:
+    """Film between heated flanks over an isothermal one of oil at a temperature [K]."""
+    sliding, eta_m, alpha_m = sliding_parameter(oil, contact, bulk)
+    _, eta, alpha = sliding_parameter(oil, np.array([temperature]), temperature)
+    return np.asarray((alpha_m / alpha) ** 0.6 * (eta_m / eta) ** 0.7 * sliding**0.22)
+
+
 def film_points(load: ScuffingLoad, position: Array) -> FilmPoints:
     """Film at positions G of the path of contact."""
     mesh, pair, oil = load.mesh, load.mesh.pair, load.oil
@@ -118,11 +134,7 @@ def film_points(load: ScuffingLoad, position: Array) -> FilmPoints:
     carried = THERMAL_COEFFICIENT * (carried + np.sqrt(np.abs(motion.wheel_surface_speed)))
     flash = 0.5 * math.sqrt(math.pi) * friction * pressure * np.abs(motion.sliding_speed) / carried
     flash *= np.sqrt(8.0 * radius * pressure / modulus)
-    contact, bulk = _oil_temperatures(bulk + flash, bulk)
-    eta_m = oil.dynamic_viscosity(bulk)
-    alpha_m = pressure_viscosity(oil, np.asarray(bulk))
-    eta_b = np.array([oil.dynamic_viscosity(temperature) for temperature in contact])
-    sliding = pressure_viscosity(oil, contact) * eta_b / (alpha_m * eta_m)
+    sliding, eta_m, alpha_m = sliding_parameter(oil, bulk + flash, bulk)
     speed = eta_m * motion.entrainment_speed / (modulus * radius)
     loaded = 2.0 * np.pi * pressure**2 / modulus**2
     film = 1.6 * radius * (alpha_m * modulus) ** 0.6 * speed**0.7 * loaded**-0.13 * sliding**0.22
