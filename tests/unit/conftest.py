@@ -38,6 +38,8 @@ class Computed(SimpleNamespace):
 class Result(Computed):
     """Stand-in for the result of a run, drawn by the figures of its class."""
 
+    rating = None  # its case has no [rating]
+
 
 def mesh_of(case: Case, film_model: str = "none") -> MeshTable:
     """Mesh table of a case at a coarse step."""
