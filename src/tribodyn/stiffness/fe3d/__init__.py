@@ -5,14 +5,12 @@
 | `provider` | influence of one gear over radius and face, looked up on disk or computed |
 | `sector` | section of one tooth with the top of the body, reduced to its flank and borders |
 | `ring` | all teeth, harmonic by harmonic around the axis |
-| `annulus` | the body below, wave by wave |
 | `sections` | elements of a solid whose section turns along the face |
 | `face` | functions over the face width |
 | `condense` | elimination of freedoms |
 | `bevel` | influence over the flank of a hypoid or spiral bevel gear |
 | `bevel_sector` | section of one of its teeth in hexahedra |
 | `bevel_tooth` | flanks, fillets and cones of that tooth |
-| `block` | stiffness of hexahedra |
 | `local` | local compression that the elements show, which belongs to the contact |
 """
 

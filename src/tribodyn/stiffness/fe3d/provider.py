@@ -70,11 +70,11 @@ def unit_face_compliances(
 
 #: Folders, relative to this one, and modules on which the numbers depend.
 _SOURCES = (
-    (".", "annulus condense face local provider ring sections sector"),
+    (".", "condense face local provider ring sections sector"),
     ("../fe2d", "flank_load ring tooth_mesh"),
     ("../teeth", "tooth_bending tooth_compliance"),
     ("../../gear", "curves tooth_form"),
-    ("../../arrays", "bspline"),
+    ("../../arrays", "splines"),
 )
 
 
