@@ -257,7 +257,7 @@ FIGURES: Registry[Callable[..., Any]] = Registry("figure", "tribodyn.plot")
 
 
 def drawing(
-    name: str,
+    name: str = "",
     *,
     heading: str,
     caption: str | Callable[[Any], str],
@@ -270,7 +270,7 @@ def drawing(
     Parameters
     ----------
     name : str
-        Name in :data:`FIGURES`.
+        Name in :data:`FIGURES`; that of the function by default.
     heading : str
         Heading of the figure in a report.
     caption : str or callable
@@ -294,14 +294,14 @@ def drawing(
     >>> FIGURES["mesh_force"].heading
     'Mesh force'
     """
-    kinds = (of,) if isinstance(of, str) else tuple(of)
+    more = (missing, (of,) if isinstance(of, str) else tuple(of), made_by)
 
     def keep(draw: Callable[..., Any]) -> Drawing:
         argument = next(iter(signature(draw).parameters))
-        figure = Drawing(name, checked(draw), heading, caption, missing, kinds, made_by)
-        text = figure_text(cleandoc(draw.__doc__ or ""), argument, kinds)
+        figure = Drawing(name or draw.__name__, checked(draw), heading, caption, *more)
+        text = figure_text(cleandoc(draw.__doc__ or ""), argument, figure.of)
         object.__setattr__(figure, "__doc__", text)
-        FIGURES.register(name)(figure)
+        FIGURES.register(figure.name)(figure)
         return figure
 
     return keep

@@ -9,26 +9,34 @@ from tribodyn.arguments import guard
 from tribodyn.drawing import FIGURES, Drawing, drawing
 from tribodyn.plot.film.animation import film_along_path, film_over_time
 from tribodyn.plot.film.area_contact import area_friction, finite_line_contact, point_contact
-from tribodyn.plot.film.dynamics import film_response, film_transient
-from tribodyn.plot.film.film_temperature import film_temperature, film_temperature_over_time
+from tribodyn.plot.film.dynamics import (
+    amplitude_reduction,
+    film_response,
+    film_temperature,
+    film_temperature_over_time,
+    film_transient,
+)
 from tribodyn.plot.film.line_contact import compare_line_contacts, line_contact
-from tribodyn.plot.film.lubrication import film_over_operation, lubrication, lubrication_map
-from tribodyn.plot.film.mixed_contact import mixed_line_contact
+from tribodyn.plot.film.lubrication import (
+    film_over_operation,
+    lubrication,
+    lubrication_map,
+    mixed_line_contact,
+)
 from tribodyn.plot.film.path import film, film_pressure, film_stiffness, friction, path_of_contact
-from tribodyn.plot.film.waviness import amplitude_reduction
 from tribodyn.plot.gear.contact_lines import contact_lines
 from tribodyn.plot.gear.flank_modification import flank_modification
 from tribodyn.plot.gear.gear_pair import gear_pair
-from tribodyn.plot.gear.heat import heat_balance
 from tribodyn.plot.gear.hypoid import ease_off, hypoid_blank, hypoid_contact, hypoid_pair
-from tribodyn.plot.gear.hypoid_loaded import hypoid_friction, hypoid_load, hypoid_pressure
-from tribodyn.plot.gear.hypoid_misalignment import hypoid_misalignment
-from tribodyn.plot.gear.hypoid_motion import hypoid_kinematics
-from tribodyn.plot.gear.losses import friction_from_loss, losses, power_flow
+from tribodyn.plot.gear.hypoid_running import (
+    hypoid_friction,
+    hypoid_kinematics,
+    hypoid_load,
+    hypoid_misalignment,
+    hypoid_pressure,
+)
+from tribodyn.plot.gear.losses import friction_from_loss, heat_balance, losses, power_flow
 from tribodyn.plot.gear.mesh_deformation import mesh_deformation
-from tribodyn.plot.machine.forces import machine_forces
-from tribodyn.plot.machine.frequencies import kinematic_frequencies
-from tribodyn.plot.machine.front_view import planetary_modes
 from tribodyn.plot.machine.levels import (
     machine_comparison,
     machine_ensemble,
@@ -37,19 +45,25 @@ from tribodyn.plot.machine.levels import (
     machine_sweep,
 )
 from tribodyn.plot.machine.modes import machine_campbell, machine_modes
-from tribodyn.plot.machine.orders import machine_orders
+from tribodyn.plot.machine.orders import kinematic_frequencies, machine_forces, machine_orders
 from tribodyn.plot.machine.planetary import (
     load_share_statistics,
     planetary_forces,
+    planetary_modes,
     planetary_stage,
     ring_sensor,
 )
 from tribodyn.plot.machine.power import machine_power
 from tribodyn.plot.machine.side_view import machine
 from tribodyn.plot.mesh.face_maps import face_maps, rating_maps
-from tribodyn.plot.mesh.lead import lead_optimum
 from tribodyn.plot.mesh.loaded_contact import loaded_contact, loaded_sharing
-from tribodyn.plot.mesh.studies import comprehensive_stiffness, coupling, harris_map, tip_relief_map
+from tribodyn.plot.mesh.studies import (
+    comprehensive_stiffness,
+    coupling,
+    harris_map,
+    lead_optimum,
+    tip_relief_map,
+)
 from tribodyn.plot.mesh.table import (
     force_law,
     load_sharing,
@@ -76,16 +90,15 @@ from tribodyn.plot.nonlinear.branches import bifurcation, continuation
 from tribodyn.plot.nonlinear.phase_plane import lyapunov, phase_portrait, poincare
 from tribodyn.plot.nonlinear.planes import basins, parameter_map
 from tribodyn.plot.papers import paper_comparison
-from tribodyn.plot.signals.analysed import signal_analysis, signal_history
-from tribodyn.plot.signals.bands import bands
+from tribodyn.plot.signals.bands import bands, ensemble, surrogate
 from tribodyn.plot.signals.diagnosis import (
     cepstrum,
     cyclic_coherence,
     kurtogram,
     narrowband_demodulation,
     sideband_cursors,
+    synchronous_average,
 )
-from tribodyn.plot.signals.learned import ensemble, surrogate
 from tribodyn.plot.signals.lines import (
     harmonic_spectrum,
     order_cut,
@@ -94,11 +107,16 @@ from tribodyn.plot.signals.lines import (
     signal_spectrum,
 )
 from tribodyn.plot.signals.maps import order_map, spectrogram, waterfall
-from tribodyn.plot.signals.recorded import comparison, order_spectrum, recording, tracked_orders
-from tribodyn.plot.signals.revolution import synchronous_average
+from tribodyn.plot.signals.recorded import (
+    comparison,
+    order_spectrum,
+    recording,
+    signal_analysis,
+    signal_history,
+    tracked_orders,
+)
 from tribodyn.plot.signals.run_up import run_up, run_up_map
-from tribodyn.plot.signals.sensitivity import sensitivity
-from tribodyn.plot.signals.uncertain import band, data_set, sobol_indices
+from tribodyn.plot.signals.uncertain import band, data_set, sensitivity, sobol_indices
 
 __all__ = [
     "FIGURES",

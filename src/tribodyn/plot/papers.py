@@ -7,8 +7,9 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from tribodyn.drawing import drawing
+from tribodyn.plot.theme.colors import MUTED, PINION, WHEEL
 from tribodyn.plot.theme.panels import Panel, stack
-from tribodyn.plot.theme.style import MUTED, PINION, WHEEL, Trace
+from tribodyn.plot.theme.style import Trace, dots
 
 if TYPE_CHECKING:
     from tribodyn.cases import PaperComparison
@@ -31,7 +32,6 @@ def _symbol(percent: float) -> str:
 
 
 @drawing(
-    "paper_comparison",
     heading="Printed and computed values",
     caption="Absolute deviation from every printed value, in the order of the tables; "
     "triangles point up where the computed value is larger. Rows that print a word or a range "
@@ -54,23 +54,10 @@ def paper_comparison(comparison: PaperComparison) -> Any:
             f"{row['computed']:.5g}, {each:+.3g} %"
             for (_, row), each in zip(chosen, percent, strict=True)
         ]
-        traces.append(
-            {
-                "type": "scatter",
-                "mode": "markers",
-                "x": np.array([number for number, _ in chosen]),
-                "y": np.maximum(np.abs(percent), _LEAST),
-                "name": verdict,
-                "customdata": names,
-                "hovertemplate": "%{customdata}<extra></extra>",
-                "marker": {
-                    "color": color,
-                    "size": 8,
-                    "symbol": [_symbol(each) for each in percent],
-                },
-                "showlegend": True,
-            }
-        )
+        x, y = np.array([number for number, _ in chosen]), np.maximum(np.abs(percent), _LEAST)
+        marker = {"color": color, "size": 8, "symbol": [_symbol(each) for each in percent]}
+        facts: Trace = {"customdata": names, "hovertemplate": "%{customdata}<extra></extra>"}
+        traces.append(dots(x, y, verdict, marker, showlegend=True, **facts))
     inside = sum(abs(row["deviation"]) <= 0.01 for row in rows)
     return stack(
         f"{inside} of {len(rows)} printed values agree within 1 %",

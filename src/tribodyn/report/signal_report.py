@@ -15,7 +15,7 @@ from tribodyn.drawing import report_of
 from tribodyn.measurement.mean_revolutions import MATE, SHAFT, attempt
 from tribodyn.measurement.modulating_shaft import explain_modulation, modulating_shaft
 from tribodyn.measurement.sideband_cursors import sideband_cursors
-from tribodyn.plot.signals.analysed import visible_frequency
+from tribodyn.plot.signals.recorded import visible_frequency
 from tribodyn.plot.theme.labels import readable, significant
 from tribodyn.progress import SILENT, Progress
 from tribodyn.report.study import write_study_report

@@ -4,7 +4,7 @@ import numpy as np
 
 from known_planetary import LIN_PARKER
 from tribodyn.machine import planetary_modes, planetary_plane_model
-from tribodyn.plot.machine.front_view import COLORS
+from tribodyn.plot.machine.planetary import MODE_COLORS
 
 
 def test_modes_move_the_bodies_of_their_type_only() -> None:
@@ -15,7 +15,7 @@ def test_modes_move_the_bodies_of_their_type_only() -> None:
     sun, ring = slice(0, 73), slice(77, 150)  # their circles in the outline
     assert np.ptp(rest.x[ring]) > 2.0 * np.ptp(rest.x[sun])
     for mode_type, trace in zip(modes.types, moved, strict=True):
-        assert trace.line.color == COLORS[mode_type]
+        assert trace.line.color == MODE_COLORS[mode_type]
         shift = np.abs(np.subtract(trace.x[sun], rest.x[sun])).max()
         shift += np.abs(np.subtract(trace.y[sun], rest.y[sun])).max()
         assert (shift > 1e-3) == (mode_type == "translational")

@@ -20,9 +20,10 @@ from tribodyn.plot.film.line_contact import (
     thinned,
     window,
 )
+from tribodyn.plot.theme.colors import INK, MUTED, PAIR_COLORS, TOTAL
 from tribodyn.plot.theme.labels import axis_label, display_unit, displayed, rounded
 from tribodyn.plot.theme.panels import event_lines
-from tribodyn.plot.theme.style import INK, MUTED, PAIR_COLORS, TOTAL, Trace, figure, player
+from tribodyn.plot.theme.style import Trace, animated, axis, figure, player
 from tribodyn.types import Array
 
 if TYPE_CHECKING:
@@ -62,16 +63,11 @@ class Track:
         """Positions in the display unit."""
         return displayed(self.quantity, self.values)
 
-    def axis(self, share: tuple[float, float], anchor: str) -> dict[str, Any]:
+    def axis(self, share: tuple[float, float], anchor: str) -> Trace:
         """Describe the horizontal axis of a lower panel, on which time runs to the right."""
         backwards = self.values[-1] < self.values[0]
-        return {
-            "domain": share,
-            "anchor": anchor,
-            "title": {"text": axis_label(self.quantity, self.label)},
-            "autorange": "reversed" if backwards else True,
-            "nticks": 6,
-        }
+        label, turn = axis_label(self.quantity, self.label), "reversed" if backwards else True
+        return axis(label, domain=share, anchor=anchor, autorange=turn, nticks=6)
 
 
 def _moving(contact: Any, scales: Scales, place: float, dry: bool) -> list[Trace]:
@@ -98,7 +94,7 @@ def _moving(contact: Any, scales: Scales, place: float, dry: bool) -> list[Trace
     return traces
 
 
-def _on(x: str, y: str) -> dict[str, Any]:
+def _on(x: str, y: str) -> Trace:
     return {"xaxis": x, "yaxis": y, "showlegend": False}
 
 
@@ -109,7 +105,7 @@ def _resting(places: Array, loads: Array, films: Array, unit: str) -> list[Trace
     return [{**load, **_on("x3", "y3")}, {**film, **_on("x4", "y4")}]
 
 
-def _axes(contacts: Sequence[Any], scales: Scales, track: Track) -> dict[str, Any]:
+def _axes(contacts: Sequence[Any], scales: Scales, track: Track) -> Trace:
     ends = scales.position * np.array([window(contact) for contact in contacts])
     # The axes suit the typical contact: an unloaded contact would dwarf the others.
     first = max(ends[:, 0].min(), 1.5 * float(np.median(ends[:, 0])))
@@ -119,39 +115,24 @@ def _axes(contacts: Sequence[Any], scales: Scales, track: Track) -> dict[str, An
     low = {"domain": _TRACK, "rangemode": "tozero", "nticks": 6}
     labels = axis_label("load_per_width", "Load"), f"Thinnest [{scales.film_unit}]"
     return {
-        "xaxis": {
-            "anchor": "y2",
-            "range": [first, ends[:, 1].max()],
-            "title": {"text": scales.position_label},
-        },
-        "yaxis": {
-            "domain": _PRESSURE,
-            "range": [0.0, 1.05 * highest],
-            "title": {"text": scales.pressure_label},
-        },
-        "yaxis2": {"domain": _FILM, "range": [0.0, height], "title": {"text": scales.film_label}},
+        "xaxis": axis(scales.position_label, anchor="y2", range=[first, ends[:, 1].max()]),
+        "yaxis": axis(scales.pressure_label, domain=_PRESSURE, range=[0.0, 1.05 * highest]),
+        "yaxis2": axis(scales.film_label, domain=_FILM, range=[0.0, height]),
         "xaxis3": track.axis((0.0, _HALF), "y3"),
-        "yaxis3": {**low, "anchor": "x3", "title": {"text": labels[0]}},
+        "yaxis3": axis(labels[0], anchor="x3", **low),
         "xaxis4": track.axis((1.0 - _HALF, 1.0), "y4"),
-        "yaxis4": {**low, "anchor": "x4", "title": {"text": labels[1]}},
+        "yaxis4": axis(labels[1], anchor="x4", **low),
     }
 
 
-def _letters(track: Track) -> dict[str, Any]:
+def _letters(track: Track) -> Trace:
     """Lines at the marked positions in both lower panels."""
     places = {name: float(displayed(track.quantity, at)) for name, at in track.letters.items()}
     marks = event_lines(places.items(), share=_HALF)
-    shapes = [
-        {**shape, "xref": axis, "y1": _TRACK[1]}
-        for axis in ("x3", "x4")
-        for shape in marks["shapes"]
-    ]
-    notes = [
-        {**note, "xref": axis, "y": _TRACK[1]}
-        for axis in ("x3", "x4")
-        for note in marks["annotations"]
-    ]
-    return {"shapes": shapes, "annotations": notes}
+    return {
+        kind: [{**mark, "xref": x, end: _TRACK[1]} for x in ("x3", "x4") for mark in marks[kind]]
+        for kind, end in (("shapes", "y1"), ("annotations", "y"))
+    }
 
 
 def animation(
@@ -170,17 +151,14 @@ def animation(
         for contact, place in zip(contacts, places, strict=True)
     ]
     if history is None:
-        loads = displayed(
-            "load_per_width", np.array([contact.load_per_width for contact in contacts])
+        loads, films = (
+            np.array([getattr(contact, name) for contact in contacts])
+            for name in ("load_per_width", "minimum_film")
         )
-        history = (
-            places,
-            loads,
-            scales.film * np.array([contact.minimum_film for contact in contacts]),
-        )
+        history = (places, displayed("load_per_width", loads), scales.film * films)
     labels = [
-        f"{rounded(track.quantity, float(at))}: "
-        f"{rounded('load_per_width', float(contact.load_per_width))}, "
+        f"{rounded(track.quantity, at)}: "
+        f"{rounded('load_per_width', contact.load_per_width)}, "
         f"film {scales.film_text(contact.minimum_film)} at its thinnest"
         for contact, at in zip(contacts, track.values, strict=True)
     ]
@@ -199,10 +177,7 @@ def animation(
             "legend": {"x": 1.0, "xanchor": "right", "y": 1.0, "yanchor": "top"},
         },
     )
-    sketch.frames = [
-        {"name": str(number), "data": data, "traces": moving} for number, data in enumerate(frames)
-    ]
-    return sketch
+    return animated(sketch, frames, moving)
 
 
 def _checked(contacts: Any, path: ArrayLike) -> tuple[list[Any], Array]:
@@ -252,11 +227,8 @@ def film_along_path(
     """
     solutions, positions = _checked(contacts, path)
     scales = contact_scales(solutions, dimensionless=False)[0]
-    letters = (
-        {}
-        if path_of_contact is None
-        else {name: float(getattr(path_of_contact, name)) for name in "ABCDE"}
-    )
+    marked = "" if path_of_contact is None else "ABCDE"
+    letters = {name: float(getattr(path_of_contact, name)) for name in marked}
     films = [solution.minimum_film for solution in solutions]
     return animation(
         f"Along the path the minimum film is {scales.film_text(min(films))} "

@@ -7,10 +7,10 @@ from typing import Any
 import numpy as np
 
 from tribodyn.drawing import drawing
-from tribodyn.plot.theme.curves import curve
+from tribodyn.plot.theme.colors import HEAT, INK, MUTED, TOTAL, WHEEL
 from tribodyn.plot.theme.labels import axis_label, display_unit, displayed, rounded
-from tribodyn.plot.theme.panels import Panel, Row, from_zero, stack, stack_rows
-from tribodyn.plot.theme.style import HEAT, INK, MUTED, TOTAL, WHEEL, Trace, heat, line
+from tribodyn.plot.theme.panels import Panel, Row, curve, from_zero, stack, stack_rows
+from tribodyn.plot.theme.style import Trace, heat, line
 from tribodyn.types import Array
 
 #: Film over the central one up to which the map distinguishes it, and lines of equal film.
@@ -45,7 +45,6 @@ def _levels(heat: Trace, top: float) -> Trace:
 
 
 @drawing(
-    "point_contact",
     heading="Pressure and film of a point contact",
     caption="Pressure and film over the contact, and both along the entrainment through its "
     "middle. The film narrows at the outlet and at the sides; the dashed ellipse and curve are the "
@@ -88,7 +87,6 @@ def point_contact(solution: Any) -> Any:
 
 
 @drawing(
-    "finite_line_contact",
     heading="Pressure and film along a roller",
     caption="Greatest pressure and least film at each position along the roller, and the load per "
     "length. The dashed lines are the infinite line under the load at mid length.",
@@ -121,7 +119,6 @@ def _along(
 
 
 @drawing(
-    "area_friction",
     heading="Friction over the width of a contact",
     caption="Friction force per width and rise of the mean film temperature on each line along the "
     "entrainment, over the position across it.",

@@ -1,4 +1,4 @@
-"""Oil films over time, and their frequency response to small vibration."""
+"""Films over time and frequency, their temperatures, and waves in a contact."""
 
 from __future__ import annotations
 
@@ -9,14 +9,15 @@ from numpy.typing import ArrayLike
 
 from tribodyn.drawing import drawing
 from tribodyn.errors import InputError
-from tribodyn.plot.theme.curves import FROM_ZERO, curves
-from tribodyn.plot.theme.labels import axis_label, displayed, rounded, significant
-from tribodyn.plot.theme.panels import Panel, event_lines, stack
-from tribodyn.plot.theme.style import MUTED, PAIR_COLORS, TOTAL
+from tribodyn.plot.film.line_contact import contact_scales, window
+from tribodyn.plot.theme.colors import MUTED, PAIR_COLORS, PINION, TOTAL
+from tribodyn.plot.theme.labels import axis_label, display_unit, displayed, rounded, significant
+from tribodyn.plot.theme.panels import FROM_ZERO, Panel, curves, event_lines, from_zero, stack
+from tribodyn.plot.theme.style import Trace, heat, line
 from tribodyn.types import Array
 
 if TYPE_CHECKING:
-    from tribodyn.ehl import LineContactSolution, TransientLineContact
+    from tribodyn.ehl import AmplitudeReduction, LineContactSolution, TransientLineContact
 
 #: Range and number of the default frequencies, in multiples of the transit frequency.
 _LOWEST, _HIGHEST, _POINTS = 0.01, 1.0, 81
@@ -95,7 +96,7 @@ def film_response(
         note["x"] = float(np.log10(note["x"]))
     logarithmic = {"type": "log", "exponentformat": "power"}
     crossing = {"zeroline": True, "zerolinecolor": MUTED, "exponentformat": "power"}
-    rows: tuple[tuple[str, str, Any, dict[str, Any]], ...] = (
+    rows: tuple[tuple[str, str, Any, Trace], ...] = (
         ("compliance", "Compliance", compliance, logarithmic),
         ("film_stiffness", "Stiffness", stiffness, crossing),
         ("mesh_damping", "Damping", damping, crossing),
@@ -126,14 +127,13 @@ def _films(transient: TransientLineContact, time: Any, steady: ArrayLike | None)
     return curves("film_thickness", "Film", time, rows, usual_films(transient.central_film))
 
 
-def usual_films(film: Array) -> dict[str, Any]:
+def usual_films(film: Array) -> Trace:
     """Axis of films without the thick film of a contact that carries little load."""
     thick = displayed("film_thickness", film)
     return {"range": [0.0, float(min(1.05 * np.max(thick), 4.0 * np.median(thick)))]}
 
 
 @drawing(
-    "film_transient",
     heading="Film over time",
     caption="Load, film and maximum pressure of a contact over time. Where the load rises, the "
     "squeeze effect delays the thinning of the film.",
@@ -166,11 +166,150 @@ def film_transient(transient: TransientLineContact, *, steady: ArrayLike | None 
         return curves(quantity, label, time, [(label, values, TOTAL)], FROM_ZERO, 0.6)
 
     at = int(np.argmin(transient.minimum_film))
-    least = rounded("film_thickness", float(transient.minimum_film[at]))
+    least = rounded("film_thickness", transient.minimum_film[at])
     panels = [
         panel("load_per_width", "Load", transient.load_per_width),
         _films(transient, time, steady),
         panel("hertz_pressure", "Maximum pressure", transient.maximum_pressure),
     ]
-    title = f"The film is thinnest, {least}, after {rounded('time', float(transient.time[at]))}"
+    title = f"The film is thinnest, {least}, after {rounded('time', transient.time[at])}"
     return stack(title, axis_label("time"), panels)
+
+
+#: Levels of the height, and height over the central film up to which it is drawn.
+_LEVELS, _DRAWN = 61, 1.8
+_ZERO, _UNIT = 273.15, display_unit("temperature")
+
+
+def _in_film(solution: Any, inside: Array, position: Array, film_scale: float) -> Trace:
+    """Temperature over position and height, empty outside of the film."""
+    top = _DRAWN * solution.central_film
+    height = np.linspace(0.0, top, _LEVELS)
+    film, temperature = solution.film[inside], solution.film_temperature[inside] - _ZERO
+    columns = [
+        np.interp(height / thick, solution.height, column, right=np.nan)
+        for thick, column in zip(film, temperature, strict=True)
+    ]
+    bar = {"title": {"text": _UNIT}, "len": 0.5, "y": 0.78, "thickness": 14}
+    values, hover = np.array(columns).T, f"%{{z:.1f}} {_UNIT}"
+    return heat(position, film_scale * height, values, "Inferno", hover, colorbar=bar)
+
+
+def _temperatures(label: str, x: Any, oil: Any, surfaces: Any, name: str) -> Panel:
+    """Panel with the temperatures of the oil and of both surfaces [K]."""
+    rows = (
+        (name, oil, TOTAL),
+        *zip(("surface 1", "surface 2"), surfaces, PAIR_COLORS, strict=False),
+    )
+    traces = [line(x, values - _ZERO, name, color, unit=_UNIT) for name, values, color in rows]
+    return Panel(axis_label("temperature", label), traces)
+
+
+@drawing(
+    heading="Temperature of the film",
+    caption="Temperature in the film over the position and the distance from surface 1, the inlet "
+    "on the left; below it that of both surfaces and of the oil halfway between them.",
+    of="ThermalLineContactSolution",
+    made_by="Call tribodyn.ehl.solve_line_contact with thermal=True, then this figure.",
+)
+def film_temperature(solution: Any) -> Any:
+    """Draw the temperatures of a heated line contact, the inlet on the left.
+
+    Parameters
+    ----------
+    solution : ThermalLineContactSolution
+        What :func:`tribodyn.ehl.solve_line_contact` returns with ``thermal``.
+
+    Returns
+    -------
+    plotly.graph_objects.Figure
+        Temperature in the film, and along both surfaces and halfway between them.
+    """
+    (scales,) = contact_scales([solution], dimensionless=False)
+    first, last = window(solution)
+    inside = (solution.position >= first) & (solution.position <= last)
+    position = scales.position * solution.position[inside]
+    middle = solution.film_temperature[inside, solution.height.size // 2]
+    surfaces = [each[inside] for each in solution.surface_temperatures]
+    hottest = float(solution.film_temperature.max()) - _ZERO
+    surface = float(solution.surface_temperatures.max()) - _ZERO
+    marks = event_lines([("centre", 0.0), ("outlet", scales.position * solution.outlet)])
+    height = axis_label("film_thickness", "Height in the film")
+    panels = [
+        Panel(height, [_in_film(solution, inside, position, scales.film)]),
+        _temperatures("Temperature", position, middle, surfaces, "middle of the film"),
+    ]
+    title = f"The film gets {hottest:.0f} {_UNIT} hot, its surfaces {surface:.0f} {_UNIT}"
+    return stack(title, scales.position_label, panels, marks)
+
+
+@drawing(
+    heading="Temperature of the film over time",
+    caption="Film, highest temperature of the oil and of both surfaces, and friction of a contact "
+    "over time.",
+    of="ThermalTransientLineContact",
+    made_by="Call tribodyn.ehl.solve_transient_line_contact with thermal=True and its plot method.",
+)
+def film_temperature_over_time(transient: Any) -> Any:
+    """Draw film, temperatures and friction of a heated line contact over time.
+
+    Parameters
+    ----------
+    transient : ThermalTransientLineContact
+        What :func:`tribodyn.ehl.solve_transient_line_contact` returns with ``thermal``.
+
+    Returns
+    -------
+    plotly.graph_objects.Figure
+    """
+    time, oil = displayed("time", transient.time), transient.highest_film_temperature
+    surfaces = transient.highest_surface_temperatures
+    films = (
+        ("film in the centre", transient.central_film, PAIR_COLORS[2]),
+        ("film at its thinnest", transient.minimum_film, MUTED),
+    )
+    friction = line(time, transient.friction_coefficient, "friction", TOTAL, unit="1")
+    panels = [
+        curves("film_thickness", "Film", time, films, usual_films(transient.central_film)),
+        _temperatures("Highest temperature", time, oil, surfaces, "oil"),
+        from_zero(axis_label("friction_coefficient", "Friction"), [friction], height=0.6),
+    ]
+    hottest = int(np.argmax(oil))
+    title = (
+        f"The oil gets {oil[hottest] - _ZERO:.0f} {_UNIT} hot, after "
+        f"{rounded('time', transient.time[hottest])}"
+    )
+    return stack(title, axis_label("time"), panels)
+
+
+_TICKS = [0.1, 0.2, 0.5, 1, 2, 5, 10, 20, 50, 100]
+
+
+@drawing(
+    heading="Waves in the contact",
+    caption="Amplitude of waves in the film over that of the free surface. Waves that are short "
+    "against the inlet pass the contact as they are; long ones are flattened by the pressure. The "
+    "curve is the fit of Venner, Couhier, Lubrecht and Greenwood to pure rolling.",
+    of="AmplitudeReduction",
+    made_by="Call tribodyn.ehl.solve_amplitude_reduction(...) and its plot method.",
+)
+def amplitude_reduction(waves: AmplitudeReduction) -> Any:
+    """Draw the amplitude that waves keep over their length, with the curve of pure rolling."""
+    from tribodyn.ehl import amplitude_reduction as fitted
+
+    order = np.argsort(waves.wave_number, kind="stable")
+    number = waves.wave_number[order]
+    curve = np.geomspace(0.5 * number[0], 2.0 * number[-1], 200)
+    per_number = waves.wavelength[0] / waves.wave_number[0]
+    ratio = fitted(curve * per_number, waves.half_width, waves.moes_load, waves.moes_viscosity)
+    solved = line(number, waves.amplitude_ratio[order], "transient solution", PINION)
+    slide = waves.slide_to_roll_ratio
+    motion = "pure rolling" if slide == 0.0 else f"a slide-to-roll ratio of {slide:g}"
+    least, most = (significant(f(waves.amplitude_ratio), 2) for f in (np.min, np.max))
+    title = f"Waves keep {least} to {most} of their amplitude in {motion}"
+    fit = line(curve, ratio, "fit for pure rolling", MUTED, dash="dash")
+    solved |= {"mode": "markers", "marker": {"size": 9}}
+    panel = Panel("Amplitude over that of the free surface", [fit, solved], {"range": [0.0, 1.02]})
+    label = "Wavelength / half width · M<sup>3/4</sup> L<sup>-1/2</sup>"
+    axis = {"type": "log", "tickvals": _TICKS, "tickformat": "~g"}
+    return stack(title, label, [panel], {"xaxis": axis})

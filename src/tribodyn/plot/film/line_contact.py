@@ -11,9 +11,10 @@ from numpy.typing import NDArray
 
 from tribodyn.drawing import drawing
 from tribodyn.errors import InputError
+from tribodyn.plot.theme.colors import INK, MUTED, PAIR_COLORS, TOTAL
 from tribodyn.plot.theme.labels import axis_label, display_unit, displayed, significant
 from tribodyn.plot.theme.panels import Panel, event_lines, from_zero, stack
-from tribodyn.plot.theme.style import INK, MUTED, PAIR_COLORS, TOTAL, Trace, line, marked
+from tribodyn.plot.theme.style import Trace, line, marked
 from tribodyn.types import Array
 
 #: Upper limit of the film axis in multiples of the thickest central film.
@@ -151,7 +152,7 @@ def thinned(solution: Any, points: int) -> NDArray[np.intp]:
     return np.unique(np.concatenate((chosen, turns, [0, n - 1])))
 
 
-def curve(x: Any, y: Any, name: str, color: str, **more: Any) -> dict[str, Any]:
+def curve(x: Any, y: Any, name: str, color: str, **more: Any) -> Trace:
     """Describe a curve with all its points: a pressure spike has few of them."""
     described = line(x, y, name, color, **more)
     described["line"]["simplify"] = False
@@ -160,7 +161,7 @@ def curve(x: Any, y: Any, name: str, color: str, **more: Any) -> dict[str, Any]:
 
 def point(
     x: float, y: float, name: str, color: str, *, unit: str = "", symbol: str = "circle"
-) -> dict[str, Any]:
+) -> Trace:
     """Describe one marked point with a name in the legend."""
     mark = marked([x], [y], name, color, size=9, symbol=symbol, unit=unit)
     return {**mark, "marker": {**mark["marker"], "line": {"color": color, "width": 2}}}
@@ -206,7 +207,6 @@ def _film(solution: Any, scales: Scales) -> list[Trace]:
 
 
 @drawing(
-    "line_contact",
     heading="Pressure and film of a line contact",
     caption="Pressure and film over the position, the inlet on the left. The film narrows before "
     "its outlet; the dashed curve is the pressure of the dry contact under the same load.",
@@ -246,7 +246,7 @@ def line_contact(solution: Any, *, dimensionless: bool = False) -> Any:
     return stack(title, scales.position_label, panels, {"xaxis": axis, **marks})
 
 
-def _style(number: int) -> dict[str, Any]:
+def _style(number: int) -> Trace:
     """Colour and dash of a contact; the first thirty combinations are unique."""
     return {"color": _COLORS[number % len(_COLORS)], "dash": _DASHES[number % len(_DASHES)]}
 

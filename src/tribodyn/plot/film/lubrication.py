@@ -1,4 +1,4 @@
-"""Lubrication regime of a tooth pair along the path and over speed and torque."""
+"""Lubrication regime of a tooth pair, over speed and torque, and of rough line contacts."""
 
 from __future__ import annotations
 
@@ -9,17 +9,17 @@ import numpy as np
 from tribodyn.drawing import Need, drawing
 from tribodyn.ehl.load_share import REGIME_LIMITS, REGIMES
 from tribodyn.plot.film.path import Path, gaps_sentence
-from tribodyn.plot.mesh.cycle import TABLE, roll_angle_positions, sharing_under_load
-from tribodyn.plot.theme.curves import FROM_ZERO, ZERO, curves
+from tribodyn.plot.mesh.cycle import roll_angle_positions, sharing_under_load, table_drawing
+from tribodyn.plot.theme.colors import MUTED, PAIR_COLORS, PINION, TOTAL, WHEEL
 from tribodyn.plot.theme.labels import axis_label, display_unit, displayed, rounded, significant
-from tribodyn.plot.theme.panels import Panel, event_lines, stack
+from tribodyn.plot.theme.panels import FROM_ZERO, ZERO, Panel, curves, event_lines, stack
 from tribodyn.plot.theme.path import roll_label
-from tribodyn.plot.theme.style import MUTED, PAIR_COLORS, PINION, TOTAL, WHEEL, figure, line
+from tribodyn.plot.theme.style import Trace, axis, line, plane_figure
 from tribodyn.types import Array
 
 if TYPE_CHECKING:
+    from tribodyn.ehl import MixedLineContact
     from tribodyn.mesh import FilmOverOperation, MeshTable
-
 
 _OIL, _METAL = PAIR_COLORS[2], WHEEL
 #: Fills of the regimes, from boundary to full film.
@@ -57,31 +57,21 @@ def _missing(mesh: MeshTable) -> str:
     return "This mesh table has no load share of the film (column film_load_share)."
 
 
-@drawing(
-    "lubrication",
-    heading="Lubrication regime",
-    caption=_caption,
-    of=("MeshTable", "Result.mesh"),
-    made_by=TABLE,
-    missing=_missing,
-)
+@table_drawing(heading="Lubrication regime", caption=_caption, missing=_missing)
 def lubrication(mesh: MeshTable) -> Any:
     """Draw film ratio, load share and the parts of the friction force over the roll angle."""
     path = Path(mesh)
     ratio, share = path.under_load("film_ratio"), path.under_load("film_load_share")
     low = min(_RATIO_RANGE[0], 0.8 * np.nanmin(ratio))
     high = max(_RATIO_RANGE[1], 1.2 * np.nanmax(ratio))
-    axis = {
-        "type": "log",
-        "range": [float(np.log10(low)), float(np.log10(high))],
-        "tickvals": RATIO_TICKS,
-    }
+    ends = [float(np.log10(low)), float(np.log10(high))]
+    ratios = {"type": "log", "range": ends, "tickvals": RATIO_TICKS}
     shares = [
         line(path.angle, share, "oil film", _OIL),
         line(path.angle, 1.0 - share, "asperities", _METAL, dash="dash"),
     ]
     panels = [
-        Panel(axis_label("film_ratio"), [line(path.angle, ratio, "film ratio", TOTAL)], axis),
+        Panel(axis_label("film_ratio"), [line(path.angle, ratio, "film ratio", TOTAL)], ratios),
         Panel("Share of the load", shares, {"range": [0.0, 1.02]}),
     ]
     if mesh.asperity_friction_coefficient is not None:
@@ -122,7 +112,7 @@ def _edges(low: float, high: float) -> list[tuple[float, float]]:
     return [(low, inner[0]), (inner[0], inner[1]), (inner[1], high)]
 
 
-def _bands(low: float, high: float) -> list[dict[str, Any]]:
+def _bands(low: float, high: float) -> list[Trace]:
     """Fill the regimes behind the first panel."""
     place = {"type": "rect", "xref": "paper", "x0": 0, "x1": 1, "yref": "y", "layer": "below"}
     return [
@@ -131,7 +121,7 @@ def _bands(low: float, high: float) -> list[dict[str, Any]]:
     ]
 
 
-def _names(low: float, high: float) -> list[dict[str, Any]]:
+def _names(low: float, high: float) -> list[Trace]:
     """Label the regimes at the right end of the first panel."""
     common = {"xref": "paper", "x": 0.995, "xanchor": "right", "yref": "y", "showarrow": False}
     return [
@@ -153,7 +143,6 @@ _has_film = Need("central_film minimum_film", "The film model gives no film thic
 
 
 @drawing(
-    "film_over_operation",
     heading="Oil film over speed and torque",
     caption=lambda films: (
         f"The {'least central' if films.minimum_film is None else 'minimum'} film {_where(films)}, "
@@ -171,9 +160,9 @@ def film_over_operation(films: FilmOverOperation) -> Any:
     film = np.nanmin(np.asarray(least_films), axis=2)
     row, column = np.unravel_index(int(np.argmin(film)), film.shape)
     title = (
-        f"The oil film is thinnest with {rounded('film_thickness', float(film.min()))} at "
-        f"{rounded('torque', float(films.pinion_torque[row]))} and "
-        f"{rounded('pinion_speed', float(films.pinion_speed[column]))} of the pinion"
+        f"The oil film is thinnest with {rounded('film_thickness', film.min())} at "
+        f"{rounded('torque', films.pinion_torque[row])} and "
+        f"{rounded('pinion_speed', films.pinion_speed[column])} of the pinion"
     )
     panels = [_over_speed(films, film, "film_thickness", 1.4)]
     if films.film_ratio is not None:
@@ -183,7 +172,7 @@ def film_over_operation(films: FilmOverOperation) -> Any:
 
 def _over_speed(films: FilmOverOperation, values: Any, quantity: str, height: float = 1.0) -> Panel:
     rows = [
-        (rounded("torque", float(torque)), values[number], _COLORS[number % len(_COLORS)],
+        (rounded("torque", torque), values[number], _COLORS[number % len(_COLORS)],
          _DASHES[number // len(_COLORS) % 3])
         for number, torque in enumerate(films.pinion_torque)
     ]  # fmt: skip
@@ -197,7 +186,6 @@ def _no_map(films: FilmOverOperation) -> str:
 
 
 @drawing(
-    "lubrication_map",
     heading="Lubrication regime over speed and torque",
     caption=lambda films: (
         f"The least film ratio {_where(films)}, over speed and torque of the "
@@ -227,27 +215,55 @@ def lubrication_map(films: FilmOverOperation) -> Any:
         ("][", [low, high], f"{low:g} to {high:g}"),
         ("<", high, f"from {high:g} on"),
     ]
+    edge: Trace = {"line": {"width": 1.5, "color": TOTAL}, "showlegend": True}
     filled = [
-        {
-            **common,
-            "contours": {"type": "constraint", "operation": sign, "value": limit},
-            "fillcolor": fill,
-            "line": {"width": 1.5, "color": TOTAL},
-            "name": f"{name}, {range_text}",
-            "showlegend": True,
-        }
+        {**common, **edge, "fillcolor": fill, "name": f"{name}, {range_text}",
+         "contours": {"type": "constraint", "operation": sign, "value": limit}}
         for name, fill, (sign, limit, range_text) in zip(REGIMES, FILLS, regimes, strict=True)
-    ]
-    levels = {
-        **common,
-        "contours": {"coloring": "none", "showlabels": True, "labelfont": {"size": 11}},
-        "ncontours": 12,
-        "line": {"width": 0.8, "color": MUTED},
-        "showlegend": False,
-    }
-    least, most = significant(float(ratio.min())), significant(float(ratio.max()))
+    ]  # fmt: skip
+    labels = {"coloring": "none", "showlabels": True, "labelfont": {"size": 11}}
+    levels = {**common, "contours": labels, "ncontours": 12, "showlegend": False}
+    levels["line"] = {"width": 0.8, "color": MUTED}
+    least, most = significant(ratio.min()), significant(ratio.max())
     title = f"The least film ratio is {least} to {most} over these speeds and torques"
-    layout: dict[str, Any] = {"hovermode": "closest", "height": 460}
-    layout["xaxis"] = {"title": {"text": axis_label("pinion_speed")}}
-    layout["yaxis"] = {"title": {"text": axis_label("torque", "Torque of the pinion")}}
-    return figure(title, [*filled, levels], layout)
+    x, y = axis(axis_label("pinion_speed")), axis(axis_label("torque", "Torque of the pinion"))
+    return plane_figure(title, [*filled, levels], x, y, height=460)
+
+
+@drawing(
+    heading="Film and asperities",
+    caption=f"Contacts over their film ratio. {REGIME_SENTENCE} The gap is the mean distance "
+    "of the rough flanks; where asperities carry load, it is wider than the film of smooth flanks "
+    "under the same load, because the oil carries less load.",
+    of="MixedLineContact",
+    made_by="Call tribodyn.ehl.mixed_line_contact(...) and its plot method.",
+)
+def mixed_line_contact(contact: MixedLineContact) -> Any:
+    """Draw load shares, gap and pressures over the film ratio."""
+    ratio = np.ravel(contact.film_ratio)
+    order = np.argsort(ratio, kind="stable")
+    place, share = ratio[order], 100.0 * np.ravel(contact.film_load_share)[order]
+    mode: Trace = {"mode": "lines+markers"}
+
+    def pair(quantity: str, label: str, *rows: tuple[str, Any, str, str]) -> Panel:
+        sorted_rows = [(name, np.ravel(each)[order], *style) for name, each, *style in rows]
+        return curves(quantity, label, place, sorted_rows, FROM_ZERO, **mode)
+
+    shares = [
+        line(place, share, "oil film", PAIR_COLORS[2], unit="%", **mode),
+        line(place, 100.0 - share, "asperities", WHEEL, unit="%", dash="dash", **mode),
+    ]
+    panels = [
+        Panel("Share of the load [%]", shares, {"range": [-2.0, 102.0]}),
+        pair("film_thickness", "Thickness",
+             ("gap of rough flanks", contact.gap, TOTAL, "solid"),
+             ("film of smooth flanks", contact.smooth_film, MUTED, "dash")),
+        pair("hertz_pressure", "Pressure",
+             ("maximum, dry smooth contact", contact.hertz_pressure, MUTED, "dash"),
+             ("mean of the asperities", contact.asperity_pressure, WHEEL, "solid")),
+    ]  # fmt: skip
+    low, high = (significant(f(share)) for f in (np.min, np.max))
+    carried = f"{low} %" if low == high else f"{low} to {high} %"
+    log = {"type": "log", "tickvals": RATIO_TICKS}
+    layout = {"xaxis": log} if place[0] > 0.0 and place[-1] > 4.0 * place[0] else {}
+    return stack(f"The oil film carries {carried} of the load", "Film ratio", panels, layout)

@@ -16,11 +16,11 @@ from tribodyn.plot.mesh.cycle import (
     sharing_under_load,
     table_drawing,
 )
-from tribodyn.plot.theme.curves import FROM_ZERO, ZERO, curve, curves
+from tribodyn.plot.theme.colors import MUTED, PAIR_COLORS, PINION, TOTAL, WHEEL
 from tribodyn.plot.theme.labels import axis_label, display_unit, displayed, rounded, significant
-from tribodyn.plot.theme.panels import Panel, event_lines, stack
+from tribodyn.plot.theme.panels import FROM_ZERO, ZERO, Panel, curve, curves, event_lines, stack
 from tribodyn.plot.theme.path import roll_label
-from tribodyn.plot.theme.style import MUTED, PAIR_COLORS, PINION, TOTAL, WHEEL, Trace, line
+from tribodyn.plot.theme.style import Trace, line
 from tribodyn.types import Array, Mask
 
 if TYPE_CHECKING:
@@ -110,7 +110,7 @@ def _path_caption(mesh: MeshTable) -> str:
     )
 
 
-@table_drawing("path_of_contact", heading="Along the path of contact", caption=_path_caption)
+@table_drawing(heading="Along the path of contact", caption=_path_caption)
 def path_of_contact(mesh: MeshTable) -> Any:
     """Draw speeds, radii and slide-to-roll ratio over the roll angle of the driving gear."""
     path = Path(mesh)
@@ -123,7 +123,7 @@ def path_of_contact(mesh: MeshTable) -> Any:
         Panel(axis_label("curvature_radius", "Radius of curvature"), radii),
         Panel(axis_label("slide_to_roll_ratio"), [ratio], ZERO, height=0.8),
     ]
-    title = f"The flanks slide at up to {rounded('sliding_speed', float(fastest))}"
+    title = f"The flanks slide at up to {rounded('sliding_speed', fastest)}"
     return path.figure(title, panels)
 
 
@@ -150,7 +150,7 @@ def _frictionless(mesh: MeshTable) -> str:
     )
 
 
-@table_drawing("friction", heading="Friction", caption=_friction_caption, missing=_frictionless)
+@table_drawing(heading="Friction", caption=_friction_caption, missing=_frictionless)
 def friction(mesh: MeshTable) -> Any:
     """Draw friction coefficient and friction force of a tooth pair over the roll angle."""
     path = Path(mesh)
@@ -179,7 +179,7 @@ _has_film = Need(
 )
 
 
-def _film_axis(films: list[Array]) -> dict[str, Any]:
+def _film_axis(films: list[Array]) -> Trace:
     """Axis from zero, or logarithmic if a lightly loaded pair has a very thick film."""
     thickest = max(float(np.nanmax(film)) for film in films)
     return _LOGARITHMIC if thickest > _VERY_THICK * float(np.nanmedian(films[0])) else FROM_ZERO
@@ -192,14 +192,14 @@ def _film_caption(mesh: MeshTable) -> str:
     )
 
 
-@table_drawing("film", heading="Oil film", caption=_film_caption, missing=_has_film)
+@table_drawing(heading="Oil film", caption=_film_caption, missing=_has_film)
 def film(mesh: MeshTable) -> Any:
     """Draw the film thickness of one tooth pair over the roll angle of the driving gear."""
     path = Path(mesh)
     unit = display_unit("film_thickness")
     columns = tuple(row for row in _FILMS if getattr(mesh, row[0]) is not None)
     column, place = columns[-1][:2]
-    least = rounded("film_thickness", float(np.nanmin(path.under_load(column))))
+    least = rounded("film_thickness", np.nanmin(path.under_load(column)))
     roughness = float(displayed("film_thickness", mesh.composite_roughness))
     curves = [*path.curves(columns, "film_thickness"), path.level(roughness, "roughness", unit)]
     axis = _film_axis([path.under_load(row[0]) for row in columns])
@@ -233,7 +233,6 @@ def _no_pressure(mesh: MeshTable) -> str:
 
 
 @table_drawing(
-    "film_pressure",
     heading="Pressure in the oil film",
     caption=_pressure_caption,
     missing=_no_pressure,
@@ -241,7 +240,7 @@ def _no_pressure(mesh: MeshTable) -> str:
 def film_pressure(mesh: MeshTable) -> Any:
     """Draw the greatest film pressure of one tooth pair over the roll angle."""
     path = Path(mesh)
-    greatest = rounded("film_pressure", float(np.nanmax(path.life("film_pressure"))))
+    greatest = rounded("film_pressure", np.nanmax(path.life("film_pressure")))
     label, curves = axis_label("film_pressure"), path.curves(_PRESSURES)
     return path.figure(
         f"The pressure in the oil film reaches {greatest}",
@@ -281,7 +280,6 @@ def _no_stiffness(mesh: MeshTable) -> str:
 
 
 @table_drawing(
-    "film_stiffness",
     heading="Stiffness of the oil film",
     caption=_stiffness_caption,
     missing=_no_stiffness,
@@ -297,5 +295,5 @@ def film_stiffness(mesh: MeshTable) -> Any:
     # Pairs with relieved flanks carry no load where they enter and leave.
     loaded = (teeth > 0.0) & np.isfinite(oil)
     ratio = oil[loaded] / teeth[loaded]
-    least, greatest = (significant(float(at(ratio))) for at in (np.min, np.max))
+    least, greatest = (significant(at(ratio)) for at in (np.min, np.max))
     return path.figure(f"The oil film is {least} to {greatest} times as stiff as the teeth", panels)

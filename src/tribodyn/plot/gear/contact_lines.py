@@ -10,9 +10,10 @@ import numpy as np
 from tribodyn.contact import path_of_contact
 from tribodyn.drawing import drawing
 from tribodyn.gear import tooth_outline
-from tribodyn.plot.mesh.cycle import RUN
+from tribodyn.plot.mesh.cycle import PAIRS, RUN
+from tribodyn.plot.theme.colors import INK, MUTED, PINION, WHEEL
 from tribodyn.plot.theme.labels import rounded, significant
-from tribodyn.plot.theme.style import INK, MUTED, PINION, WHEEL, Trace, figure, player
+from tribodyn.plot.theme.style import ABOVE, Trace, animated, figure, player
 from tribodyn.types import Array
 
 if TYPE_CHECKING:
@@ -95,7 +96,7 @@ def _ends(pair: CylindricalPair, teeth: range) -> list[Array]:
 
 
 def _label(pair: CylindricalPair, phase: float) -> str:
-    length = rounded("contact_line_length", float(pair.contact_line_length(phase)))
+    length = rounded("contact_line_length", pair.contact_line_length(phase))
     count = len(line_points(pair, phase))
     return f"Mesh phase {significant(phase, 2)}: {length} of contact on {count} tooth pairs"
 
@@ -108,17 +109,11 @@ def _straight(pair: CylindricalPair) -> str:
 
 
 @drawing(
-    "contact_lines",
     heading="Lines of contact",
     caption="Teeth of the pinion with the lines along which the wheel touches them. On a helical "
     "gear a line enters at a corner of the flank and leaves at the opposite one. The thin lines "
     "are the ends of the path of contact; the slider turns the gears through a mesh cycle.",
-    of=(
-        "CylindricalPair",
-        "Result.case.gear_pair",
-        "MeshTable.gear_pair",
-        "LoadedContact.gear_pair",
-    ),
+    of=PAIRS,
     missing=_straight,
     made_by=RUN,
 )
@@ -135,19 +130,14 @@ def contact_lines(pair: CylindricalPair) -> Any:
     side = -1.0 if pair.driver == "pinion" else 1.0
     slider = {"x": 0.16, "len": 0.84, "y": -0.02}
     labels = [_label(pair, float(phase)) for phase in phases]
+    camera = {"eye": {"x": 0.95, "y": 1.75 * side, "z": 1.2}, "center": {"z": -0.15}}
+    titles = {k: {"title": {"text": text, "font": {"color": INK}}} for k, text in axes.items()}
     layout = {
-        "scene": {
-            **{
-                name: {"title": {"text": text, "font": {"color": INK}}}
-                for name, text in axes.items()
-            },
-            "aspectmode": "data",
-            "camera": {"eye": {"x": 0.95, "y": 1.75 * side, "z": 1.2}, "center": {"z": -0.15}},
-        },
+        "scene": {**titles, "aspectmode": "data", "camera": camera},
         "height": 640,
         "hovermode": "closest",
         "margin": {"l": 20, "r": 20, "t": 60, "b": 110},
-        "legend": {"orientation": "h", "x": 0.0, "y": 1.0, "yanchor": "bottom"},
+        "legend": ABOVE,
         **player(labels, _DURATION, redraw=True, slider=slider, buttons=-0.04),
     }
     least, greatest = (
@@ -156,8 +146,4 @@ def contact_lines(pair: CylindricalPair) -> Any:
     )
     title = f"{least} to {greatest} of contact lines over the mesh cycle"
     sketch = figure(title, [*still, moving[0]], layout)
-    sketch.frames = [
-        {"name": str(number), "data": [trace], "traces": [len(still)]}
-        for number, trace in enumerate(moving)
-    ]
-    return sketch
+    return animated(sketch, [[trace] for trace in moving], [len(still)])

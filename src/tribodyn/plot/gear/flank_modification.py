@@ -15,12 +15,12 @@ from tribodyn.gear import (
     profile_gap,
     tooth_positions,
 )
-from tribodyn.plot.mesh.cycle import RUN
-from tribodyn.plot.theme.curves import curve
+from tribodyn.plot.mesh.cycle import PAIRS, RUN
+from tribodyn.plot.theme.colors import PINION, TOTAL, WHEEL
 from tribodyn.plot.theme.labels import axis_label, display_unit, displayed, rounded
-from tribodyn.plot.theme.panels import Panel, Row, stack_rows
+from tribodyn.plot.theme.panels import Panel, Row, curve, stack_rows
 from tribodyn.plot.theme.path import pair_letters, roll_angle_of, roll_label
-from tribodyn.plot.theme.style import PINION, TOTAL, WHEEL, Trace, bars
+from tribodyn.plot.theme.style import Trace, bars
 from tribodyn.types import Array
 
 if TYPE_CHECKING:
@@ -28,13 +28,8 @@ if TYPE_CHECKING:
 
 #: Points along the profile and along the face.
 _POINTS = 201
-#: Classes and attributes with a gear pair.
-_HOLDERS = (
-    "CylindricalPair",
-    "Result.case.gear_pair",
-    *(f"{name}.gear_pair" for name in ("Case", "MeshTable", "LoadedContact", "HarrisMap")),
-    *(f"{name}.gear_pair" for name in ("TipReliefOptimum", "ComprehensiveStiffness")),
-)
+#: Further classes with a gear pair.
+_OTHERS = ("Case", "HarrisMap", "TipReliefOptimum", "ComprehensiveStiffness")
 
 
 def _perfect(pair: SpurPair) -> str:
@@ -146,11 +141,10 @@ def _caption(pair: SpurPair) -> str:
 
 
 @drawing(
-    "flank_modification",
     heading="Flank modifications",
     caption=_caption,
     missing=_perfect,
-    of=_HOLDERS,
+    of=(*PAIRS, *(f"{name}.gear_pair" for name in _OTHERS)),
     made_by=RUN,
 )
 def flank_modification(pair: SpurPair) -> Any:

@@ -16,10 +16,11 @@ from tribodyn.plot.gear.outlines import (
     tooth_angles,
     wheel_center,
 )
-from tribodyn.plot.mesh.cycle import RUN
+from tribodyn.plot.mesh.cycle import PAIRS, RUN
+from tribodyn.plot.theme.colors import FILLS, INK, PAIR_COLORS, PINION, WHEEL
 from tribodyn.plot.theme.labels import axis_label, displayed
 from tribodyn.plot.theme.path import further_changes, sharing_sentence
-from tribodyn.plot.theme.style import FILLS, INK, MUTED, PAIR_COLORS, PINION, WHEEL, Trace, figure
+from tribodyn.plot.theme.style import BARE, Trace, axis, figure, note, strokes
 from tribodyn.types import Array
 
 if TYPE_CHECKING:
@@ -28,22 +29,14 @@ if TYPE_CHECKING:
 
 #: Circles of each gear: name and dash.
 _CIRCLES = (("tip", "dot"), ("pitch", "dashdot"), ("base", "dash"))
+_HOLE: Trace = {"fill": "toself", "fillcolor": "white", "showlegend": False}
 #: Distance of the letters from the line of action, and between letters [px].
 _OFFSET, _SPACING = 34, 17
 
 
-def _curve(points: Array, name: str, color: str, **more: Any) -> dict[str, Any]:
+def _curve(points: Array, name: str, color: str, **more: Any) -> Trace:
     x, y = displayed("center_distance", points)
-    return {
-        "type": "scatter",
-        "mode": "lines",
-        "x": x,
-        "y": y,
-        "name": name,
-        "line": {"color": color, "width": 1.2},
-        "hoverinfo": "skip",
-        **more,
-    }
+    return strokes(x, y, color, name=name, **more)
 
 
 def _gears_and_centers(pair: SpurPair) -> tuple[tuple[SpurGear, str, float, str], ...]:
@@ -71,14 +64,12 @@ def _gears(pair: SpurPair, touching: float) -> list[Trace]:
         if gear.is_ring:
             rim = circle(center, gear.rim_radius)
             traces.append(_curve(rim, label, color, fill="toself", fillcolor=FILLS[color]))
-            more = {"fill": "toself", "fillcolor": "white", "showlegend": False}
-            traces.append(_curve(outline, "teeth", color, **more))
+            traces.append(_curve(outline, "teeth", color, **_HOLE))
             continue
         traces.append(_curve(outline, label, color, fill="toself", fillcolor=FILLS[color]))
         if gear.bore_diameter > 0.0:
             bore = circle(center, 0.5 * gear.bore_diameter)
-            more = {"fill": "toself", "fillcolor": "white", "showlegend": False}
-            traces.append(_curve(bore, "bore", color, **more))
+            traces.append(_curve(bore, "bore", color, **_HOLE))
     return traces
 
 
@@ -88,16 +79,9 @@ def _circles(pair: SpurPair) -> list[Trace]:
     for gear, _, center, color in _gears_and_centers(pair):
         radii = (gear.tip_radius, gear.base_radius / cosine, gear.base_radius)
         for (name, dash), radius in zip(_CIRCLES, radii, strict=True):
-            traces.append(
-                _curve(
-                    circle(center, radius),
-                    f"{name} circles",
-                    color if center else MUTED,
-                    line={"color": color, "width": 1, "dash": dash},
-                    legendgroup=name,
-                    showlegend=center == 0.0,
-                )
-            )
+            style: Trace = {"line": {"color": color, "width": 1, "dash": dash}}
+            style |= {"legendgroup": name, "showlegend": center == 0.0}
+            traces.append(_curve(circle(center, radius), f"{name} circles", color, **style))
     return traces
 
 
@@ -106,8 +90,7 @@ def _arrows(pair: SpurPair) -> list[Trace]:
     traces = []
     for gear, name, center, color in _gears_and_centers(pair):
         radius = 0.8 * gear.root_radius
-        if gear.is_ring:
-            radius = 0.5 * (gear.root_radius + gear.rim_radius)
+        radius = 0.5 * (gear.root_radius + gear.rim_radius) if gear.is_ring else radius
         arc = rotation_arc(center, radius, _sense(pair, name))
         head = [0] * (arc.shape[1] - 1) + [15]
         marker = {"symbol": "arrow", "angleref": "previous", "size": head, "opacity": 1}
@@ -119,17 +102,12 @@ def _arrows(pair: SpurPair) -> list[Trace]:
 
 def _roles(pair: SpurPair) -> list[Trace]:
     """Labels below the gears: drives or driven."""
-    return [
-        {
-            "x": 1e3 * center,
-            "y": -1e3 * (gear.rim_radius if gear.is_ring else gear.tip_radius),
-            "yanchor": "top",
-            "text": "drives" if pair.driver == name else "driven",
-            "showarrow": False,
-            "font": {"size": 12, "color": color},
-        }
-        for gear, name, center, color in _gears_and_centers(pair)
-    ]
+    roles = []
+    for gear, name, center, color in _gears_and_centers(pair):
+        bottom = -1e3 * (gear.rim_radius if gear.is_ring else gear.tip_radius)
+        text = "drives" if pair.driver == name else "driven"
+        roles.append(note(1e3 * center, bottom, text, yanchor="top", size=12, color=color))
+    return roles
 
 
 def _letters(pair: SpurPair, path: PathOfContact) -> dict[str, float]:
@@ -145,24 +123,13 @@ def _names(pair: SpurPair, path: PathOfContact, axes: tuple[str, str]) -> list[T
     letters = _letters(pair, path)
     x, y = displayed("center_distance", on_line_of_action(pair, np.array(list(letters.values()))))
     middle = 0.5 * (len(letters) - 1)
+    leader: Trace = {"xref": axes[0], "yref": axes[1], "ax": _OFFSET, "arrowhead": 0}
+    leader |= {"arrowwidth": 1, "arrowcolor": INK, "font": {"size": 13, "color": INK}}
+    leader |= {"bgcolor": "rgba(255, 255, 255, 0.8)", "borderpad": 0}
+    # The points rise along the line too, so that this is the least spacing.
     return [
-        {
-            "x": x[number],
-            "y": y[number],
-            "xref": axes[0],
-            "yref": axes[1],
-            "text": name,
-            "ax": _OFFSET,
-            # The points rise along the line too, so this is the least spacing.
-            "ay": _SPACING * (middle - number),
-            "arrowhead": 0,
-            "arrowwidth": 1,
-            "arrowcolor": INK,
-            "font": {"size": 13, "color": INK},
-            "bgcolor": "rgba(255, 255, 255, 0.8)",
-            "borderpad": 0,
-        }
-        for number, name in enumerate(letters)
+        {**leader, "x": x[k], "y": y[k], "text": name, "ay": _SPACING * (middle - k)}
+        for k, name in enumerate(letters)
     ]
 
 
@@ -174,50 +141,28 @@ def _contact_line(pair: SpurPair, path: PathOfContact) -> list[Trace]:
     active = on_line_of_action(pair, np.array([path.A, path.E]))
     letters = _letters(pair, path)
     marks = on_line_of_action(pair, np.array(list(letters.values())))
-    color = PAIR_COLORS[0]
+    color, edge = PAIR_COLORS[0], {"color": INK, "width": 1.5}
+    marker = {"color": "white", "size": 8, "line": edge}
     return [
         _curve(tangent, "line of action", INK, line={"color": INK, "width": 1}),
         _curve(active, "path of contact", color, line={"color": color, "width": 5}),
-        _curve(
-            marks,
-            "positions A to E",
-            INK,
-            mode="markers",
-            marker={"color": "white", "size": 8, "line": {"color": INK, "width": 1.5}},
-            hoverinfo="text",
-            hovertext=[f"{name}: {1e3 * at:.3f} mm" for name, at in letters.items()],
-        ),
-    ]
+        _curve(marks, "positions A to E", INK, mode="markers", marker=marker, hoverinfo="text",
+               hovertext=[f"{name}: {1e3 * at:.3f} mm" for name, at in letters.items()]),
+    ]  # fmt: skip
 
 
-def _window(pair: SpurPair, path: PathOfContact) -> dict[str, Any]:
+def _window(pair: SpurPair, path: PathOfContact) -> Trace:
     """Axes: the entire pair on the left, the path of contact enlarged on the right."""
     ends = displayed("center_distance", on_line_of_action(pair, np.array([path.A, path.E])))
     middle = ends.mean(axis=1)
     half = 0.75 * float(np.hypot(*(ends[:, 1] - ends[:, 0])))
-    label = axis_label("center_distance", "x"), axis_label("center_distance", "y")
-    common = {"zeroline": False, "showgrid": False}
+    x, y = (axis(axis_label("center_distance", name), **BARE) for name in "xy")
+    near = [[at - half, at + half] for at in middle]
     return {
-        "xaxis": {
-            "domain": [0.0, 0.62],
-            "constrain": "domain",
-            "title": {"text": label[0]},
-            **common,
-        },
-        "yaxis": {"scaleanchor": "x", "constrain": "domain", "title": {"text": label[1]}, **common},
-        "xaxis2": {
-            "domain": [0.7, 1.0],
-            "anchor": "y2",
-            "range": [middle[0] - half, middle[0] + half],
-            "title": {"text": label[0]},
-            **common,
-        },
-        "yaxis2": {
-            "anchor": "x2",
-            "scaleanchor": "x2",
-            "range": [middle[1] - half, middle[1] + half],
-            **common,
-        },
+        "xaxis": {**x, "domain": [0.0, 0.62], "constrain": "domain"},
+        "yaxis": {**y, "scaleanchor": "x", "constrain": "domain"},
+        "xaxis2": {**x, "domain": [0.7, 1.0], "anchor": "y2", "range": near[0]},
+        "yaxis2": {**BARE, "anchor": "x2", "scaleanchor": "x2", "range": near[1]},
     }
 
 
@@ -232,15 +177,9 @@ def _caption(pair: SpurPair) -> str:
 
 
 @drawing(
-    "gear_pair",
     heading="The gear pair",
     caption=_caption,
-    of=(
-        "CylindricalPair",
-        "Result.case.gear_pair",
-        "MeshTable.gear_pair",
-        "LoadedContact.gear_pair",
-    ),
+    of=PAIRS,
     made_by=RUN,
 )
 def gear_pair(pair: SpurPair) -> Any:

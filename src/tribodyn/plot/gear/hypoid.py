@@ -10,20 +10,9 @@ import numpy as np
 from tribodyn.drawing import drawing
 from tribodyn.errors import quiet
 from tribodyn.gear import hypoid_flanks
+from tribodyn.plot.theme.colors import FILLS, INK, MUTED, PAIR_COLORS, PINION, WHEEL, translucent
 from tribodyn.plot.theme.panels import Panel, Row, stack_rows
-from tribodyn.plot.theme.style import (
-    FILLS,
-    INK,
-    MUTED,
-    PAIR_COLORS,
-    PINION,
-    WHEEL,
-    Trace,
-    figure,
-    line,
-    marked,
-    translucent,
-)
+from tribodyn.plot.theme.style import Trace, figure, line, marked
 from tribodyn.types import Array
 
 if TYPE_CHECKING:
@@ -64,7 +53,6 @@ def _panel(blank: HypoidBlank, gear: str, color: str) -> Row:
 
 
 @drawing(
-    "hypoid_blank",
     heading="Blanks",
     caption="Sections of the teeth in the axial plane of each gear: tip, root and pitch cone from "
     "toe to heel, to scale, with the clearance between the tip and the root of the mating gear.",
@@ -161,7 +149,6 @@ def _error(contact: ToothContact) -> Panel:
 
 
 @drawing(
-    "hypoid_contact",
     heading="Contact pattern",
     caption="Flank of the wheel with the contact pattern of the marking compound, the path of "
     "contact and the contact lines of the conjugate flanks. Below, the lead of the wheel for each "
@@ -278,13 +265,12 @@ def _body(flanks: HypoidFlanks, gear: str) -> Trace:
     return {"type": "surface", "x": x, "y": y, "z": z, **plain}
 
 
-def _scene(eye: tuple[float, float, float], **axes: str) -> dict[str, Any]:
+def _scene(eye: tuple[float, float, float], **axes: str) -> Trace:
     labels = {f"{name}axis": {"title": {"text": text}} for name, text in axes.items()}
     return {"camera": {"eye": dict(zip("xyz", eye, strict=True))}, **labels}
 
 
 @drawing(
-    "hypoid_pair",
     heading="The pair in space",
     caption="Both gears in mesh at the calculation point, to scale, on their root cones. Rotate "
     "the view with the mouse.",
@@ -314,7 +300,6 @@ def hypoid_pair(flanks: HypoidFlanks) -> Any:
 
 
 @drawing(
-    "ease_off",
     heading="Ease-off",
     caption="Gap between the pinion flank and the conjugate flank, over the "
     "flank of the wheel: along its pitch cone towards the heel, across it towards the tip. Dots "

@@ -1,4 +1,4 @@
-"""Losses of a gearbox, power flow of a test rig, and friction from measured losses."""
+"""Losses of a gearbox, its heat balance, power flow of a test rig, friction from losses."""
 
 from __future__ import annotations
 
@@ -8,26 +8,25 @@ import numpy as np
 
 from tribodyn.drawing import drawing
 from tribodyn.losses.gearbox import PARTS
-from tribodyn.plot.theme.labels import axis_label, displayed, engineering, significant
-from tribodyn.plot.theme.panels import Panel, Row, from_zero, stack, stack_rows
-from tribodyn.plot.theme.style import (
-    FONT,
+from tribodyn.plot.theme.colors import (
     GRID,
     INK,
     MUTED,
     PAIR_COLORS,
     PINION,
+    TOTAL,
     WHEEL,
-    Trace,
-    color_bar,
-    figure,
-    line,
     translucent,
 )
+from tribodyn.plot.theme.labels import axis_label, displayed, engineering, significant
+from tribodyn.plot.theme.panels import Panel, Row, from_zero, stack, stack_rows
+from tribodyn.plot.theme.style import FONT, Trace, axis, contour, figure, line, marked, sankey
 from tribodyn.types import Array
+from tribodyn.units import ZERO_CELSIUS
 
 if TYPE_CHECKING:
     from tribodyn.losses import FrictionFromLoss, GearboxLosses, RigPowerFlow
+    from tribodyn.study.heat_balance import HeatBalance
 
 #: Colours from low to high efficiency.
 _SCALE = [[0.0, "#fde0c5"], [0.5, "#f7fbff"], [1.0, "#6baed6"]]
@@ -52,19 +51,8 @@ def _efficiency(gearbox: GearboxLosses) -> Row:
     torque_label = axis_label("torque", "Torque on the pinion")
     values = 100.0 * gearbox.efficiency
     if torque.size > 1 and speed.size > 1:
-        surface = {
-            "type": "contour",
-            "x": speed,
-            "y": torque,
-            "z": values,
-            "colorscale": _SCALE,
-            "ncontours": 16,
-            "contours": {"showlabels": True, "labelfont": {"size": 10, "color": INK}},
-            "line": {"width": 0.6, "color": MUTED},
-            "showlegend": False,
-            "colorbar": {**color_bar("[%]"), "title": {"text": "[%]"}, "len": 0.45},
-            "hovertemplate": "%{x:.4g} rpm, %{y:.4g} N·m: %{z:.5g} %<extra></extra>",
-        }
+        hover = "%{x:.4g} rpm, %{y:.4g} N·m: %{z:.5g} %"
+        surface = contour(speed, torque, values, _SCALE, hover, "%", 0.45)
         return Row(speed_label, Panel(torque_label, [surface], height=1.4))
     x, label = (torque, torque_label) if torque.size > 1 else (speed, speed_label)
     curve = line(x, values.ravel(), "efficiency", INK, unit="%", mode="lines+markers")
@@ -101,7 +89,7 @@ def _bars(gearbox: GearboxLosses) -> Any:
     bar = {"type": "bar", "orientation": "h", "y": names, "x": power, "marker": {"color": colors}}
     bar |= {"text": [_watts(value) for value in power], "hoverinfo": "skip"}
     title = f"Efficiency {_percent(gearbox.efficiency.item())}, loss {_watts(gearbox.total.item())}"
-    x_axis = {"title": {"text": axis_label("power", "Loss")}, "rangemode": "tozero"}
+    x_axis = axis(axis_label("power", "Loss"), rangemode="tozero")
     layout = {"height": 160 + 40 * len(rows), "hovermode": False, "xaxis": x_axis}
     return figure(title, [bar], layout)
 
@@ -121,7 +109,6 @@ def _caption(gearbox: GearboxLosses) -> str:
 
 
 @drawing(
-    "losses",
     heading="Losses and efficiency",
     caption=_caption,
     of="GearboxLosses",
@@ -149,7 +136,6 @@ _SINKS = (
 
 
 @drawing(
-    "power_flow",
     heading="Power flow of the rig",
     caption="Power of the motor from left to right: first to the two gearboxes, then to the loss "
     "mechanisms. The power that circulates in the loop is many times larger and is not shown.",
@@ -172,33 +158,16 @@ def power_flow(rig: RigPowerFlow) -> Any:
         for box in (0, 1)
         if lost[sink, box] > 0.0
     ]
-    source, target, value, shades = zip(*links, strict=True)
     labels = [
         f"{name}<br>{_watts(p)} ({_percent(p / rig.motor_power)})"
         for name, p in zip(names, power, strict=True)
     ]
-    nodes = sorted({*source, *target})
-    number = {node: place for place, node in enumerate(nodes)}
-    trace = {
-        "type": "sankey",
-        "arrangement": "snap",
-        "textfont": {"size": 13, "color": INK, "family": FONT},
-        "node": {
-            "label": [labels[k] for k in nodes],
-            "color": [colors[k] for k in nodes],
-            "pad": 34,
-            "thickness": 16,
-            "line": {"width": 0},
-            "hovertemplate": "%{label}<extra></extra>",
-        },
-        "link": {
-            "source": [number[k] for k in source],
-            "target": [number[k] for k in target],
-            "value": value,
-            "color": shades,
-            "hovertemplate": "%{value:.5g} W<extra></extra>",
-        },
-    }
+    nodes = sorted({end for source, target, *_ in links for end in (source, target)})
+    flows = [(nodes.index(source), nodes.index(target), *rest) for source, target, *rest in links]
+    label, color = ([each[k] for k in nodes] for each in (labels, colors))
+    style: Trace = {"pad": 34, "thickness": 16, "line": {"width": 0}}
+    trace = sankey(flows, "%{value:.5g} W", "%{label}", label=label, color=color, **style)
+    trace["textfont"] = {"size": 13, "color": INK, "family": FONT}
     title = (
         f"The motor supplies {_watts(rig.motor_power)}; "
         f"{_watts(rig.circulating_power)} circulate in the loop"
@@ -207,7 +176,6 @@ def power_flow(rig: RigPowerFlow) -> Any:
 
 
 @drawing(
-    "friction_from_loss",
     heading="Friction from measured losses",
     caption="Friction coefficients with their 95 % confidence intervals. The small difference of "
     "two losses makes them wide at low torque; open markers are points that are not sound.",
@@ -238,3 +206,53 @@ def friction_from_loss(measured: FrictionFromLoss) -> Any:
     panel = Panel(axis_label("friction_coefficient", "Friction coefficient"), traces, height=1.8)
     label = axis_label("torque", "Torque")
     return stack(f"{good} of {sound.size} points are sound", label, [panel])
+
+
+@drawing(
+    heading="Heat balance",
+    caption=lambda balance: (
+        "The loss at every computed temperature, and the straight line of the heat dissipated to "
+        "the surroundings. "
+        + (
+            "Gears and oil settle at the temperature at which they intersect."
+            if balance.gear_temperature is None
+            else "The oil settles at the temperature at which they intersect; the gears are warmer "
+            "by the loss of their teeth over the heat transfer to the oil."
+        )
+    ),
+    of="HeatBalance",
+    made_by="Use Result.heat of a case with lubricant.heat_transfer.",
+)
+def heat_balance(balance: HeatBalance) -> Any:
+    """Draw power loss and dissipated heat over the temperature of gears and oil."""
+    order = np.argsort(balance.temperature, kind="stable")
+    celsius = balance.temperature - ZERO_CELSIUS
+    ambient = balance.ambient_temperature - ZERO_CELSIUS
+    top = max(float(celsius.max()), ambient + 1.0)
+    ends = np.array([ambient, top + 0.1 * (top - ambient)])
+    given_off = balance.heat_transfer * (ends - ambient)
+    loss = line(celsius[order], balance.power_loss[order], "loss of the gearbox", WHEEL, unit="W",
+                mode="lines+markers")  # fmt: skip
+    state = marked(celsius[-1:], balance.power_loss[-1:], "balance", TOTAL, size=11, unit="W",
+                   symbol="circle-open")  # fmt: skip
+    number, unit = engineering(float(balance.power_loss[-1]), "W", 4)
+    settled = f"Gears and oil settle at {significant(celsius[-1], 4)} °C"
+    label, gears = "Temperature of gears and oil", []
+    if balance.gear_temperature is not None and balance.gear_power_loss is not None:
+        label = "Temperature of the oil, and of the gears for the loss of their teeth"
+        warm = balance.gear_temperature - ZERO_CELSIUS
+        settled = (
+            f"The oil settles at {significant(celsius[-1], 4)} °C, the gears at "
+            f"{significant(warm[-1], 4)} °C,"
+        )
+        rising = np.argsort(warm, kind="stable")
+        teeth, color = balance.gear_power_loss, PAIR_COLORS[0]
+        rise, name = np.array([celsius[-1], warm[-1]]), "heat from the gears to the oil"
+        gears = [
+            line(warm[rising], teeth[rising], "loss of the teeth", color, unit="W"),
+            line(rise, np.array([0.0, teeth[-1]]), name, color, unit="W", dash="dash"),
+        ]
+    dissipated = line(ends, given_off, "dissipated heat", PINION, unit="W", dash="dash")
+    panel = from_zero(axis_label("power", "Power"), [loss, dissipated, state, *gears], 1.4)
+    title = f"{settled} with a loss of {number} {unit}"
+    return stack(title, axis_label("temperature", label), [panel], {"hovermode": "closest"})

@@ -11,8 +11,9 @@ import numpy as np
 from tribodyn.drawing import drawing
 from tribodyn.plot.gear.outlines import BentMesh, bent_mesh, on_line_of_action, wheel_center
 from tribodyn.plot.mesh.loaded_contact import several_cycles, torque_names
+from tribodyn.plot.theme.colors import FILLS, INK, MUTED, PINION, WHEEL
 from tribodyn.plot.theme.labels import axis_label, displayed, rounded, significant
-from tribodyn.plot.theme.style import FILLS, INK, MUTED, PINION, WHEEL, Trace, figure, player
+from tribodyn.plot.theme.style import ABOVE, BARE, Trace, animated, axis, figure, player, strokes
 from tribodyn.types import ComplexArray
 
 if TYPE_CHECKING:
@@ -38,18 +39,10 @@ def _exaggeration(meshes: Sequence[BentMesh], module: float) -> float:
     return power * max(digit for digit in (1.0, 2.0, 5.0) if digit * power <= wanted)
 
 
-def _trace(points: ComplexArray, name: str, **more: Any) -> dict[str, Any]:
-    x, y = displayed("center_distance", np.array([points.real, points.imag]))
-    return {
-        "type": "scatter",
-        "mode": "lines",
-        # Single precision halves the size of the figure.
-        "x": x.astype(np.float32),
-        "y": y.astype(np.float32),
-        "name": name,
-        "hoverinfo": "skip",
-        **more,
-    }
+def _trace(points: ComplexArray, name: str, **more: Any) -> Trace:
+    # Single precision halves the size of the figure.
+    x, y = displayed("center_distance", np.array([points.real, points.imag])).astype(np.float32)
+    return strokes(x, y, INK, name=name, **more)
 
 
 def _gears(pair: SpurPair, mesh: BentMesh, factor: float) -> list[Trace]:
@@ -61,23 +54,15 @@ def _gears(pair: SpurPair, mesh: BentMesh, factor: float) -> list[Trace]:
         center = 0.0 if name == "pinion" else wheel_center(pair)
         # Close the section towards the axis, far below the teeth; that of a ring outwards.
         far = 1.3 if name == "wheel" and pair.is_internal else 0.2
-        closed = np.concatenate(
-            (
-                bent,
-                [center + far * (bent[-1] - center)],
-                [center + far * (bent[0] - center)],
-                bent[:1],
-            )
-        )
-        fill = {"fill": "toself", "fillcolor": FILLS[color]}
-        traces.append(
-            _trace(closed, f"{name}, loaded", line={"color": color, "width": 1.8}, **fill)
-        )
+        axial = center + far * (bent[[-1, 0]] - center)
+        closed = np.concatenate((bent, axial, bent[:1]))
+        fill: Trace = {"fill": "toself", "fillcolor": FILLS[color]}
+        fill["line"] = {"color": color, "width": 1.8}
+        traces.append(_trace(closed, f"{name}, loaded", **fill))
     for name, _ in _GEARS:
-        grey = {"line": {"color": MUTED, "width": 0.9}, "legendgroup": "rest"}
-        traces.append(
-            _trace(mesh.outline[name], "without load", showlegend=name == "pinion", **grey)
-        )
+        grey: Trace = {"line": {"color": MUTED, "width": 0.9}, "legendgroup": "rest"}
+        grey["showlegend"] = name == "pinion"
+        traces.append(_trace(mesh.outline[name], "without load", **grey))
     return traces
 
 
@@ -105,12 +90,12 @@ def _arrows(contact: LoadedContact, mesh: BentMesh, factor: float, greatest: flo
     ]
 
 
-def _player(labels: Sequence[str]) -> dict[str, Any]:
+def _player(labels: Sequence[str]) -> Trace:
     slider = {"x": 0.16, "len": 0.84, "y": -0.1}
     return player(labels, _FRAME, redraw=True, slider=slider, buttons=-0.12)
 
 
-def _window(contact: LoadedContact) -> dict[str, Any]:
+def _window(contact: LoadedContact) -> Trace:
     """Axes of equal scale around the middle of the path of contact."""
     pair = contact.gear_pair
     ends = on_line_of_action(pair, np.array(pair.path_limits))
@@ -119,23 +104,11 @@ def _window(contact: LoadedContact) -> dict[str, Any]:
     scale = max(1.0, wanted / (_WINDOW[1] * pair.pinion.normal_module))
     middle = displayed("center_distance", ends.mean(axis=1))
     half = displayed("center_distance", scale * np.array(_WINDOW) * pair.pinion.normal_module)
-    common = {"zeroline": False, "showgrid": False}
-    ranges = [
-        [float(at - reach), float(at + reach)] for at, reach in zip(middle, half, strict=True)
-    ]
-    return {
-        "xaxis": {
-            "title": {"text": axis_label("center_distance", "x")},
-            "range": ranges[0],
-            **common,
-        },
-        "yaxis": {
-            "title": {"text": axis_label("center_distance", "y")},
-            "range": ranges[1],
-            "scaleanchor": "x",
-            **common,
-        },
-    }
+    x, y = (
+        axis(axis_label("center_distance", name), range=[float(at - reach), float(at + reach)])
+        for name, at, reach in zip("xy", middle, half, strict=True)
+    )
+    return {"xaxis": {**x, **BARE}, "yaxis": {**y, "scaleanchor": "x", **BARE}}
 
 
 def _chosen(contact: LoadedContact, phase: float | None) -> list[int]:
@@ -150,7 +123,6 @@ def _chosen(contact: LoadedContact, phase: float | None) -> list[int]:
 
 
 @drawing(
-    "mesh_deformation",
     heading="Deformation of the teeth",
     caption="Teeth in mesh: grey without load, coloured with the deformation under load, "
     "exaggerated. The arrows are the forces on the driven gear. The bores are fixed, and "
@@ -187,8 +159,8 @@ def mesh_deformation(
     ]
     errors = np.reshape(contact.transmission_error, (-1, contact.phase.size))[torque]
     labels = [
-        f"Mesh phase {significant(float(contact.phase[at]), 2)}: transmission error "
-        f"{rounded('static_transmission_error', float(errors[at]))}"
+        f"Mesh phase {significant(contact.phase[at], 2)}: transmission error "
+        f"{rounded('static_transmission_error', errors[at])}"
         for at in chosen
     ]
     several, load = len(frames) > 1, torque_names(contact.torque)[torque]
@@ -201,9 +173,7 @@ def mesh_deformation(
             "height": _HEIGHT,
             "hovermode": False,
             "margin": {"l": 70, "r": 24, "t": 74, "b": 150 if several else 58},
-            "legend": {"orientation": "h", "x": 0.0, "y": 1.0, "yanchor": "bottom"},
+            "legend": ABOVE,
         },
     )
-    if several:
-        sketch.frames = [{"name": str(k), "data": data} for k, data in enumerate(frames)]
-    return sketch
+    return animated(sketch, frames) if several else sketch

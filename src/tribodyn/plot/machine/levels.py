@@ -8,12 +8,11 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from tribodyn.drawing import drawing
-from tribodyn.plot.machine.orders import COLORS
 from tribodyn.plot.motion.sweeps import axis_text, value_text
-from tribodyn.plot.theme.curves import FROM_ZERO, curves
+from tribodyn.plot.theme.colors import COLORS, MUTED
 from tribodyn.plot.theme.labels import axis_label, displayed, rounded
-from tribodyn.plot.theme.panels import Panel, Row, event_lines, stack, stack_rows
-from tribodyn.plot.theme.style import MUTED, Trace, marked
+from tribodyn.plot.theme.panels import FROM_ZERO, Panel, Row, curves, event_lines, stack, stack_rows
+from tribodyn.plot.theme.style import Trace, marked
 from tribodyn.study.pipeline.summary_figures import in_words
 from tribodyn.study.studies.sweep_result import OF_PARTS, level_keys
 
@@ -84,7 +83,7 @@ def _compared(comparison: ResultComparison) -> str:
     return f"{levels_text(*parts)} At the operating point, one bar for each result."
 
 
-def _marks(met: Iterable[Resonance], x: Array | None = None) -> dict[str, Any]:
+def _marks(met: Iterable[Resonance], x: Array | None = None) -> Trace:
     """Vertical lines where a mesh meets a mode; of those too near to be named the strongest."""
     places: list[tuple[str, float]] = []
     for each in met:
@@ -103,12 +102,11 @@ def _title(levels: Iterable[tuple[Sequence[str], Array]], x: Sequence[str]) -> s
         return "No value has a motion"
     text, (quantity, _), (names, values) = present[-1]
     at, part = np.unravel_index(int(np.nanargmax(values)), values.shape)
-    greatest = rounded(quantity, float(values[at, part]))
+    greatest = rounded(quantity, values[at, part])
     return f"{text} {names[int(part)]} has the largest level at {x[int(at)]}: {greatest}"
 
 
 @drawing(
-    "machine_levels",
     heading="Levels over the speed",
     caption=lambda study: (
         levels_text(study.mesh, study.mesh, study.bearing, study.node)
@@ -128,13 +126,12 @@ def machine_levels(study: MachineLevels) -> Any:
         (study.bearing, study.bearing_force),
         (study.node, study.acceleration),
     ]
-    title = _title(levels, [rounded("speed", float(speed)) for speed in study.speed])
+    title = _title(levels, [rounded("speed", speed) for speed in study.speed])
     label = axis_label("speed", "Speed of the input")
     return stack(title, label, _panels(x, levels), _marks(study.resonances, x))
 
 
 @drawing(
-    "machine_level_lines",
     heading="Which mesh causes the level",
     caption=lambda study: (
         "Amplitudes at the harmonics of each mesh over the speed, in the colour of the mesh: the "
@@ -165,7 +162,7 @@ def machine_level_lines(study: MachineLevels) -> Any:
             at, top = np.unravel_index(int(np.nanargmax(total)), total.shape)
             largest = (
                 f"{label.replace('<br>', ' ')}: the largest line is {study.line[int(top)]} at "
-                f"{rounded('speed', float(study.speed[at]))}"
+                f"{rounded('speed', study.speed[at])}"
             )
     label = axis_label("speed", "Speed of the input")
     return stack(largest or "No speed has a motion", label, panels, _marks(study.resonances, x))
@@ -180,7 +177,6 @@ def _lack(study: Sweep) -> str:
 
 
 @drawing(
-    "machine_sweep",
     heading="Levels of the parts",
     caption=_swept,
     missing=_lack,
@@ -228,7 +224,6 @@ def _not_of_machines(comparison: ResultComparison) -> str:
 
 
 @drawing(
-    "machine_comparison",
     heading="Levels of the parts",
     caption=_compared,
     missing=_not_of_machines,
@@ -268,7 +263,6 @@ def _by_kind(keys: Iterable[str]) -> Iterator[tuple[str, str, list[str], list[st
 
 
 @drawing(
-    "machine_ensemble",
     heading="Spread of the levels",
     caption="Levels of the parts at the median of all inputs; the bars over them hold 95 % of the "
     "variants.",
@@ -288,7 +282,7 @@ def machine_ensemble(study: MachineEnsemble) -> Any:
         marks["error_y"] = {"type": "data", "symmetric": False, "width": 8, **bars}
         rows.append(Row("", Panel(axis_label(quantity, label), [marks], FROM_ZERO)))
         for name, centre, a, b in zip(names, middle, low, high, strict=True):
-            text = f"{in_words(name)}: 95 % of the variants from {rounded(quantity, float(a))}"
-            text = f"{text} to {rounded(quantity, float(b))}"
+            text = f"{in_words(name)}: 95 % of the variants from {rounded(quantity, a)}"
+            text = f"{text} to {rounded(quantity, b)}"
             widest = max(widest, (float((b - a) / centre) if centre else 0.0, text))
     return stack_rows(widest[1], rows, {"hovermode": "closest"})

@@ -9,21 +9,12 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from tribodyn.drawing import drawing
-from tribodyn.plot.machine.orders import COLORS
 from tribodyn.plot.machine.side_view import SideView, joined_names, shaft_outline
 from tribodyn.plot.motion.linear import crossing_dots, natural_lines
+from tribodyn.plot.theme.colors import COLORS, GRID, MUTED, PAIR_COLORS, PINION, WHEEL
 from tribodyn.plot.theme.labels import axis_label, display_unit, displayed, rounded, significant
 from tribodyn.plot.theme.panels import Panel, event_lines, stack
-from tribodyn.plot.theme.style import (
-    GRID,
-    MUTED,
-    PAIR_COLORS,
-    PINION,
-    WHEEL,
-    Trace,
-    figure,
-    line,
-)
+from tribodyn.plot.theme.style import Trace, axis, choice, line, plane_figure, strokes
 from tribodyn.study.machine.modes import energy_shares, modes_in_reach
 from tribodyn.types import Array, ComplexArray
 
@@ -43,10 +34,8 @@ def _outlines(view: SideView) -> list[Trace]:
         ends = list(view.reach[name])
         x, radius = shaft_outline(shaft) if shaft.sections else (ends, [0.0, 0.0])
         points = view.place(name, [*x, *x[::-1]], [*radius, *(-r for r in radius[::-1])])
-        outline = {"x": points[0], "y": points[1]}
-        more: Trace = {"type": "scatter", "mode": "lines", "fill": "toself", "fillcolor": GRID}
-        more |= {"line": {"color": MUTED, "width": 0.5}, "hoverinfo": "skip", "showlegend": False}
-        traces.append({**outline, **more})
+        fill: Trace = {"fill": "toself", "fillcolor": GRID, "showlegend": False}
+        traces.append(strokes(*points, MUTED, 0.5, **fill))
     return traces
 
 
@@ -85,7 +74,6 @@ def _rigid(modes: MachineModes) -> str:
 
 
 @drawing(
-    "machine_modes",
     heading="Natural modes on the shafts",
     caption="Choose a mode: its displacement along y, z and x is drawn as a distance from the axis "
     "of each shaft, to one scale. The title lists where its strain energy is; meshes excite the "
@@ -101,37 +89,27 @@ def machine_modes(modes: MachineModes) -> Any:
     reach = modes_in_reach(modes)
     count = min(max(reach, 1), _MOST, len(modes.frequency))
     height = view.height or 0.2
-    outlines, traces, buttons = _outlines(view), [], []
-    order = range(count)
-    meshes = modes.share_by_kind()["meshes"][:count]
-    first = int(np.argmax(meshes))
-    points = _points(structure)
-    for number in order:
-        for trace in _deflection(view, points, modes.shape[number], height):
-            traces.append({**trace, "visible": number == first})
-        visible = [True] * len(outlines)
-        visible += [k == number for k in order for _ in _DRAWN]
-        label = f"{number + 1}: {significant(float(modes.frequency[number]), 4)} Hz"
-        text = f"{label}: {energy_shares(modes, number)}"
-        step = {
-            "label": label,
-            "method": "update",
-            "args": [{"visible": visible}, {"title.text": text}],
-        }
-        buttons.append(step)
-    menu = {"buttons": buttons, "active": first, "x": 1.0, "xanchor": "right", "y": 1.12}
-    layout = {
-        "height": 520,
-        "hovermode": False,
-        "updatemenus": [{**menu, "yanchor": "top", "bgcolor": "white"}],
-        "xaxis": {"title": {"text": "Along the shafts [mm]"}, "constrain": "domain"},
-        "yaxis": {"title": {"text": "Across [mm]"}, "scaleanchor": "x", "constrain": "domain"},
-    }
+    outlines, order = _outlines(view), range(count)
+    first, points = int(np.argmax(modes.share_by_kind()["meshes"][:count])), _points(structure)
+    traces = [
+        {**trace, "visible": number == first}
+        for number in order
+        for trace in _deflection(view, points, modes.shape[number], height)
+    ]
+    labels = [f"{k + 1}: {significant(modes.frequency[k], 4)} Hz" for k in order]
+    titles = [f"{label}: {energy_shares(modes, k)}" for k, label in enumerate(labels)]
+    visible = [
+        [True] * len(outlines) + [k == number for k in order for _ in _DRAWN] for number in order
+    ]
+    x = axis("Along the shafts [mm]", constrain="domain")
+    y = axis("Across [mm]", scaleanchor="x", constrain="domain")
+    menus = [choice(labels, titles, visible, first)]
     title = (
-        f"{first + 1}: {rounded('frequency', float(modes.frequency[first]), 4)}: "
+        f"{first + 1}: {rounded('frequency', modes.frequency[first], 4)}: "
         f"{energy_shares(modes, first)}"
     )
-    return figure(title, [*outlines, *traces], layout)
+    layout: Trace = {"height": 520, "hovermode": False, "updatemenus": menus}
+    return plane_figure(title, [*outlines, *traces], x, y, **layout)
 
 
 def _equal_orders(diagram: MachineCampbell) -> dict[str, int]:
@@ -182,7 +160,6 @@ def _crossings(met: Sequence[Meeting]) -> Trace:
 
 
 @drawing(
-    "machine_campbell",
     heading="Campbell diagram of the machine",
     caption="Natural frequencies and what excites them over the speed of the input: the harmonics "
     "of each mesh in its colour, and the turning of the shafts (dotted). Dark, numbered modes are "

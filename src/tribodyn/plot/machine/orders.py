@@ -1,23 +1,24 @@
-"""Order spectra of a machine, each line in the colour of the mesh that excites it."""
+"""Forces of a machine, their orders by mesh, and the kinematic frequencies of a case."""
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from tribodyn.drawing import drawing
 from tribodyn.plot.machine.side_view import joined_names
+from tribodyn.plot.theme.colors import COLORS, INK
 from tribodyn.plot.theme.labels import axis_label, display_unit, displayed, rounded
-from tribodyn.plot.theme.panels import ROUNDING, from_zero, stack
-from tribodyn.plot.theme.style import INK, PAIR_COLORS, PINION, WHEEL, Trace, marked, stems
+from tribodyn.plot.theme.panels import ROUNDING, Panel, from_zero, stack
+from tribodyn.plot.theme.style import Trace, figure, line, marked, stems
 from tribodyn.types import Array
 
 if TYPE_CHECKING:
+    from tribodyn.study.frequencies import KinematicFrequencies
     from tribodyn.study.machine.motion import MachineMotion
 
-#: Colours of the meshes; lines of several meshes at once are black.
-COLORS = (PINION, WHEEL, *PAIR_COLORS)
 _HARMONICS = 10
 
 
@@ -73,7 +74,6 @@ def _caption(motion: MachineMotion) -> str:
 
 
 @drawing(
-    "machine_orders",
     heading="Which mesh causes which line",
     caption=_caption,
     of=("MachineMotion", "MachineResult.motion"),
@@ -106,7 +106,7 @@ def machine_orders(motion: MachineMotion) -> Any:
         f"harmonic {number} of mesh {joined_names(names)}" for number, names in harmonics.items()
     )
     title = (
-        f"{label}: the largest line, {rounded(quantity, float(values[top]))}, is {cause} at "
+        f"{label}: the largest line, {rounded(quantity, values[top])}, is {cause} at "
         f"{rounded('frequency', motion.line_frequency(meshes))}"
     )
     if not values[top]:
@@ -117,3 +117,126 @@ def machine_orders(motion: MachineMotion) -> Any:
 def _above_rounding(amplitudes: Array, signal: Array) -> Array:
     """Amplitudes of a signal without those that are rounding of its size."""
     return np.where(amplitudes > ROUNDING * np.abs(signal).max(), amplitudes, 0.0)
+
+
+#: Most samples of a period, most meshes and most bearings that are drawn, height of a panel.
+_SAMPLES, _PARTS, _HEIGHT = 30_000, 8, 0.42
+
+
+def _force_caption(motion: MachineMotion) -> str:
+    drawn = (("meshes", motion.mesh), ("bearings", motion.bearing))
+    left_out = [
+        f"{len(names) - _PARTS} of {len(names)} {kind}"
+        for kind, names in drawn
+        if len(names) > _PARTS
+    ]
+    rest = f" Left out: {' and '.join(left_out)} with smaller variations." if left_out else ""
+    bearings = ", and the radial force on each bearing" if motion.bearing else ""
+    return (
+        f"Force of each mesh along its line of action{bearings}, without its mean, each to its own "
+        "scale; those that vary most come first. " + _period(motion) + rest
+    )
+
+
+def _period(motion: MachineMotion) -> str:
+    if motion.phase_turns is None:
+        return "The period is the shortest after which all meshes repeat."
+    return (
+        "The meshes have no common period: the record comes near all positions that they take to "
+        "each other."
+    )
+
+
+def _panels(
+    motion: MachineMotion, quantity: str, names: Sequence[str], force: Array
+) -> list[Panel]:
+    """Alternating force of each part to its own scale, the largest swing first."""
+    unit, mean, swing = display_unit(quantity), motion.mean(force), np.ptp(force, axis=0)
+    kind = "Mesh" if quantity == "mesh_force" else "Bearing"
+    panels = []
+    for i in np.argsort(-swing, kind="stable")[:_PARTS]:
+        values = displayed(quantity, force[:_SAMPLES, i] - mean[i])
+        level = rounded(quantity, mean[i])
+        varies = swing[i] > ROUNDING * np.abs(mean).max()
+        size = rounded(quantity, swing[i])
+        trace = line(motion.clock[:_SAMPLES], values, names[i], COLORS[i % len(COLORS)], unit=unit)
+        note = f"{kind} {names[i]}: " + (
+            f"{size} peak to peak about {level}" if varies else f"constant, {level}"
+        )
+        panels.append(
+            Panel(
+                f"[{unit}]",
+                [trace],
+                {"nticks": 4, "zeroline": True},
+                _HEIGHT,
+                float(displayed(quantity, np.abs(mean).max())),
+                note,
+            )
+        )
+    return panels
+
+
+@drawing(
+    heading="Forces over a period",
+    caption=_force_caption,
+    of=("MachineMotion", "MachineResult.motion"),
+    made_by="Run a case with shafts: tribodyn.run.",
+)
+def machine_forces(motion: MachineMotion) -> Any:
+    """Draw the alternating forces of meshes and on bearings over one period of the clock."""
+    panels = [
+        *_panels(motion, "mesh_force", motion.mesh, motion.mesh_force),
+        *_panels(motion, "bearing_force", motion.bearing, motion.radial_force),
+    ]
+    swing, mean = np.ptp(motion.mesh_force, axis=0), motion.mean(motion.mesh_force)
+    worst = int(np.argmax(swing))
+    title = (
+        f"The force of mesh {motion.mesh[worst]} varies most: "
+        f"{rounded('mesh_force', swing[worst])} peak to peak about a mean of "
+        f"{rounded('mesh_force', mean[worst])}"
+    )
+    if swing[worst] <= ROUNDING * np.abs(mean).max():
+        title = "No mesh force varies"
+    part = f", its first {motion.clock[_SAMPLES]:.2%}" if motion.clock.size > _SAMPLES else ""
+    name = "Phase of the clock" if motion.phase_turns is None else "Part of the record"
+    label = f"{name}, 1 = {1e3 / motion.frequency:.4g} ms{part}"
+    return stack(title, label, panels)
+
+
+@drawing(
+    heading="Frequencies of the parts",
+    caption="Each mark is a frequency at which a part repeats: turns of shafts (f), gear meshes "
+    "(GMF) with sidebands, hunting teeth (HTF), assembly phases (APF), defects of bearings (BPFO, "
+    "BPFI, BSF, FTF), passing planets (PPF) and damaged teeth of a stage (TF).",
+    of="KinematicFrequencies",
+    made_by="Take those of a case: tribodyn.kinematic_frequencies.",
+)
+def kinematic_frequencies(lines: KinematicFrequencies) -> Any:
+    """Draw the frequencies of the parts, one row for each."""
+    rows = list(dict.fromkeys(lines.part))
+    traces = []
+    for number, part in enumerate(rows):
+        mine = [k for k, name in enumerate(lines.part) if name == part]
+        color = COLORS[number % len(COLORS)]
+        trace = marked(
+            lines.frequency[mine], [part] * len(mine), part, color, size=8, symbol="line-ns-open"
+        )
+        labels = [lines.symbol[k] for k in mine]
+        words = [f"{lines.symbol[k]}, {lines.meaning[k]}" for k in mine]
+        hover = "%{x:.6g} Hz: %{customdata}<extra></extra>"
+        first = {float(lines.frequency[k]): k for k in reversed(mine)}
+        alone = [first[float(lines.frequency[k])] == k for k in mine]
+        shown = [
+            "" if "GMF " in label or not own else label
+            for label, own in zip(labels, alone, strict=True)
+        ]
+        trace |= {"mode": "markers+text", "text": shown, "textposition": "top center",
+                  "customdata": words, "hovertemplate": hover, "showlegend": False}  # fmt: skip
+        traces.append(trace)
+    layout = {
+        "height": 160 + 52 * len(rows),
+        "hovermode": "closest",
+        "xaxis": {"type": "log", "title": {"text": "Frequency [Hz]"}},
+        "yaxis": {"autorange": "reversed", "type": "category"},
+    }
+    return figure(f"{len(rows)} parts, input at {lines.input_frequency:.4g} Hz", traces, layout)

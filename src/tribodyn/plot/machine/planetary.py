@@ -1,4 +1,4 @@
-"""A planetary stage in front view with moving planets, and its mesh forces."""
+"""A planetary stage in front view with moving planets, its natural modes and mesh forces."""
 
 from __future__ import annotations
 
@@ -12,16 +12,33 @@ import numpy as np
 from tribodyn.drawing import drawing
 from tribodyn.gear import gear_outline
 from tribodyn.machine.planetary.positions import read_angles
-from tribodyn.plot.machine.orders import COLORS
-from tribodyn.plot.theme.curves import curve, curves
-from tribodyn.plot.theme.labels import axis_label, displayed, rounded
-from tribodyn.plot.theme.panels import ROUNDING, Panel, Row, from_zero, stack, stack_rows
-from tribodyn.plot.theme.style import MUTED, PAIR_COLORS, PINION, WHEEL, Trace, figure, line, stems
+from tribodyn.plot.theme.colors import COLORS, MUTED, PAIR_COLORS, PINION, WHEEL, translucent
+from tribodyn.plot.theme.labels import axis_label, displayed, rounded, significant
+from tribodyn.plot.theme.panels import (
+    ROUNDING,
+    Panel,
+    Row,
+    curve,
+    curves,
+    from_zero,
+    stack,
+    stack_rows,
+)
+from tribodyn.plot.theme.style import (
+    Trace,
+    animated,
+    choice,
+    figure,
+    line,
+    plane_figure,
+    stems,
+    strokes,
+)
 from tribodyn.types import Array, ComplexArray
 
 if TYPE_CHECKING:
     from tribodyn.gear import CylindricalGear
-    from tribodyn.machine import RingSensorSignal
+    from tribodyn.machine import PlanetaryModes, RingSensorSignal
     from tribodyn.study import MachineCase, MachineResult, PlanetaryMotion
     from tribodyn.study.planetary.tolerances import LoadShareStatistics
     from tribodyn.study.uncertain.machine_ensemble import MachineEnsemble
@@ -44,11 +61,8 @@ def _outline(gear: CylindricalGear) -> ComplexArray:
 
 
 def _trace(points: ComplexArray, name: str, color: str) -> Trace:
-    return {
-        "type": "scatter", "mode": "lines", "hoverinfo": "name", "name": name,
-        "x": points.real.astype(np.float32), "y": points.imag.astype(np.float32),
-        "line": {"color": color, "width": 1.2},
-    }  # fmt: skip
+    x, y = points.real.astype(np.float32), points.imag.astype(np.float32)
+    return strokes(x, y, color, name=name, hoverinfo="name")
 
 
 def _start_angles(teeth: dict[str, int], angles: Array) -> tuple[float, list[float]]:
@@ -70,7 +84,6 @@ def _not_drawn(result: MachineResult | MachineCase) -> str:
 
 
 @drawing(
-    "planetary_stage",
     heading="The stage in front view",
     caption="Sun, planets and ring with their teeth in the transverse section, and the arms of the "
     "carrier, to scale, seen against the axis. Press Play to turn the stage: one step of the "
@@ -136,13 +149,10 @@ def planetary_stage(result: MachineResult | MachineCase) -> Any:
     }  # fmt: skip
     turns = abs((rates["planet"] - rates["carrier"]) / rates["sun"])
     title = f"{angles.size} planets turn {turns:.3g} times about their pins in a turn of the sun"
-    sketch = figure(title, frames[0], layout)
-    sketch.frames = [{"name": str(k), "data": data} for k, data in enumerate(frames)]
-    return sketch
+    return animated(figure(title, frames[0], layout), frames)
 
 
 @drawing(
-    "planetary_forces",
     heading="Mesh forces of all planets",
     caption="Force of each sun mesh and of each ring mesh along its line of action over a mesh "
     "cycle, and the motion of the sun about its mean place, which the axis names.",
@@ -160,9 +170,7 @@ def planetary_forces(motion: PlanetaryMotion) -> Any:
     sun = motion.displacement[:, motion.member.index("sun"), :2]
     at = motion.mean(sun)
     size = float(np.abs(motion.displacement).max())
-    mean = ", ".join(
-        f"{k} = {rounded('deflection', float(v))}" for k, v in zip("xy", at, strict=True)
-    )
+    mean = ", ".join(f"{k} = {rounded('deflection', v)}" for k, v in zip("xy", at, strict=True))
     centred = np.abs(at).max() <= max(ROUNDING * size, _CENTRED * np.ptp(sun))
     label = "Sun, about the centre" if centred else f"Sun, about<br>{mean}"
     orbit = [("xy"[k], sun[:, k] - at[k], COLORS[k]) for k in range(2)]
@@ -181,7 +189,6 @@ def planetary_forces(motion: PlanetaryMotion) -> Any:
 
 
 @drawing(
-    "ring_sensor",
     heading="Sensor on the ring",
     caption="Lines of a sensor on the ring about the first two harmonics of the mesh frequency, "
     "over the order of the carrier: planets that pass modulate their mesh forces. Dotted: the "
@@ -228,7 +235,6 @@ def _without_factors(statistics: LoadShareStatistics | MachineEnsemble) -> str:
 
 
 @drawing(
-    "load_share_statistics",
     heading="Load sharing over tolerances",
     caption="Part of the stages whose mesh load factor K_gamma does not exceed a value. The "
     "steeper the curve, the less the tolerances matter.",
@@ -245,3 +251,76 @@ def load_share_statistics(statistics: LoadShareStatistics | MachineEnsemble) -> 
     row = Row("Mesh load factor K_gamma", Panel("Stages [%]", [curve]), marks=marks)
     title = f"95 % of {factor.size} stages have a load factor of at most {marks[1][1]:.4g}"
     return stack_rows(title, [row])
+
+
+#: Colour of each type of mode.
+MODE_COLORS = {
+    "rotational": PINION,
+    "translational": WHEEL,
+    "planet": PAIR_COLORS[0],
+    "mixed": PAIR_COLORS[1],
+}
+#: Colour of the stage at rest.
+_REST = translucent(MUTED, 0.4)
+#: Largest displacement over the radius of the pins, largest radius of a planet, points of a circle.
+_SIZE, _PLANET, _CIRCLE = 0.16, 0.4, 72
+_TURN = np.linspace(0.0, 2.0 * np.pi, _CIRCLE + 1)
+
+
+def _outlines(angles: Array, motion: Array) -> tuple[list[float], list[float]]:
+    """Pitch circles with a mark each, and the arms of the carrier, displaced by a motion."""
+    gaps = np.diff(np.sort(angles), append=np.sort(angles)[0] + 2.0 * np.pi)
+    planet = min(_PLANET, 0.9 * np.sin(min(float(gaps.min()), np.pi) / 2.0))
+    carrier, ring, sun = motion[:9].reshape(3, 3)
+    pins = np.stack([np.cos(angles), np.sin(angles)], axis=1)
+    bodies = [(np.zeros(2), 1.0 - planet, sun), (np.zeros(2), 1.0 + planet, ring)]
+    bodies += [(p, planet, m) for p, m in zip(pins, motion[9:].reshape(-1, 3), strict=True)]
+    x: list[float] = []
+    y: list[float] = []
+    for at, radius, (dx, dy, turn) in bodies:
+        # A mark inside the rim of a gear, and outside that of the ring.
+        start = 1.0 if radius > 1.0 else 0.6
+        end = 1.08 if radius > 1.0 else 1.0
+        mark = radius * np.exp(1j * turn / radius) * np.array([start, end])
+        circle = radius * np.exp(1j * _TURN)
+        points = np.concatenate([circle, [np.nan], mark, [np.nan]]) + complex(*at) + dx + 1j * dy
+        x += points.real.tolist()
+        y += points.imag.tolist()
+    turned = np.exp(1j * (angles + carrier[2])) + carrier[0] + 1j * carrier[1]
+    for pin in turned:
+        x += [carrier[0], pin.real, np.nan]
+        y += [carrier[1], pin.imag, np.nan]
+    return x, y
+
+
+def _mode_trace(angles: Array, motion: Array, color: str, width: float, visible: bool) -> Trace:
+    x, y = _outlines(angles, motion)
+    return strokes(x, y, color, width, showlegend=False, visible=visible)
+
+
+@drawing(
+    heading="Natural modes of the planetary stage",
+    caption="Choose a mode: pitch circles of sun, ring and planets and the arms of the carrier, at "
+    "rest (grey) and displaced, in the colour of the type of the mode. A mark on each gear shows "
+    "its rotation. The displacements have one scale; the radii are schematic.",
+    of=("PlanetaryModes",),
+    made_by="Call tribodyn.machine.planetary_modes on a plane model.",
+)
+def planetary_modes(modes: PlanetaryModes) -> Any:
+    """Draw the natural modes of a planetary stage, one at a time."""
+    angles = np.asarray(modes.angles)
+    count = modes.frequency.size
+    labels = [
+        f"{i + 1}: {significant(modes.frequency[i], 5)} Hz, {modes.types[i]}" for i in range(count)
+    ]
+    first = next((i for i in range(count) if modes.frequency[i] > 0.0), 0)
+    traces = [_mode_trace(angles, np.zeros(len(modes.names)), _REST, 2.0, True)]
+    for i in range(count):
+        motion = np.real(modes.shape[i])
+        motion = _SIZE * motion / np.abs(motion).max()
+        traces.append(_mode_trace(angles, motion, MODE_COLORS[modes.types[i]], 1.6, i == first))
+    visible = [[True, *(k == i for k in range(count))] for i in range(count)]
+    menu = {**choice(labels, labels, visible, first), "bordercolor": MUTED}
+    axis = {"visible": False, "range": [-1.7, 1.7]}
+    more: Trace = {"height": 620, "hovermode": False, "updatemenus": [menu]}
+    return plane_figure(labels[first], traces, axis, {**axis, "scaleanchor": "x"}, **more)

@@ -5,9 +5,9 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 from tribodyn.drawing import drawing
-from tribodyn.plot.machine.orders import COLORS
+from tribodyn.plot.theme.colors import COLORS, MUTED, translucent
 from tribodyn.plot.theme.labels import rounded
-from tribodyn.plot.theme.style import MUTED, figure, translucent
+from tribodyn.plot.theme.style import figure, sankey
 
 if TYPE_CHECKING:
     from tribodyn.machine import Machine, PowerFlow
@@ -15,7 +15,6 @@ if TYPE_CHECKING:
 
 
 @drawing(
-    "machine_power",
     heading="Flow of power",
     caption="From the input through shafts and meshes to the output; the width is the power. What "
     "the friction of computed teeth takes away leaves at each mesh.",
@@ -28,7 +27,6 @@ def machine_power(result: MachineResult) -> Any:
     run, flow, figures = machine.operation, result.operation.power_flow, result.operation.figures
     names = [f"shaft {name}" for name in machine.shafts]
     names += [f"mesh {name}" for name in machine.meshes] + ["input", "output", "friction"]
-    number = {name: place for place, name in enumerate(names)}
     links: list[tuple[str, str, float, str]] = []
     power = figures["machine.input_power"]
     leaving = power - sum(lost.values())
@@ -49,24 +47,13 @@ def machine_power(result: MachineResult) -> Any:
         giving, taking = ends if passing > 0.0 else ends[::-1]
         links.append((f"shaft {giving}", f"shaft {taking}", abs(passing), MUTED))
     links.append((f"shaft {end}", "output", leaving, MUTED))
-    trace = {
-        "type": "sankey",
-        "arrangement": "snap",
-        "node": {
-            "label": names,
-            "color": MUTED,
-            "pad": 18,
-            "thickness": 14,
-            "hovertemplate": "%{label}: %{value:.6g} W<extra></extra>",
-        },
-        "link": {
-            "source": [number[source] for source, *_ in links],
-            "target": [number[target] for _, target, *_ in links],
-            "value": [value for *_, value, _ in links],
-            "color": [translucent(color, 0.45) for *_, color in links],
-            "hovertemplate": "%{source.label} to %{target.label}: %{value:.6g} W<extra></extra>",
-        },
-    }
+    number = {name: place for place, name in enumerate(names)}
+    trace = sankey(
+        [(number[a], number[b], value, translucent(color, 0.45)) for a, b, value, color in links],
+        "%{source.label} to %{target.label}: %{value:.6g} W",
+        "%{label}: %{value:.6g} W",
+        label=names, color=MUTED, pad=18, thickness=14,
+    )  # fmt: skip
     share = figures.get("machine.efficiency", 1.0)
     efficiency = f", efficiency {100.0 * share:.4g} %" if share < 1.0 else ""
     title = f"{rounded('power', power)} in, {rounded('power', leaving)} out{efficiency}"

@@ -10,8 +10,9 @@ import numpy as np
 
 from tribodyn.drawing import drawing
 from tribodyn.machine.graph.mesh_checks import gear_hand
+from tribodyn.plot.theme.colors import FILLS, INK, MUTED, PAIR_COLORS, PINION, WHEEL
 from tribodyn.plot.theme.labels import rounded
-from tribodyn.plot.theme.style import FILLS, INK, MUTED, PAIR_COLORS, PINION, WHEEL, Trace, figure
+from tribodyn.plot.theme.style import Trace, axis, note, plane_figure, strokes
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
@@ -135,14 +136,8 @@ def pitch_diameter(machine: Machine, gear: str) -> float:
 
 def _area(points: tuple[Array, Array], color: str, fill: str, text: str) -> Trace:
     """Filled outline with a text."""
-    hover = {"hoveron": "fills", "hoverinfo": "text", "text": text}
-    return {**_strokes(points, color, 1.2), "fill": "toself", "fillcolor": fill, **hover}
-
-
-def _strokes(points: tuple[Array, Array], color: str, width: float) -> Trace:
-    """Lines without a text."""
-    style = {"line": {"color": color, "width": width}, "hoverinfo": "skip", "showlegend": False}
-    return {"type": "scatter", "mode": "lines", "x": points[0], "y": points[1], **style}
+    hover: Trace = {"hoveron": "fills", "hoverinfo": "text", "text": text, "showlegend": False}
+    return strokes(*points, color, fill="toself", fillcolor=fill, **hover)
 
 
 def _box(left: float, right: float, low: float, high: float) -> tuple[list[float], list[float]]:
@@ -185,7 +180,7 @@ def _gears(view: SideView) -> Iterator[Trace]:
         for part in _TEETH if helix else ():
             y = part * radius
             ends = [x - half, x + half], [y - rise, y + rise]
-            yield _strokes(view.place(gear.shaft, *ends), color, 0.8)
+            yield strokes(*view.place(gear.shaft, *ends), color, 0.8, showlegend=False)
 
 
 def _cone(machine: Machine, name: str) -> tuple[list[float], list[float]] | None:
@@ -231,7 +226,7 @@ def _bearings(view: SideView) -> Iterator[Trace]:
             ring = view.place(bearing.shaft, *_box(left, right, low, high))
             yield _area(ring, MUTED, _SEAT, f"bearing {name}: {kind}")
             cross = [left, right, np.nan, left, right], [low, high, np.nan, high, low]
-            yield _strokes(view.place(bearing.shaft, *cross), MUTED, 1.0)
+            yield strokes(*view.place(bearing.shaft, *cross), MUTED, 1.0, showlegend=False)
 
 
 def _seat(shaft: Shaft, position: float) -> float:
@@ -242,20 +237,19 @@ def _seat(shaft: Shaft, position: float) -> float:
     return 0.02
 
 
-def _names(view: SideView) -> list[dict[str, Any]]:
+def _names(view: SideView) -> list[Trace]:
     """Names of shafts at their left end, of bearings and gears above them."""
     machine, notes = view.machine, []
 
-    def note(shaft: str, position: float, across: float, text: str, **more: Any) -> None:
+    def name_at(shaft: str, position: float, across: float, text: str, **more: Any) -> None:
         x, y = view.place(shaft, position, across)
-        place = {"x": float(x), "y": float(y), "text": text, "showarrow": False}
-        notes.append({**place, "font": {"size": 12, "color": INK}, **more})
+        notes.append(note(float(x), float(y), text, **more))
 
     for name, ends in view.reach.items():
         upright = abs(view.axes[name].along[1]) > _UPRIGHT
         end = ends[0] if view.axes[name].along[1 if upright else 0] > 0.0 else ends[1]
-        offset: dict[str, Any] = {"yshift": -12} if upright else {"xanchor": "right", "xshift": -8}
-        note(name, end, 0.0, f"<b>{name}</b>", **offset)
+        offset: Trace = {"yshift": -12} if upright else {"xanchor": "right", "xshift": -8}
+        name_at(name, end, 0.0, f"<b>{name}</b>", **offset)
     driving = {load.driver for load in machine.kinematics.meshes.values()}
     for name, gear in machine.gears.items():
         side = 1.0 if name in driving else -1.0
@@ -263,30 +257,30 @@ def _names(view: SideView) -> list[dict[str, Any]]:
         offset = {"xshift": 12 * side} if upright else {"yshift": 9 * side}
         across = side * 0.5 * pitch_diameter(machine, name)
         across *= -np.sign(view.axes[gear.shaft].along[1]) if upright else 1.0
-        note(gear.shaft, gear.node_position, across, name, **offset)
+        name_at(gear.shaft, gear.node_position, across, name, **offset)
     levels = _levels(view)
     for name, bearing in machine.bearings.items():
-        color = {"size": 12, "color": PAIR_COLORS[0]}
-        note(bearing.shaft, bearing.position, 0.0, name, font=color, yshift=levels[name])
+        style: Trace = {"color": PAIR_COLORS[0], "yshift": levels[name]}
+        name_at(bearing.shaft, bearing.position, 0.0, name, **style)
     return _without_overlap(notes, _scale(view) / _MM)
 
 
-def _without_overlap(notes: list[dict[str, Any]], scale: float) -> list[dict[str, Any]]:
+def _without_overlap(notes: list[Trace], scale: float) -> list[Trace]:
     """Names with those of parts in the same place joined, such as planets behind each other."""
-    joined: list[tuple[dict[str, Any], list[str]]] = []
-    for note in notes:
-        style = {key: value for key, value in note.items() if key not in ("x", "y", "text")}
-        reach = _NEAR[1] if "xanchor" in note else _NEAR[0]
+    joined: list[tuple[Trace, list[str]]] = []
+    for name in notes:
+        style = {key: value for key, value in name.items() if key not in ("x", "y", "text")}
+        reach = _NEAR[1] if "xanchor" in name else _NEAR[0]
         for other, texts in joined:
-            overlaps = abs(note["x"] - other["x"]) * scale < reach
-            overlaps &= abs(note["y"] - other["y"]) * scale < _NEAR[0]
+            overlaps = abs(name["x"] - other["x"]) * scale < reach
+            overlaps &= abs(name["y"] - other["y"]) * scale < _NEAR[0]
             if overlaps and style == {key: other.get(key) for key in style}:
-                other["x"] = min(other["x"], note["x"])
-                texts.append(note["text"])
+                other["x"] = min(other["x"], name["x"])
+                texts.append(name["text"])
                 break
         else:
-            joined.append((note, [note["text"]]))
-    return [{**note, "text": joined_names(texts)} for note, texts in joined]
+            joined.append((name, [name["text"]]))
+    return [{**name, "text": joined_names(texts)} for name, texts in joined]
 
 
 def joined_names(names: Sequence[str]) -> str:
@@ -331,7 +325,6 @@ def _levels(view: SideView) -> dict[str, int]:
 
 
 @drawing(
-    "machine",
     heading="The machine",
     caption="To scale, with the axes unfolded into one plane; axes that cross are seen along their "
     "common perpendicular. Shafts with their sections, gears with their reference circles (blue: "
@@ -351,19 +344,6 @@ def machine(machine: Machine) -> Any:
         f"{rounded('speed', abs(run.speed))} and {rounded('torque', abs(run.torque))} in, "
         f"{rounded('speed', abs(shafts[run.output].speed))} out: ratio {ratio:.4g}"
     )
-    layout = {
-        "hovermode": "closest",
-        "height": 520,
-        "xaxis": {
-            "title": {"text": "Along the shafts [mm]"},
-            "zeroline": False,
-            "constrain": "domain",
-        },
-        "yaxis": {
-            "title": {"text": "Across [mm]"},
-            "scaleanchor": "x",
-            "scaleratio": 1.0,
-        },
-        "annotations": _names(view),
-    }
-    return figure(title, traces, layout)
+    x = axis("Along the shafts [mm]", zeroline=False, constrain="domain")
+    y = axis("Across [mm]", scaleanchor="x", scaleratio=1.0)
+    return plane_figure(title, traces, x, y, height=520, annotations=_names(view))

@@ -27,6 +27,9 @@ CYCLES = 2
 #: How to create the results that these figures draw.
 RUN = "Call tribodyn.run(case) and plot its result."
 TABLE = "Call tribodyn.run(case), whose result has one, or tribodyn.mesh.build."
+#: Classes that have a cylindrical pair.
+PAIRS = ("CylindricalPair", "Result.case.gear_pair", "MeshTable.gear_pair",
+         "LoadedContact.gear_pair")  # fmt: skip
 #: Registers a figure of a run, and one of a mesh table.
 run_drawing = partial(drawing, of="Result", made_by=RUN)
 table_drawing = partial(drawing, of=("MeshTable", "Result.mesh"), made_by=TABLE)

@@ -9,10 +9,11 @@ import numpy as np
 from tribodyn.drawing import Need, drawing
 from tribodyn.mesh.face.maps import face_map
 from tribodyn.plot.mesh.cycle import table_drawing
+from tribodyn.plot.theme.colors import HEAT, MUTED
 from tribodyn.plot.theme.labels import axis_label, display_unit, displayed, label_with, rounded
 from tribodyn.plot.theme.panels import event_lines
 from tribodyn.plot.theme.path import pair_letters, roll_label
-from tribodyn.plot.theme.style import HEAT, MUTED, Trace, figure, heat
+from tribodyn.plot.theme.style import Trace, axis, figure, heat
 from tribodyn.types import Array
 
 if TYPE_CHECKING:
@@ -70,7 +71,7 @@ class _Map(NamedTuple):
     most: float  #: value of the last colour
 
 
-@table_drawing("face_maps", heading="Maps over the face", caption=_caption, missing=_without_face)
+@table_drawing(heading="Maps over the face", caption=_caption, missing=_without_face)
 def face_maps(mesh: MeshTable) -> Any:
     """Draw load, pressure, film and friction over path and face."""
     charts = {
@@ -84,7 +85,7 @@ def face_maps(mesh: MeshTable) -> Any:
         values = displayed(quantity, chart.values)
         most = np.nanquantile(values, _COLORED if "film" in column else 1.0)
         maps.append(_Map(_NAMES[column], display_unit(quantity), values, most))
-    greatest = rounded("load_per_width", float(mesh.load_per_width.max()))
+    greatest = rounded("load_per_width", mesh.load_per_width.max())
     title = f"The load per length of the lines of contact reaches {greatest}"
     first = next(iter(charts.values()))
     return _stacked(title, maps, mesh.gear_pair, (first.path, first.face_position))
@@ -93,7 +94,7 @@ def face_maps(mesh: MeshTable) -> Any:
 def _stacked(title: str, maps: list[_Map], pair: Any, place: tuple[Array, Array]) -> Any:
     """Maps of a mesh one below the other."""
     total = _HEIGHT * len(maps) + _GAP * (len(maps) - 1)
-    traces, layout = [], dict[str, Any]()
+    traces, layout = [], Trace()
     path, face = place
     radius = path if pair.driver == "pinion" else pair.line_of_action_length - path
     x = displayed("roll_angle", radius / pair.driving.base_radius)
@@ -103,15 +104,14 @@ def _stacked(title: str, maps: list[_Map], pair: Any, place: tuple[Array, Array]
         top = 1.0 - number * (_HEIGHT + _GAP) / total
         domain = (max(top - _HEIGHT / total, 0.0), top)
         label = label_with(chart.name.replace(" ", "<br>", 1), chart.unit)
-        heading = {"text": axis_label("face_position", "Face")}
-        layout[f"yaxis{suffix}"] = {"title": heading, "domain": domain}
+        layout[f"yaxis{suffix}"] = axis(axis_label("face_position", "Face"), domain=domain)
         bar = Trace(y=sum(domain) / 2.0, len=domain[1] - domain[0], thickness=14)
         bar["title"] = {"text": label, "side": "right", "font": {"size": 12, "color": MUTED}}
         hover = f"%{{x:.4g}} deg, %{{y:.4g}} mm: %{{z:.4g}} {chart.unit}"
         more = {"yaxis": f"y{suffix}", "zmin": np.nanmin(chart.values), "zmax": chart.most}
         traces.append(heat(x, y, chart.values, HEAT, hover, colorbar=bar, **more))
     last = str(len(maps)) if len(maps) > 1 else ""
-    layout["xaxis"] = {"title": {"text": roll_label(pair)}, "anchor": f"y{last}"}
+    layout["xaxis"] = axis(roll_label(pair), anchor=f"y{last}")
     marks = event_lines(pair_letters(pair), share=0.85)
     return figure(title, traces, {**layout, **marks, "height": total + _AROUND})
 
@@ -135,7 +135,6 @@ def _least_in_words(rating: MeshRating) -> str:
 
 
 @drawing(
-    "rating_maps",
     heading="Load capacity over the flank",
     caption=lambda rating: (
         "Pressure, temperature and film of a tooth pair with K_A, K_gamma and the computed K_v, "

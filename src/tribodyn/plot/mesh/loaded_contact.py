@@ -10,11 +10,11 @@ from numpy.typing import ArrayLike
 
 from tribodyn.drawing import drawing
 from tribodyn.plot.mesh.cycle import between
-from tribodyn.plot.theme.curves import curve
+from tribodyn.plot.theme.colors import TOTAL
 from tribodyn.plot.theme.labels import axis_label, display_unit, displayed, rounded
-from tribodyn.plot.theme.panels import Panel, event_lines, from_zero, stack
+from tribodyn.plot.theme.panels import Panel, curve, event_lines, from_zero, stack
 from tribodyn.plot.theme.path import corner_shades, pair_letters, roll_angle_of, roll_label
-from tribodyn.plot.theme.style import TOTAL, Trace, line
+from tribodyn.plot.theme.style import Trace, line
 from tribodyn.types import Array, Mask
 
 if TYPE_CHECKING:
@@ -124,11 +124,10 @@ def _title(contact: LoadedContact) -> str:
     swings = np.ravel(contact.peak_to_peak_transmission_error)
     if len(names) == 1:
         mean, swing = (
-            rounded(_QUANTITY, float(value))
-            for value in (np.mean(contact.transmission_error), swings[0])
+            rounded(_QUANTITY, value) for value in (np.mean(contact.transmission_error), swings[0])
         )
         return f"Under {names[0]} the transmission error is {mean} on average and varies by {swing}"
-    low, high = (rounded(_QUANTITY, float(at(swings))) for at in (np.min, np.max))
+    low, high = (rounded(_QUANTITY, at(swings)) for at in (np.min, np.max))
     return f"From {names[0]} to {names[-1]} the transmission error varies by {low} to {high}"
 
 
@@ -216,7 +215,6 @@ def _over_cycles_or_angle(contact: LoadedContact) -> str:
 
 
 @drawing(
-    "loaded_contact",
     heading="Loaded tooth contact",
     caption=_over_cycles_or_angle,
     of="LoadedContact",
@@ -267,7 +265,7 @@ def _corners(contact: LoadedContact, life: Life) -> dict[str, list[Trace]]:
     return corner_shades(contact.gear_pair, float(loaded.min()), float(loaded.max()))
 
 
-def _band(x: Array, least: Array, greatest: Array, color: str) -> dict[str, Any]:
+def _band(x: Array, least: Array, greatest: Array, color: str) -> Trace:
     """Band between the least and the most loaded pair."""
     ends = np.concatenate((x, x[::-1])), np.concatenate((greatest, least[::-1]))
     fill: Trace = {"fill": "toself", "fillcolor": color, "opacity": 0.25, "hoverinfo": "skip"}
@@ -289,7 +287,6 @@ def _traces(contact: LoadedContact, life: Life, inside: Mask) -> list[Trace]:
 
 
 @drawing(
-    "loaded_sharing",
     heading="Load sharing",
     caption=_caption,
     of="LoadedContact",
@@ -308,5 +305,5 @@ def loaded_sharing(contact: LoadedContact) -> Any:
     layout["xaxis"] = {"range": ends.tolist()}
     label = axis_label("normal_force", "Force on a tooth pair")
     panel = from_zero(label, _traces(contact, life, inside), 1.6)
-    title = f"A tooth pair carries up to {rounded('normal_force', float(peak))}"
+    title = f"A tooth pair carries up to {rounded('normal_force', peak)}"
     return stack(title, roll_label(pair), [panel], layout)

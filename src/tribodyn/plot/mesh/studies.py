@@ -1,4 +1,4 @@
-"""Static mesh studies: Harris map, tip relief optimization, stiffness with oil film."""
+"""Static studies: Harris map, tip relief, lead, stiffness with oil film, coupling."""
 
 from __future__ import annotations
 
@@ -8,28 +8,27 @@ import numpy as np
 
 from tribodyn.drawing import Need, drawing
 from tribodyn.plot.mesh.loaded_contact import in_legend, torque_colors, torque_names, whole_cycles
-from tribodyn.plot.theme.curves import FROM_ZERO, curve, curves
+from tribodyn.plot.theme.colors import MUTED, PAIR_COLORS, PINION, TOTAL, WHEEL
 from tribodyn.plot.theme.labels import axis_label, display_unit, displayed, rounded
-from tribodyn.plot.theme.panels import Panel, Row, event_lines, stack, stack_rows
-from tribodyn.plot.theme.path import mesh_marks, pair_letters, roll_label
-from tribodyn.plot.theme.style import (
-    INK,
-    MUTED,
-    PAIR_COLORS,
-    PINION,
-    TOTAL,
-    WHEEL,
-    Trace,
-    line,
-    marked,
+from tribodyn.plot.theme.panels import (
+    FROM_ZERO,
+    Panel,
+    Row,
+    curve,
+    curves,
+    event_lines,
+    from_zero,
+    stack,
+    stack_rows,
 )
+from tribodyn.plot.theme.path import mesh_marks, pair_letters, roll_label
+from tribodyn.plot.theme.style import Trace, contour, line, marked
 from tribodyn.types import Array, Mask
 
 if TYPE_CHECKING:
     from tribodyn.mesh import ComprehensiveStiffness
-    from tribodyn.stiffness import HarrisMap, TipReliefOptimum
+    from tribodyn.stiffness import HarrisMap, LeadOptimum, TipReliefOptimum
     from tribodyn.study.coupling import Coupling
-
 
 _QUANTITY = "static_transmission_error"
 #: Dashes of the mesh harmonics; most curves of the transmission error.
@@ -38,8 +37,6 @@ _MOST_CURVES = 25
 _CYCLES = 2
 #: Colours from small to large transmission error.
 _SCALE = [[0.0, "#f7fbff"], [0.5, "#c6dbef"], [1.0, "#6baed6"]]
-#: Position and size of the colour bar.
-_BAR = {"len": 0.34, "y": 1.0, "yanchor": "top", "thickness": 14, "x": 1.01, "xanchor": "left"}
 #: Panels: column, quantity and label.
 _PANELS = (
     ("film_stiffness", "film_stiffness", "Oil film K<sub>o</sub>"),
@@ -118,7 +115,6 @@ def _harris_caption(study: HarrisMap) -> str:
 
 
 @drawing(
-    "harris_map",
     heading="Transmission error over torque",
     caption=_harris_caption,
     of="HarrisMap",
@@ -127,7 +123,7 @@ def _harris_caption(study: HarrisMap) -> str:
 def harris_map(study: HarrisMap) -> Any:
     """Draw the transmission error per torque, its peak to peak and harmonics over torque."""
     swings = study.peak_to_peak_transmission_error
-    least = rounded(_QUANTITY, float(np.min(swings)))
+    least = rounded(_QUANTITY, np.min(swings))
     quietest = torque_names(study.torque)[int(np.argmin(swings))]
     return stack_rows(
         f"Least variation of the transmission error: {least} at {quietest}",
@@ -139,32 +135,20 @@ def _map(study: TipReliefOptimum) -> Row:
     """Row with the objective over amount and length and a marker at the optimum."""
     unit = display_unit(_QUANTITY)
     micro, milli = display_unit("tip_relief"), display_unit("tip_relief_length")
-    hover = f"%{{x:.4g}} {micro} over %{{y:.4g}} {milli}: %{{z:.4g}} {unit}<extra></extra>"
-    surface = {
-        "type": "contour",
-        "x": displayed("tip_relief", study.map_amount),
-        "y": displayed("tip_relief_length", study.map_length),
-        "z": displayed(_QUANTITY, study.map_objective.T),
-        "colorscale": _SCALE,
-        "ncontours": 16,
-        "contours": {"showlabels": True, "labelfont": {"size": 10, "color": INK}},
-        "line": {"width": 0.6, "color": MUTED},
-        "colorbar": {**_BAR, "title": {"text": f"[{unit}]"}},
-        "name": "peak to peak",
-        "hovertemplate": hover,
-        "showlegend": False,
-    }
+    place = f"%{{x:.4g}} {micro} over %{{y:.4g}} {milli}"
+    amount = displayed("tip_relief", study.map_amount)
+    length = displayed("tip_relief_length", study.map_length)
+    swing, hover = displayed(_QUANTITY, study.map_objective.T), f"{place}: %{{z:.4g}} {unit}"
+    surface = contour(amount, length, swing, _SCALE, hover, unit, 0.34) | {"name": "peak to peak"}
     x, y = displayed("tip_relief", [study.amount]), displayed("tip_relief_length", [study.length])
-    optimum = marked(x, y, "optimum", WHEEL, size=15, symbol="star", showlegend=False)
+    optimum = marked(x, y, "optimum", WHEEL, 15, "star", showlegend=False)
     optimum["marker"]["line"] = {"color": "white", "width": 1}
     optimum |= {"mode": "markers+text", "text": ["optimum"], "textposition": "top center"}
-    optimum["textfont"] = {"color": TOTAL}
-    hover = f"%{{x:.4g}} {micro} over %{{y:.4g}} {milli}<extra>optimum</extra>"
-    optimum["hovertemplate"] = hover
+    optimum |= {"textfont": {"color": TOTAL}, "hovertemplate": f"{place}<extra>optimum</extra>"}
     return Row(
         axis_label("tip_relief", "Amount of the tip relief"),
         Panel(axis_label("tip_relief_length", "Its length"), [surface, optimum], height=1.6),
-        {"range": displayed("tip_relief", study.map_amount[[0, -1]]).tolist()},
+        {"range": amount[[0, -1]].tolist()},
     )
 
 
@@ -219,7 +203,6 @@ def _relief_caption(study: TipReliefOptimum) -> str:
 
 
 @drawing(
-    "tip_relief_map",
     heading="Tip relief optimization",
     caption=_relief_caption,
     of="TipReliefOptimum",
@@ -245,7 +228,7 @@ def tip_relief_map(study: TipReliefOptimum) -> Any:
 def _curve_styles(study: ComprehensiveStiffness) -> list[tuple[int, int, str, str, str]]:
     """Indices of torque and speed with name, colour and dash of each curve."""
     torques = torque_names(study.pinion_torque)
-    speeds = [rounded("speed", float(value)) for value in study.pinion_speed]
+    speeds = [rounded("speed", value) for value in study.pinion_speed]
     by_speed = len(torques) == 1
     colors = torque_colors(len(speeds) if by_speed else len(torques))
     styles = []
@@ -297,7 +280,6 @@ def _series_caption(study: ComprehensiveStiffness) -> str:
 
 
 @drawing(
-    "comprehensive_stiffness",
     heading="Stiffness of teeth and film",
     caption=_series_caption,
     of="ComprehensiveStiffness",
@@ -335,7 +317,6 @@ _WORDS = {
 
 
 @drawing(
-    "coupling",
     heading="Coupling of load, film and friction",
     caption="Above: change from one iteration to the next; a straight descent is a contracting "
     "iteration, and its slope shows the strength of the coupling. Below: the force of all pairs "
@@ -372,3 +353,33 @@ def coupling(coupled: Coupling) -> Any:
         Row("Mesh phase", Panel("Force over that<br>of the torque", [load])),
     ]
     return stack_rows(title, rows)
+
+
+@drawing(
+    heading="Load over the face",
+    caption="Load of each slice of the face over the mesh cycle, over the mean of all slices: 1 "
+    "everywhere is even. The greatest value is the face load factor. Dotted: the pair as it was "
+    "given.",
+    of="LeadOptimum",
+    made_by="Call tribodyn.stiffness.optimize_lead and the plot method of its result.",
+)
+def lead_optimum(study: LeadOptimum) -> Any:
+    """Draw the load over the face before and after the modification, a colour for each torque."""
+    place, traces = displayed("face_position", study.face_position), []
+    colors, names = torque_colors(study.torque.size), torque_names(study.torque)
+    for t, (color, name) in enumerate(zip(colors, names, strict=True)):
+        traces.append(line(place, study.face_load_after[t], name, color))
+        style: Trace = {"dash": "dot", "showlegend": False}
+        traces.append(line(place, study.face_load_before[t], f"{name}, before", color, **style))
+    crowning, slope = (rounded(name, getattr(study, name)) for name in ("crowning", "lead_slope"))
+    first, last = (
+        float(factors.max())
+        for factors in (study.face_load_factor_before, study.face_load_factor_after)
+    )
+    title = f"Crowning of {crowning} and a lead slope of {slope}"
+    if last < first:
+        title += f" lower the greatest face load factor from {first:.4g} to {last:.4g}"
+    else:
+        title += f" do not lower the greatest face load factor of {first:.4g}"
+    label = axis_label("face_position", "Position along the face from its middle")
+    return stack(title, label, [from_zero("Load over its mean", traces, 1.6)])

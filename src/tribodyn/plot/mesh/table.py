@@ -20,11 +20,26 @@ from tribodyn.plot.mesh.cycle import (
     stiffness_jump,
     table_drawing,
 )
-from tribodyn.plot.theme.curves import curve, points
-from tribodyn.plot.theme.labels import axis_label, display_unit, displayed, rounded, significant
-from tribodyn.plot.theme.panels import Panel, Row, event_lines, from_zero, stack, stack_rows
+from tribodyn.plot.theme.colors import MUTED, PAIR_COLORS, TOTAL
+from tribodyn.plot.theme.labels import (
+    axis_label,
+    display_unit,
+    displayed,
+    rounded,
+    significant,
+)
+from tribodyn.plot.theme.panels import (
+    Panel,
+    Row,
+    curve,
+    event_lines,
+    from_zero,
+    points,
+    stack,
+    stack_rows,
+)
 from tribodyn.plot.theme.path import corner_shades, pair_letters, roll_angle_of, roll_label
-from tribodyn.plot.theme.style import MUTED, PAIR_COLORS, TOTAL, Trace, bars, line
+from tribodyn.plot.theme.style import Trace, bars, line
 from tribodyn.types import Array
 
 if TYPE_CHECKING:
@@ -74,7 +89,7 @@ def _stiffness_caption(mesh: MeshTable) -> str:
     return f"{change} {sharing_under_load(mesh, ends=True)} {pairs}"
 
 
-@table_drawing("mesh_stiffness", heading="Mesh stiffness", caption=_stiffness_caption)
+@table_drawing(heading="Mesh stiffness", caption=_stiffness_caption)
 def mesh_stiffness(mesh: MeshTable) -> Any:
     """Draw the stiffness of the tooth pairs and their sum."""
     total = cycles(mesh.phase, mesh.mesh_stiffness)
@@ -102,7 +117,6 @@ def _pairs(mesh: MeshTable, ends: tuple[float, float]) -> list[tuple[str, Array,
 
 
 @table_drawing(
-    "static_stiffness",
     heading="Stiffness over the roll angle",
     caption="The secant stiffness is the load over the total deflection, the tangent stiffness "
     "applies to small vibration about the load. The curve of a tooth pair is its part of the "
@@ -163,7 +177,7 @@ def _caption(mesh: MeshTable) -> str:
     return caption
 
 
-@table_drawing("load_sharing", heading="Load sharing", caption=_caption)
+@table_drawing(heading="Load sharing", caption=_caption)
 def load_sharing(mesh: MeshTable) -> Any:
     """Draw the load on one tooth pair over the roll angle of the driving gear."""
     pair = mesh.gear_pair
@@ -227,7 +241,6 @@ def _error_caption(contact: Any) -> str:
 
 
 @table_drawing(
-    "static_transmission_error",
     heading="Static transmission error",
     caption=_error_caption,
     of=("MeshTable", "Result"),
@@ -276,7 +289,7 @@ def _law_caption(mesh: MeshTable) -> str:
     )
 
 
-@table_drawing("force_law", heading="Force law of the mesh", caption=_law_caption)
+@table_drawing(heading="Force law of the mesh", caption=_law_caption)
 def force_law(mesh: MeshTable) -> Any:
     """Draw the force on the mesh over its deflection for several mesh phases."""
     law, load = mesh.force_law, mesh.total_normal_force
@@ -302,7 +315,7 @@ def force_law(mesh: MeshTable) -> Any:
         hovertemplate=f"{hover}<extra>working load</extra>",
     )  # fmt: skip
     marks["marker"] = {"color": colors, "size": 9}
-    low, high = (rounded("deflection", float(at(working))) for at in (np.min, np.max))
+    low, high = (rounded("deflection", at(working)) for at in (np.min, np.max))
     title = f"The working load of {rounded('normal_force', load)} deflects the mesh by"
     panel = from_zero(axis_label("normal_force"), [*traces, marks], 1.6)
     label = axis_label("deflection", "Approach along the line of action")

@@ -10,18 +10,9 @@ import numpy as np
 
 from tribodyn.cases.papers.friction_claims import DRIVING, HELD
 from tribodyn.drawing import drawing
+from tribodyn.plot.theme.colors import INK, PAIR_COLORS, PINION, WHEEL
 from tribodyn.plot.theme.panels import Panel, stack
-from tribodyn.plot.theme.style import (
-    INK,
-    PAIR_COLORS,
-    PINION,
-    WHEEL,
-    Trace,
-    bars,
-    figure,
-    heat,
-    line,
-)
+from tribodyn.plot.theme.style import Trace, bars, figure, heat, line
 from tribodyn.study.pipeline.summary_figures import in_a_sentence
 
 if TYPE_CHECKING:
@@ -98,7 +89,6 @@ def _no_harmonics(experiment: FrictionExperiment) -> str:
 
 
 @drawing(
-    "friction_effect",
     heading="What friction changes",
     caption="Every point is a steady state. The mean coefficient determines the size of the "
     "effect for every friction law; the driving gear and the torque that is held constant "
@@ -118,7 +108,6 @@ def friction_effect(experiment: FrictionExperiment) -> Any:
 
 
 @drawing(
-    "friction_claims",
     heading="Five published claims",
     caption="Green: the claim holds under these assumptions. The table lists the printed "
     "statement, the result for this pair, and the reason.",
@@ -151,7 +140,6 @@ def friction_claims(experiment: FrictionExperiment) -> Any:
 
 
 @drawing(
-    "friction_harmonics",
     heading="Harmonics of the transmission error",
     caption="Change of the first harmonics by each law, at the roughness of the case or the "
     "nearest one, with the torque held as in the case.",

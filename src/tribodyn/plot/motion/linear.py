@@ -8,22 +8,10 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from tribodyn.drawing import drawing
-from tribodyn.plot.theme.curves import curve, curves
+from tribodyn.plot.theme.colors import INK, MUTED, PAIR_COLORS, PINION, TOTAL, WHEEL, translucent
 from tribodyn.plot.theme.labels import axis_label, display_unit, displayed, rounded, significant
-from tribodyn.plot.theme.panels import Panel, event_lines, stack
-from tribodyn.plot.theme.style import (
-    INK,
-    MUTED,
-    PAIR_COLORS,
-    PINION,
-    TOTAL,
-    WHEEL,
-    Trace,
-    bars,
-    line,
-    marked,
-    translucent,
-)
+from tribodyn.plot.theme.panels import Panel, curve, curves, event_lines, stack
+from tribodyn.plot.theme.style import Trace, bars, line, marked
 from tribodyn.types import Array
 
 if TYPE_CHECKING:
@@ -41,7 +29,7 @@ NARROW = "\N{EN SPACE}"
 _MANY = 8
 
 
-def _bars(labels: list[str], shares: dict[str, Any]) -> list[Trace]:
+def _bars(labels: list[str], shares: Trace) -> list[Trace]:
     visible = {name: part for name, part in shares.items() if np.max(part, initial=0.0) > _LEAST}
     return [
         bars(labels, 100.0 * np.asarray(share), name, _fill(number),
@@ -50,13 +38,13 @@ def _bars(labels: list[str], shares: dict[str, Any]) -> list[Trace]:
     ]  # fmt: skip
 
 
-def _fill(number: int) -> dict[str, Any]:
+def _fill(number: int) -> Trace:
     """Colour of bars; where there are more bars than colours, the next ones are hatched."""
     pattern = {"shape": _HATCHES[number // len(_COLORS) % len(_HATCHES)]}
     return {"color": _COLORS[number % len(_COLORS)], "pattern": pattern}
 
 
-def _strained(modes: NaturalModes) -> dict[str, Any]:
+def _strained(modes: NaturalModes) -> Trace:
     """Strain share of each spring in the elastic modes; contacts of a mesh are added up."""
     share, springs = modes.strain_share[modes.rigid :], len(modes.elements) - modes.contacts
     strain = {name: share[:, column] for column, name in enumerate(modes.elements[:springs])}
@@ -68,7 +56,6 @@ def _strained(modes: NaturalModes) -> dict[str, Any]:
 
 
 @drawing(
-    "mode_shapes",
     heading="Natural modes",
     caption="One bar per natural frequency. Top: kinetic energy of the bodies; bottom: strain "
     "energy of the springs. Transmission errors excite the modes with a high share of strain in "
@@ -82,7 +69,7 @@ def mode_shapes(modes: NaturalModes) -> Any:
     hertz = displayed("frequency", modes.frequency[first:])
     # Modes can have the same frequency: the mode number makes the labels unique.
     apart = ": " if len(hertz) < _MANY else "<br>"
-    labels = [f"{first + k}{apart}{significant(float(v), 4)}" for k, v in enumerate(hertz)]
+    labels = [f"{first + k}{apart}{significant(v, 4)}" for k, v in enumerate(hertz)]
     moving = {body: share[first:] for body, share in modes.body_share().items()}
     strained = _strained(modes)
     share = modes.contact_share[first:]
@@ -90,7 +77,7 @@ def mode_shapes(modes: NaturalModes) -> Any:
         top = int(np.argmax(share))
         title = (
             f"The mesh has its largest share in mode {first + top}: {100 * share[top]:.0f} % of "
-            f"the strain at {rounded('frequency', float(modes.frequency[first + top]))}"
+            f"the strain at {rounded('frequency', modes.frequency[first + top])}"
         )
     else:
         title = f"{len(labels)} natural frequencies"
@@ -180,7 +167,6 @@ def _met(diagram: Campbell) -> list[Trace]:
 
 
 @drawing(
-    "campbell",
     heading="Campbell diagram",
     caption="Natural frequencies and the numbered mesh harmonics over the speed. Where a harmonic "
     "crosses a dark, numbered mode, the mesh can excite a resonance: the larger the dot, the "
@@ -208,7 +194,6 @@ def campbell(diagram: Campbell) -> Any:
 
 
 @drawing(
-    "forced_response",
     heading="Response to a harmonic error",
     caption="Amplitudes over the frequency of the error. At low frequency the gears follow the "
     "error with little force; at high frequency the inertias stay at rest and the teeth deflect. "
@@ -236,8 +221,8 @@ def forced_response(response: ForcedResponse) -> Any:
         Panel(axis_label("transmission_error", "Amplitude"), amplitudes, logarithmic),
     ]
     title = (
-        f"An error of {rounded('deflection', float(response.error))} causes up to "
-        f"{rounded('mesh_force', float(force[top]))} at "
-        f"{rounded('frequency', float(response.frequency[top]))}"
+        f"An error of {rounded('deflection', response.error)} causes up to "
+        f"{rounded('mesh_force', force[top])} at "
+        f"{rounded('frequency', response.frequency[top])}"
     )
     return stack(title, axis_label("frequency"), panels)

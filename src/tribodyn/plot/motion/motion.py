@@ -10,10 +10,10 @@ from numpy.typing import NDArray
 from tribodyn.drawing import Sketch, drawing
 from tribodyn.nomenclature import GEARS
 from tribodyn.plot.mesh.cycle import CYCLES, cycles, mesh_events
-from tribodyn.plot.theme.curves import extremes
+from tribodyn.plot.theme.colors import PAIR_COLORS, PINION, TOTAL, WHEEL
 from tribodyn.plot.theme.labels import axis_label, display_unit, displayed, significant
-from tribodyn.plot.theme.panels import Panel, event_lines, stack
-from tribodyn.plot.theme.style import PAIR_COLORS, PINION, TOTAL, WHEEL, Trace, button_row, line
+from tribodyn.plot.theme.panels import Panel, event_lines, extremes, stack
+from tribodyn.plot.theme.style import Trace, button_row, line
 from tribodyn.study.pipeline import response_series
 from tribodyn.types import Array
 
@@ -139,7 +139,7 @@ class Motion:
         """Stack panels over the axis; the title names the evaluated mesh cycles."""
         return stack(f"{title}{self.window}", self.label, panels, self.layout())
 
-    def layout(self) -> dict[str, Any]:
+    def layout(self) -> Trace:
         """Event marks, range of the horizontal axis and zoom buttons."""
         if self.periodic:
             events = event_lines(mesh_events(self._mesh, self.shown))
@@ -172,7 +172,6 @@ def _axis_mismatch(comparison: ResultComparison) -> str:
 
 
 @drawing(
-    "result_comparison",
     heading="Comparison of results",
     caption="Transmission error and mesh force of each result; the table of the comparison lists "
     "the differences of their cases.",

@@ -7,10 +7,10 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from tribodyn.drawing import drawing
-from tribodyn.plot.theme.curves import extremes
+from tribodyn.plot.theme.colors import MUTED, PAIR_COLORS, PINION, TOTAL, WHEEL
 from tribodyn.plot.theme.labels import readable, scaled, significant, unit_of
-from tribodyn.plot.theme.panels import Panel, stack
-from tribodyn.plot.theme.style import MUTED, PAIR_COLORS, PINION, TOTAL, WHEEL, Trace, line
+from tribodyn.plot.theme.panels import Panel, extremes, stack
+from tribodyn.plot.theme.style import Trace, line
 from tribodyn.types import Array
 
 if TYPE_CHECKING:
@@ -47,7 +47,6 @@ def _milliseconds(time: Array) -> tuple[Array, str]:
 
 
 @drawing(
-    "response",
     heading="Response of the structure",
     caption="Force and compression of every contact, and the accelerations of the coordinates. The "
     "force is zero where the contact is lost: there the compression lies within the backlash.",
@@ -75,13 +74,12 @@ def response(motion: Response) -> Any:
     cycles = "1 mesh cycle" if motion.periods == 1 else f"{motion.periods} mesh cycles"
     title = f"{kind} over {cycles} at {significant(motion.mesh_frequency)} Hz"
     if force.size:
-        ends = (significant(float(force.min())), significant(float(force.max())))
+        ends = (significant(force.min()), significant(force.max()))
         title += f": contact force {ends[0]} to {ends[1]} N"
     return stack(title, label, panels)
 
 
 @drawing(
-    "adaptive_solution",
     heading="Adaptive time integration",
     caption="Positions at the ends of the accepted steps, and the length of every "
     "step: steps are short where a contact changes its side and at mesh events.",

@@ -13,9 +13,10 @@ from tribodyn.analysis import Spectrum, amplitude_spectrum
 from tribodyn.plot.mesh.cycle import run_drawing
 from tribodyn.plot.motion.motion import Motion, no_translation
 from tribodyn.plot.motion.time_histories import GEARS, directions, wrapped_label
+from tribodyn.plot.theme.colors import MUTED, TOTAL
 from tribodyn.plot.theme.labels import axis_label, display_unit, displayed, rounded, significant
 from tribodyn.plot.theme.panels import Panel, event_lines, stack
-from tribodyn.plot.theme.style import MUTED, TOP, TOTAL, Trace, bars, button_row
+from tribodyn.plot.theme.style import TOP, Trace, bars, button_row
 from tribodyn.types import Array
 
 if TYPE_CHECKING:
@@ -88,11 +89,11 @@ def _strongest(panels: Iterable[Panel]) -> str:
     """Name the mesh harmonic with the largest amplitude in the first curves of some panels."""
     tallest = max((panel.traces[0] for panel in panels), key=lambda bar: float(np.max(bar["y"])))
     top = int(np.argmax(tallest["y"]))
-    frequency = significant(float(tallest["customdata"][top]))
+    frequency = significant(tallest["customdata"][top])
     return f"{tallest['x'][top]:g} ({frequency} {display_unit('frequency')})"
 
 
-def _natural(result: Result, last: float) -> tuple[dict[str, Any], list[Trace]]:
+def _natural(result: Result, last: float) -> tuple[Trace, list[Trace]]:
     """Mark the natural frequencies in the range of the harmonics and list them in the legend."""
     # Numbers of close frequencies share one label above the panels.
     modes, places = result.natural_modes, list[tuple[str, float]]()
@@ -103,7 +104,7 @@ def _natural(result: Result, last: float) -> tuple[dict[str, Any], list[Trace]]:
         place = float(hertz) / result.mesh.mesh_frequency
         if _FIRST < place <= last and shares[number - 1] >= least:
             places.append((str(number), place))
-            name = f"{number}: {rounded('frequency', float(hertz))}"
+            name = f"{number}: {rounded('frequency', hertz)}"
             style = {"color": MUTED, "width": 1, "dash": "dot"}
             entry = {"type": "scatter", "mode": "lines", "x": [None], "y": [None]}
             legend.append({**entry, "name": name, "line": style})
@@ -129,10 +130,10 @@ def _harmonic_figure(title: str, result: Result, panels: list[Panel]) -> Any:
     return sketch
 
 
-def _harmonic_layout(result: Result, panels: Sequence[Panel]) -> tuple[dict[str, Any], list[Trace]]:
+def _harmonic_layout(result: Result, panels: Sequence[Panel]) -> tuple[Trace, list[Trace]]:
     ends = [_last_order(panels, decades) + 0.6 for decades in (_SEEN, _DECADES)]
-    linear: dict[str, Any] = {"xaxis.range": [_FIRST, ends[0]]}
-    logarithmic: dict[str, Any] = {"xaxis.range": [_FIRST, ends[1]]}
+    linear: Trace = {"xaxis.range": [_FIRST, ends[0]]}
+    logarithmic: Trace = {"xaxis.range": [_FIRST, ends[1]]}
     for number, panel in enumerate(panels, start=1):
         axis = f"yaxis{'' if number == 1 else number}"
         linear |= {f"{axis}.type": "linear", f"{axis}.autorange": True}
@@ -169,7 +170,6 @@ def _decades(panel: Panel) -> list[float]:
 
 
 @run_drawing(
-    "spectrum",
     heading="Spectra",
     caption="Amplitude of each mesh harmonic. Harmonic 1 is the mesh frequency, the number of "
     "teeth that engage per second. Dotted lines are the natural frequencies that the mesh strains "
@@ -194,7 +194,6 @@ def _no_bearing_harmonics(result: Result) -> str:
 
 
 @run_drawing(
-    "bearing_spectrum",
     heading="Spectra of the bearing forces",
     caption="Forces that the bearings transmit to the housing, by mesh harmonic. A harmonic close "
     "to a natural frequency of the housing dominates the noise. Dotted lines are the natural "

@@ -8,8 +8,10 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from tribodyn.drawing import drawing
+from tribodyn.plot.theme.colors import COLORS, MUTED, PAIR_COLORS, PINION, WHEEL
 from tribodyn.plot.theme.labels import (
     axis_label,
+    capitalized,
     displayed,
     engineering,
     label_with,
@@ -17,17 +19,7 @@ from tribodyn.plot.theme.labels import (
     rounded,
 )
 from tribodyn.plot.theme.panels import ROUNDING, Panel, stack
-from tribodyn.plot.theme.style import (
-    MUTED,
-    PAIR_COLORS,
-    PINION,
-    WHEEL,
-    Trace,
-    figure,
-    heat,
-    line,
-    marked,
-)
+from tribodyn.plot.theme.style import Trace, axis, heat, line, marked, plane_figure
 from tribodyn.study.pipeline.summary_figures import figure_of, in_a_sentence, in_words
 from tribodyn.units import convert
 
@@ -36,12 +28,11 @@ if TYPE_CHECKING:
     from tribodyn.study import Sweep
     from tribodyn.study.studies.study_axes import Axis
 
-_WAYS = {"up": (PINION, "solid"), "down": (WHEEL, "dash")}
-_WORDS = {"up": "upwards", "down": "downwards"}
+#: The broader curve is drawn first, so that both are visible where they agree.
+_WAYS = {"up": ("upwards", PINION, "solid", 3.0), "down": ("downwards", WHEEL, "dash", 1.6)}
 _CHANGES = {"up": "rising", "down": "falling"}
-_COLORS = (PINION, WHEEL, *PAIR_COLORS)
 #: Number of curves above which a map is drawn.
-_CURVES = len(_COLORS)
+_CURVES = len(COLORS)
 
 
 def _axis(sweep: SpeedSweep) -> tuple[str, Any]:
@@ -55,14 +46,12 @@ def _places(sweep: SpeedSweep) -> Any:
 
 def _speed_curves(sweep: SpeedSweep, values: Any, unit: str) -> list[Trace]:
     speed = _places(sweep)
-    traces = []
-    for number, direction in enumerate(sweep.directions):
-        color, dash = _WAYS[direction]
-        # The broader curve is drawn first, so that both are visible where they agree.
-        width = 3.0 if direction == "up" else 1.6
-        style: Trace = {"unit": unit, "dash": dash, "width": width}
-        traces.append(line(speed, values[number], _WORDS[direction], color, **style))
-    return traces
+    return [
+        line(speed, row, name, color, unit=unit, dash=dash, width=width)
+        for row, (name, color, dash, width) in zip(
+            values, (_WAYS[direction] for direction in sweep.directions), strict=True
+        )
+    ]
 
 
 def _dots(sweep: SpeedSweep, values: Any, chosen: Any, name: str, color: str, symbol: str) -> Any:
@@ -89,14 +78,14 @@ def _jumps(sweep: SpeedSweep, values: Any, unit: str) -> list[Trace]:
 def _speed_title(sweep: SpeedSweep) -> str:
     where, (name, places) = np.flatnonzero(sweep.differs), _axis(sweep)
     if where.size:
-        first, last = (rounded(name, float(places[k])) for k in (where[0], where[-1]))
+        first, last = (rounded(name, places[k]) for k in (where[0], where[-1]))
         difference = f"The sweeps up and down differ at {where.size} of {sweep.differs.size} speeds"
         return f"{difference}, " + (f"from {first} to {last}" if where.size > 1 else f"at {first}")
     lost = int(np.count_nonzero(~sweep.stable))
     if lost:
         return f"{lost} of {sweep.stable.size} states are unstable or not periodic"
     top = int(np.argmax(sweep.rms[0, :, 0]))
-    return f"The mesh vibrates most strongly at {rounded(name, float(places[top]))}"
+    return f"The mesh vibrates most strongly at {rounded(name, places[top])}"
 
 
 def _speed_caption(sweep: SpeedSweep) -> str:
@@ -114,7 +103,6 @@ def _speed_caption(sweep: SpeedSweep) -> str:
 
 
 @drawing(
-    "speed_sweep",
     heading="Steady states over the speed",
     caption=_speed_caption,
     of="SpeedSweep",
@@ -164,14 +152,9 @@ def speed_sweep(sweep: SpeedSweep, *, signal: str | None = None) -> Any:
     return stack(_speed_title(sweep), label, panels, {"hovermode": "closest"})
 
 
-def _key_label(name: str) -> str:
-    label = name.replace("_", " ")
-    return label[:1].upper() + label[1:]
-
-
 def axis_text(axis: Axis) -> str:
     """Label of an axis with its unit."""
-    return label_with(_key_label(axis.name), axis.display_unit)
+    return label_with(capitalized(axis.name), axis.display_unit)
 
 
 def value_text(axis: Axis, value: Any) -> str:
@@ -199,9 +182,8 @@ def _case_title(study: Sweep, name: str, values: Any, unit: str) -> str:
     )
     lost = f"; {failed} of {values.size} failed" if failed else ""
     greatest = " ".join(engineering(float(np.nanmax(values)), unit, 4)).rstrip()
-    if values.size > 1 and np.nanmax(values) - np.nanmin(values) <= ROUNDING * np.nanmax(
-        abs(values)
-    ):
+    varies = np.nanmax(values) - np.nanmin(values) > ROUNDING * np.nanmax(abs(values))
+    if values.size > 1 and not varies:
         return f"The {in_a_sentence(name)} does not vary: {greatest}{lost}"
     return f"The {in_a_sentence(name)} is largest at {where}: {greatest}{lost}"
 
@@ -214,9 +196,8 @@ def _marked(x: Any, y: Any, failed: Any, name: str, color: str, unit: str) -> li
         return [curve]
     foot = float(np.nanmin(y)) if np.any(np.isfinite(y)) else 0.0
     feet, hover = np.full(int(lost.sum()), foot), "%{text}<extra>failed</extra>"
-    cross = marked(np.asarray(x)[lost], feet, "failed", MUTED, size=8, symbol="x",
-                   text=list(failed[lost]), hovertemplate=hover)  # fmt: skip
-    return [curve, cross]
+    style: Trace = {"text": list(failed[lost]), "hovertemplate": hover}
+    return [curve, marked(np.asarray(x)[lost], feet, "failed", MUTED, 8, "x", **style)]
 
 
 def _case_curves(study: Sweep, values: Any, unit: str) -> list[Trace]:
@@ -227,24 +208,22 @@ def _case_curves(study: Sweep, values: Any, unit: str) -> list[Trace]:
         pairs = zip(study.axes[1:], place, strict=True)
         name = ", ".join(value_text(axis, axis.values[at]) for axis, at in pairs) or "figure"
         column: Any = (slice(None), *place)
-        color = _COLORS[number % len(_COLORS)]
+        color = COLORS[number % len(COLORS)]
         traces += _marked(x, values[column], study.failed[column], name, color, unit)
     return traces
 
 
 def _map(study: Sweep, values: Any, label: str, unit: str, title: str) -> Any:
     first, second = study.axes
-    cells = heat(
-        first.display_values(), second.display_values(), values.T, "Viridis",
-        f"%{{x}}, %{{y}}<br>%{{z:.5g}} {unit} %{{text}}", text=study.failed.T, hoverongaps=True,
-        colorbar={"title": {"text": label, "side": "right"}},
-    )  # fmt: skip
-    axes = {f"{k}axis": {"title": {"text": axis_text(a)}} for k, a in (("x", first), ("y", second))}
-    return figure(title, [cells], {"height": 460, "hovermode": "closest", **axes})
+    hover, bar = f"%{{x}}, %{{y}}<br>%{{z:.5g}} {unit} %{{text}}", axis(label)
+    bar["title"]["side"] = "right"
+    more: Trace = {"text": study.failed.T, "hoverongaps": True, "colorbar": bar}
+    places = (first.display_values(), second.display_values())
+    cells = heat(*places, values.T, "Viridis", hover, **more)
+    return plane_figure(title, [cells], *(axis(axis_text(each)) for each in study.axes), height=460)
 
 
 @drawing(
-    "sweep",
     heading="Sweep",
     caption="A summary figure over the varied values. Peaks are resonances; a "
     "step is a jump of the response. A cross or an empty cell is a run that failed; "
@@ -275,6 +254,6 @@ def sweep(study: Sweep, figure: str = "rms_mesh_force") -> Any:
         return _map(study, values, label, unit, title)
     panel = Panel(label, _case_curves(study, values, unit), height=1.6)
     sketch = stack(title, axis_text(study.axes[0]), [panel])
-    varied = ", ".join(_key_label(axis.name) for axis in study.axes[1:])
+    varied = ", ".join(capitalized(axis.name) for axis in study.axes[1:])
     sketch.layout["legend"] |= {"title": {"text": varied, "font": {"size": 13}}}
     return sketch

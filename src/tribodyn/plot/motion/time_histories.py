@@ -9,9 +9,10 @@ import numpy as np
 
 from tribodyn.plot.mesh.cycle import cycles, run_drawing
 from tribodyn.plot.motion.motion import Motion, no_translation
+from tribodyn.plot.theme.colors import MUTED, PAIR_COLORS, PINION, TOTAL, WHEEL
 from tribodyn.plot.theme.labels import axis_label, display_unit, displayed, quantity_label, rounded
 from tribodyn.plot.theme.panels import Panel, from_zero
-from tribodyn.plot.theme.style import MUTED, PAIR_COLORS, PINION, TOTAL, WHEEL, line
+from tribodyn.plot.theme.style import line
 from tribodyn.study.pipeline import response_series
 
 if TYPE_CHECKING:
@@ -124,7 +125,7 @@ def _mean_shift(result: Result, motion: Motion) -> str:
     )
 
 
-@run_drawing("mesh_force", heading="Mesh force", caption=_force_caption)
+@run_drawing(heading="Mesh force", caption=_force_caption)
 def mesh_force(result: Result) -> Any:
     """Draw the dynamic and the static mesh force."""
     motion = Motion(result)
@@ -159,7 +160,6 @@ def _friction_caption(result: Result) -> str:
 
 
 @run_drawing(
-    "friction_force",
     heading="Friction force",
     caption=_friction_caption,
     missing=lambda result: (
@@ -181,7 +181,7 @@ def friction_force(result: Result) -> Any:
         if name in forces
     ]
     force = motion.measured(forces["friction_force"][0])
-    low, high = (rounded("friction_force", float(f(force))) for f in (np.min, np.max))
+    low, high = (rounded("friction_force", f(force)) for f in (np.min, np.max))
     panel = Panel(axis_label("friction_force"), traces, {"zeroline": True}, height=1.3)
     return motion.figure(f"The friction force ranges from {low} to {high}", [panel])
 
@@ -207,7 +207,7 @@ def _error_caption(result: Result) -> str:
     return " ".join(sentences)
 
 
-@run_drawing("transmission_error", heading="Transmission error", caption=_error_caption)
+@run_drawing(heading="Transmission error", caption=_error_caption)
 def transmission_error(result: Result) -> Any:
     """Draw the dynamic transmission error and, for a steady state, the quasi-static one."""
     motion, unit = Motion(result), display_unit("dynamic_transmission_error")
@@ -218,7 +218,7 @@ def transmission_error(result: Result) -> Any:
         static = displayed("transmission_error", result.transmission_error_at_rest())
         phase, error = cycles(mesh.phase, static, motion.shown)
         traces.append(line(phase, error, "quasi-static", MUTED, unit=unit, dash="dash"))
-    swing = rounded("dynamic_transmission_error", float(np.ptp(motion.measured(moving))))
+    swing = rounded("dynamic_transmission_error", np.ptp(motion.measured(moving)))
     panel = Panel(axis_label("dynamic_transmission_error"), traces, height=1.3)
     return motion.figure(f"The transmission error varies by {swing} peak to peak", [panel])
 
@@ -240,9 +240,7 @@ def _shake_caption(result: Result) -> str:
     return "".join(sentences).rstrip()
 
 
-@run_drawing(
-    "acceleration", heading="Accelerations", caption=_shake_caption, missing=no_translation
-)
+@run_drawing(heading="Accelerations", caption=_shake_caption, missing=no_translation)
 def acceleration(result: Result) -> Any:
     """Draw the accelerations of the gear centres."""
     motion = Motion(result)
@@ -262,9 +260,7 @@ def _bearing_caption(result: Result) -> str:
     ).rstrip()
 
 
-@run_drawing(
-    "bearing_force", heading="Bearing forces", caption=_bearing_caption, missing=no_translation
-)
+@run_drawing(heading="Bearing forces", caption=_bearing_caption, missing=no_translation)
 def bearing_force(result: Result) -> Any:
     """Draw the forces of both gears on their bearings."""
     motion = Motion(result)
@@ -283,7 +279,6 @@ def _in_a_plane(result: Result) -> str:
 
 
 @run_drawing(
-    "tooth_force",
     heading="Mesh force in space",
     caption="Force of the teeth on the wheel, friction included, in the axes of the pinion: x "
     "along the common perpendicular of the two axes, y along the pinion axis, z normal to x and y.",
@@ -300,6 +295,6 @@ def tooth_force(result: Result) -> Any:
     for axis, color, component in zip("xyz", (PINION, WHEEL, TOTAL), values.T, strict=True):
         curve = motion.line("mesh_force", component, axis, color, width=1.5)
         panels.append(Panel(axis_label("mesh_force", wrapped_label("mesh_force", axis)), [curve]))
-    means = [rounded("mesh_force", float(fine.weight @ component)) for component in values.T]
+    means = [rounded("mesh_force", fine.weight @ component) for component in values.T]
     title = f"The mean tooth force is {means[0]}, {means[1]} and {means[2]}"
     return motion.figure(title, panels)

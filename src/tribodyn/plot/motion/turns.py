@@ -8,10 +8,10 @@ import numpy as np
 
 from tribodyn.drawing import drawing
 from tribodyn.plot.signals.lines import strongest_lines
-from tribodyn.plot.theme.curves import curves
+from tribodyn.plot.theme.colors import PINION, TOTAL, WHEEL, translucent
 from tribodyn.plot.theme.labels import axis_label, display_unit, displayed, rounded
-from tribodyn.plot.theme.panels import Panel, Row, stack, stack_rows
-from tribodyn.plot.theme.style import PINION, TOTAL, WHEEL, line, stems, translucent
+from tribodyn.plot.theme.panels import Panel, Row, curves, stack, stack_rows
+from tribodyn.plot.theme.style import line, stems
 
 if TYPE_CHECKING:
     from tribodyn.faults import TurningMesh
@@ -42,7 +42,6 @@ def _caption(motion: TurningMotion) -> str:
 
 
 @drawing(
-    "turning_motion",
     heading="Motion over whole turns",
     caption=_caption,
     of=("TurningMotion", "Result.turns"),
@@ -85,12 +84,11 @@ def turning_motion(motion: TurningMotion) -> Any:
         Row(x_label, Panel(axis_label("mesh_force", "Mesh force"), [force_curve])),
         Row("Order of the pinion", spectrum, marks=mesh_orders),
     ]
-    swing = rounded("mesh_force", float(np.ptp(motion.mesh_force)))
+    swing = rounded("mesh_force", np.ptp(motion.mesh_force))
     return stack_rows(f"The mesh force varies by {swing} over {motion.cycles} mesh cycles", rows)
 
 
 @drawing(
-    "turning_mesh",
     heading="Mesh over whole turns",
     caption="Static transmission error and tangent stiffness under the mean load over all mesh "
     "cycles after which the same teeth meet again. A deviation lifts the error of its tooth, a "
@@ -143,7 +141,6 @@ def _wear_caption(wear: Wear) -> str:
 
 
 @drawing(
-    "wear_depth",
     heading="Wear of the flanks",
     caption=_wear_caption,
     of="Wear",
@@ -162,7 +159,7 @@ def wear_depth(wear: Wear) -> Any:
             for step in range(1, len(depth))
         ]  # fmt: skip
         panels.append(curves("wear_depth", gear, wear.place, steps))
-    deepest = rounded("wear_depth", float(max(wear.depth_pinion.max(), wear.depth_wheel.max())))
+    deepest = rounded("wear_depth", max(wear.depth_pinion.max(), wear.depth_wheel.max()))
     lost = f"up to {deepest}" if wear.depth_pinion.any() or wear.depth_wheel.any() else "nothing"
     title = f"The flanks lose {lost} in {wear.turns[-1]:.3g} turns of the pinion"
     return stack(title, "Place on the used flank", panels)

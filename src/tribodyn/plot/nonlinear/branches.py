@@ -8,6 +8,7 @@ import numpy as np
 
 from tribodyn.drawing import drawing
 from tribodyn.nomenclature import QUANTITIES
+from tribodyn.plot.theme.colors import MUTED, PAIR_COLORS, PINION, TOTAL, WHEEL
 from tribodyn.plot.theme.labels import (
     axis_label,
     displayed,
@@ -18,7 +19,7 @@ from tribodyn.plot.theme.labels import (
     unit_of,
 )
 from tribodyn.plot.theme.panels import Panel, from_zero, stack
-from tribodyn.plot.theme.style import MUTED, PAIR_COLORS, PINION, TOTAL, WHEEL, Trace, line, marked
+from tribodyn.plot.theme.style import Trace, line, marked
 from tribodyn.types import Array, Mask
 from tribodyn.units import convert
 
@@ -161,7 +162,6 @@ def _branch_caption(branch: Branch) -> str:
 
 
 @drawing(
-    "bifurcation",
     heading="Bifurcation diagram",
     caption=_bifurcation_caption,
     of="Bifurcation",
@@ -248,7 +248,6 @@ def _branch_title(branch: Branch) -> str:
 
 
 @drawing(
-    "continuation",
     heading="Branch of periodic orbits",
     caption=_branch_caption,
     of="Branch",

@@ -8,19 +8,10 @@ import numpy as np
 
 from tribodyn.drawing import drawing
 from tribodyn.errors import InputError
+from tribodyn.plot.theme.colors import FILLS, MUTED, PAIR_COLORS, PINION, TOTAL, WHEEL
 from tribodyn.plot.theme.labels import scaled, unit_of
 from tribodyn.plot.theme.panels import Panel, stack
-from tribodyn.plot.theme.style import (
-    FILLS,
-    MUTED,
-    PAIR_COLORS,
-    PINION,
-    TOTAL,
-    WHEEL,
-    Trace,
-    figure,
-    line,
-)
+from tribodyn.plot.theme.style import Trace, axis, dots, line, plane_figure
 
 if TYPE_CHECKING:
     from tribodyn.analysis import LyapunovExponents, PhasePortrait, PoincareSection
@@ -33,7 +24,6 @@ _MAX_POINTS = 1500
 
 
 @drawing(
-    "phase_portrait",
     heading="Phase portrait",
     caption=lambda portrait: (
         f"Velocity over {'compression of a contact' if portrait.gap >= 0.0 else 'position'}. A "
@@ -50,18 +40,13 @@ def phase_portrait(portrait: PhasePortrait) -> Any:
     x_factor, x_unit = scaled(portrait.position, unit)
     y_factor, y_unit = scaled(portrait.velocity, f"{unit}/s")
     hover = f"%{{x:.5g}} {x_unit}, %{{y:.5g}} {y_unit}<extra></extra>"
+    curve = (x_factor * portrait.position, y_factor * portrait.velocity)
+    section = (x_factor * portrait.section_position, y_factor * portrait.section_velocity)
+    width, size = (1.6, 9) if portrait.period else (0.6, 5)
     traces = [
-        {
-            "type": "scatter", "mode": "lines", "name": "motion", "hovertemplate": hover,
-            "x": x_factor * portrait.position, "y": y_factor * portrait.velocity,
-            "line": {"color": PINION, "width": 1.6 if portrait.period else 0.6},
-        },
-        {
-            "type": "scatter", "mode": "markers", "name": "mesh phase 0", "hovertemplate": hover,
-            "x": x_factor * portrait.section_position, "y": y_factor * portrait.section_velocity,
-            "marker": {"color": WHEEL, "size": 9 if portrait.period else 5},
-        },
-    ]  # fmt: skip
+        line(*curve, "motion", PINION, width=width, hovertemplate=hover),
+        dots(*section, "mesh phase 0", {"color": WHEEL, "size": size}, hovertemplate=hover),
+    ]
     ends = [side * portrait.gap for side in (-1.0, 1.0)]
     dashed = {"color": MUTED, "dash": "dash", "width": 1}
     upright = {"type": "line", "y0": 0, "y1": 1, "yref": "paper", "line": dashed}
@@ -88,9 +73,8 @@ def _over_place(
     **more: Any,
 ) -> Any:
     """Figure of velocities over positions; each axis has a label and a range."""
-    x, y = ({"title": {"text": label}, "range": ends} for label, ends in (place, speed))
-    layout = {"xaxis": x, "yaxis": y, "hovermode": "closest", "height": 560, **more}
-    return figure(title, traces, layout)
+    x, y = (axis(label, range=ends) for label, ends in (place, speed))
+    return plane_figure(title, traces, x, y, height=560, **more)
 
 
 def _around(values: Any) -> list[float]:
@@ -128,7 +112,6 @@ def _window(values: Any, motion: float) -> list[float]:
 
 
 @drawing(
-    "poincare",
     heading="Poincare section",
     caption="The state once per mesh cycle, at mesh phase 0. A periodic response has as "
     "many points as its period has mesh cycles, a quasi-periodic one a closed curve, a chaotic "
@@ -168,9 +151,8 @@ def poincare(section: PoincareSection, coordinate: int | str = 0) -> Any:
     visible = slice(-last, None) if last else slice(None)
     name_in_legend = "last points" if last else "points"
     marker = {"size": 9 if last else 3.5, "color": PINION if last else TOTAL}
-    trace = {"type": "scatter", "mode": "markers", "x": x[visible], "y": y[visible]}
-    trace |= {"name": name_in_legend, "marker": marker}
-    trace["hovertemplate"] = f"%{{x:.5g}} {x_unit}, %{{y:.5g}} {y_unit}<extra></extra>"
+    hover = f"%{{x:.5g}} {x_unit}, %{{y:.5g}} {y_unit}<extra></extra>"
+    trace = dots(x[visible], y[visible], name_in_legend, marker, hovertemplate=hover)
     along = f"{name.replace('_', ' ')} [{x_unit}]", _window(x[visible], float(np.abs(x).max()))
     across = f"its velocity [{y_unit}]", _window(y[visible], float(np.abs(y).max()))
     return _over_place(_section_title(section), [trace], along, across)
@@ -187,7 +169,6 @@ def _exponent_title(spectrum: LyapunovExponents) -> str:
 
 
 @drawing(
-    "lyapunov",
     heading="Lyapunov exponents",
     caption=lambda spectrum: (
         "Mean growth rate of a small disturbance up to each mesh cycle. The band is the standard "

@@ -9,6 +9,7 @@ import numpy as np
 
 from tribodyn.drawing import drawing
 from tribodyn.nomenclature import QUANTITIES
+from tribodyn.plot.theme.colors import PAIR_COLORS, PINION, WHEEL
 from tribodyn.plot.theme.labels import (
     axis_label,
     displayed,
@@ -18,7 +19,7 @@ from tribodyn.plot.theme.labels import (
     unit_of,
 )
 from tribodyn.plot.theme.panels import Panel, Row, stack_rows
-from tribodyn.plot.theme.style import PAIR_COLORS, PINION, WHEEL, Trace, figure, heat
+from tribodyn.plot.theme.style import Trace, axis, dots, heat, plane_figure
 
 if TYPE_CHECKING:
     from tribodyn.analysis import Basins, ParameterMap
@@ -56,7 +57,7 @@ def _stepped(colors: Sequence[str]) -> list[list[Any]]:
     return [[float(e), c] for n, c in enumerate(colors) for e in edges[n : n + 2]]
 
 
-def _plane(plane: Basins, x: Any, y: Any) -> dict[str, Any]:
+def _plane(plane: Basins, x: Any, y: Any) -> Trace:
     """Heat map of the attractor numbers with a stepwise colour scale."""
     count = len(plane.attractors)
     colors = [_NOWHERE, *(_COLORS[n % len(_COLORS)] for n in range(count))]
@@ -80,8 +81,7 @@ def _component(plane: Basins, number: int, axis: int) -> Any:
 
 def _states(x: Any, y: Any, name: str, **marker: Any) -> Trace:
     """Marks of states with a name in the legend."""
-    marks = {"type": "scatter", "mode": "markers", "x": x, "y": y}
-    return {**marks, "name": name, "marker": {"size": 11, **marker}}
+    return dots(x, y, name, {"size": 11, **marker})
 
 
 def _plane_axis(name: str, values: Any, unit: str) -> tuple[Array, str]:
@@ -98,7 +98,6 @@ def _display_factor(displayed_values: Array, values: Any) -> float:
 
 
 @drawing(
-    "basins",
     heading="Basins of attraction",
     caption="The colour of an initial state is that of the attractor that it reaches; crosses "
     "are the states of the attractors at mesh phase 0. Where colours mix finely, the attractor "
@@ -122,14 +121,12 @@ def basins(plane: Basins) -> Any:
     if plane.unresolved:
         name = f"no attractor: {100.0 * plane.unresolved:.2g} %"
         traces.append(_states([None], [None], name, symbol="square", color=_NOWHERE))
-    layout = {
-        "xaxis": {"title": {"text": x_label}, "range": [float(x[0]), float(x[-1])]},
-        "yaxis": {"title": {"text": y_label}, "range": [float(y[0]), float(y[-1])]},
-        "hovermode": "closest",
-        "height": 620,
-        "legend": {"orientation": "h", "x": 0.0, "y": -0.14, "yanchor": "top"},
-    }
-    return figure(_basin_title(plane), traces, layout)
+    x_axis, y_axis = (
+        axis(label, range=[float(at[0]), float(at[-1])])
+        for label, at in ((x_label, x), (y_label, y))
+    )
+    below = {"orientation": "h", "x": 0.0, "y": -0.14, "yanchor": "top"}
+    return plane_figure(_basin_title(plane), traces, x_axis, y_axis, height=620, legend=below)
 
 
 def _basin_title(plane: Basins) -> str:
@@ -158,7 +155,7 @@ def _class(survey: ParameterMap) -> Any:
     return np.where(survey.finished, number, np.nan)
 
 
-def _heat(x: Any, y: Any, z: Any, hover: str, **more: Any) -> dict[str, Any]:
+def _heat(x: Any, y: Any, z: Any, hover: str, **more: Any) -> Trace:
     colors = more.pop("colorscale", _SCALE)
     return heat(x, y, np.asarray(z).T, colors, f"%{{x:.5g}}, %{{y:.4g}}: {hover}", **more)
 
@@ -172,7 +169,7 @@ def _range(rms: Any) -> dict[str, float]:
     return {"zmin": 0.0, "zmax": usual} if 0.0 < 2.0 * usual < most else {}
 
 
-def _periods(survey: ParameterMap, x: Any, y: Any) -> dict[str, Any]:
+def _periods(survey: ParameterMap, x: Any, y: Any) -> Trace:
     scale = _stepped([color for _, color in _PERIODS])
     ticks = {"tickvals": list(range(len(_PERIODS))), "ticktext": [text for text, _ in _PERIODS]}
     facts = np.dstack((survey.period.T, survey.verdict.T))
@@ -201,7 +198,6 @@ def _map_title(survey: ParameterMap) -> str:
 
 
 @drawing(
-    "parameter_map",
     heading="Map over two parameters",
     caption="Period of the response in mesh cycles, rms of the vibration and duration of the loss "
     "of contact, over two parameters. The runs are independent: where several "
@@ -224,14 +220,8 @@ def parameter_map(survey: ParameterMap) -> Any:
     sketch = stack_rows(_map_title(survey), rows, {"hovermode": "closest"})
     for number, (colorbar_title, _) in enumerate(maps):
         low, high = sketch.layout[f"yaxis{number + 1 if number else ''}"]["domain"]
-        sketch.data[number]["colorbar"] = {
-            **sketch.data[number].get("colorbar", {}),
-            "y": 0.5 * (low + high),
-            "len": high - low,
-            "thickness": 14,
-            "x": 1.01,
-            "xanchor": "left",
-            "title": {"text": colorbar_title, "side": "right", "font": {"size": 13}},
-            "outlinewidth": 0,
-        }
+        place = {"y": 0.5 * (low + high), "len": high - low, "x": 1.01, "xanchor": "left"}
+        title = {"text": colorbar_title, "side": "right", "font": {"size": 13}}
+        bar = {**place, "thickness": 14, "title": title, "outlinewidth": 0}
+        sketch.data[number]["colorbar"] = {**sketch.data[number].get("colorbar", {}), **bar}
     return sketch

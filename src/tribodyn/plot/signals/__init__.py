@@ -1,17 +1,14 @@
 """Recorded signals and run-ups.
 
-==============  ===============================================================
-module          what it draws
-==============  ===============================================================
-``analysed``    analysis of a recorded channel, time history of the channel
-``bands``       any figure of a run with a band of case variants
-``learned``     response of case variants with bands; surrogate against computation
-``lines``       signal spectra, sidebands, order cut and overall level over the speed
-``maps``        spectrogram, order map, waterfall
-``recorded``    channels of a recording, order spectrum, tracked orders
-``revolution``  synchronous average of a shaft, residual and difference signal
-``run_up``      run-up: level and mesh orders over speed, map over frequency
-``sensitivity`` variance shares of summary figures by tolerance
-``uncertain``   Sobol indices, band of a mean, columns of computed data
-==============  ===============================================================
+=============  ======================================================================
+module         what it draws
+=============  ======================================================================
+``bands``      spread of case variants in any figure; surrogate against computation
+``diagnosis``  mean revolution, demodulation, cepstrum, kurtogram, coherence
+``lines``      signal spectra, sidebands, order cut and overall level over the speed
+``maps``       spectrogram, order map, waterfall
+``recorded``   channels of a recording, their analysis, orders, comparison with a run
+``run_up``     run-up: level and mesh orders over speed, map over frequency
+``uncertain``  variance shares of inputs, band of a mean, columns of computed data
+=============  ======================================================================
 """

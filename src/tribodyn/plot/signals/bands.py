@@ -1,4 +1,4 @@
-"""Any figure of a run with a band that holds 95 % of the case variants."""
+"""Spread of case variants in any figure, and the accuracy of a surrogate model."""
 
 from __future__ import annotations
 
@@ -9,11 +9,111 @@ import numpy as np
 
 from tribodyn.drawing import FIGURES, drawing
 from tribodyn.errors import InputError
-from tribodyn.plot.theme.style import MUTED, Trace, translucent
+from tribodyn.plot.theme.colors import COLORS, MUTED, PINION, TOTAL, translucent
+from tribodyn.plot.theme.labels import label_with, readable, scaled, significant
+from tribodyn.plot.theme.panels import Panel, Row, stack_rows
+from tribodyn.plot.theme.style import Trace, between, line, marked
 from tribodyn.types import Array
 
 if TYPE_CHECKING:
     from tribodyn.study import CaseEnsemble
+    from tribodyn.surrogate import Surrogate
+
+#: Most points per target, harmonics of the spectrum, and fraction of the variants in the band.
+_POINTS, _HARMONICS, _SHARE = 2000, 12, 0.95
+_LIGHT, _DARK = "rgba(0, 114, 178, 0.16)", "rgba(0, 114, 178, 0.45)"
+
+
+def _curve(result: CaseEnsemble, signal: str, x: Array) -> tuple[list[Trace], str]:
+    """Mean over the variants, its confidence band and the band of the variants."""
+    band, spread = result.band(signal), result.spread(signal, _SHARE)
+    factor, unit = scaled(band.mean, band.unit)
+    name, (low, high) = f"{band.level:.0%} band of the mean", spread
+    traces = [
+        *between(x, factor * low, factor * high, f"{_SHARE:.0%} of the variants", _LIGHT),
+        *between(x, factor * band.low, factor * band.high, name, _DARK),
+        line(x, factor * band.mean, "mean", TOTAL, unit=unit),
+    ]
+    return traces, unit
+
+
+def _lines(result: CaseEnsemble) -> tuple[list[Trace], str]:
+    """Mesh harmonics with both bands as error bars."""
+    band = result.band("mesh_force", harmonics=_HARMONICS)
+    spread = result.spread("mesh_force", _SHARE, _HARMONICS)
+    factor, unit = scaled(band.mean, band.unit)
+    order, traces = np.arange(1, _HARMONICS + 1), []
+    for low, high, name, color, width in (
+        (*spread, f"{_SHARE:.0%} of the variants", MUTED, 8),
+        (band.low, band.high, f"{band.level:.0%} band of the mean", PINION, 4),
+    ):
+        points = marked(order, factor * band.mean, name, color, size=6, unit=unit)
+        bars = {"array": factor * (high - band.mean), "arrayminus": factor * (band.mean - low)}
+        points["error_y"] = {"type": "data", "width": width, "color": color, **bars}
+        traces.append(points)
+    return traces, unit
+
+
+@drawing(
+    heading="Spread of the response",
+    caption="Effect of uncertain inputs: the light band holds 95 % of the "
+    "variants, the dark band is the confidence band of their mean. Over the time of a mesh cycle, "
+    "over its phase, and by mesh harmonic.",
+    of="CaseEnsemble",
+    made_by="Call tribodyn.ensemble(case, {...}, seed=1) and its plot method.",
+)
+def ensemble(result: CaseEnsemble) -> Any:
+    """Draw force over time, transmission error over the phase, and the spectrum, with bands."""
+    time = 1e3 * result.phase / float(np.mean(result.mesh_frequency))
+    force, newton = _curve(result, "mesh_force", time)
+    error, metre = _curve(result, "dynamic_transmission_error", result.phase)
+    lines, unit = _lines(result)
+    peak = result.mesh_force.max(axis=1)
+    rows = [
+        Row("Time [ms]", Panel(f"Mesh force [{newton}]", force)),
+        Row("Mesh phase", Panel(f"Transmission error [{metre}]", error)),
+        Row("Mesh harmonic", Panel(f"Amplitude of the force [{unit}]", lines)),
+    ]
+    low, high = np.quantile(peak, (0.5 - 0.5 * _SHARE, 0.5 + 0.5 * _SHARE))
+    title = (
+        f"{_SHARE:.0%} of {peak.size} variants peak between {significant(low)} and "
+        f"{significant(high)} N"
+    )
+    return stack_rows(title, rows)
+
+
+@drawing(
+    heading="Surrogate against computation",
+    caption="Predictions over computed values for rows that were not used in training. "
+    "Points on the line are exact; a new prediction lies between the dotted lines with the stated "
+    "probability.",
+    of="Surrogate",
+    made_by="Call tribodyn.surrogate.train(data, ...) and its plot method.",
+)
+def surrogate(result: Surrogate) -> Any:
+    """Draw predictions over computed values of the held-out rows, one panel per target."""
+    rows, qualities = [], []
+    for number, name in enumerate(result.targets):
+        true, predicted = result.true[number], result.predicted[number]
+        factor, unit = scaled(true, readable(str(result.target_unit[number])))
+        chosen = np.linspace(0, true.size - 1, min(true.size, _POINTS)).round().astype(int)
+        color = COLORS[number % len(COLORS)]
+        ends = factor * np.array([true.min(), true.max()])
+        half = factor * float(result.band[number])
+        place = (factor * true[chosen], factor * predicted[chosen])
+        points = marked(*place, "held-out rows", color, 4, unit=unit)
+        traces = [points, line(ends, ends, "exact", TOTAL, width=1.2)]
+        if np.isfinite(half):
+            for edge in (half, -half):
+                style: Trace = {"dash": "dot", "showlegend": edge > 0.0}
+                traces.append(line(ends, ends + edge, f"{result.level:.0%} band", MUTED, **style))
+        label = label_with(str(name).replace("_", " "), unit)
+        rows.append(Row(f"Computed {label}", Panel("Predicted", traces)))
+        words = str(name).replace("_", " ")
+        qualities.append(f"{words} {result.errors[str(name)].determination:.4f}")
+    title = f"R² over {result.true.shape[1]} held-out rows: {', '.join(qualities[:3])}"
+    return stack_rows(title, rows, {"hovermode": "closest"})
+
 
 #: Fraction of the variants in a band, its least width over the range of the curve, opacity.
 _SHARE, _LEAST, _FAINT = 0.95, 1e-6, 0.22
@@ -24,7 +124,6 @@ _CURVES = 12
 
 
 @drawing(
-    "bands",
     heading="Spread of the variants",
     caption="The curve belongs to the central values of all inputs; the band holds 95 % of the "
     "variants, point by point. Bars have error bars instead. Curves that turn back along their "

@@ -1,4 +1,4 @@
-"""Figures of diagnosis: demodulated mesh harmonic, cepstrum, kurtogram, cyclic coherence."""
+"""Figures of diagnosis: mean revolution, demodulation, cepstrum, kurtogram, coherence."""
 
 from __future__ import annotations
 
@@ -6,20 +6,18 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from tribodyn.drawing import drawing
+from tribodyn.drawing import Sketch, drawing
 from tribodyn.plot.signals.lines import strongest_lines
-from tribodyn.plot.signals.maps import amplitude_label
+from tribodyn.plot.signals.maps import amplitude_label, with_unit
 from tribodyn.plot.signals.recorded import outline
-from tribodyn.plot.signals.revolution import finer, over_a_turn
-from tribodyn.plot.theme.labels import axis_label, readable, significant
+from tribodyn.plot.theme.colors import FILLS, MUTED, PINION, TOTAL, WHEEL
+from tribodyn.plot.theme.labels import axis_label, label_with, readable, significant
 from tribodyn.plot.theme.panels import Panel, event_lines, from_zero, stack
 from tribodyn.plot.theme.style import (
     GREY_ZERO,
-    MUTED,
-    PINION,
-    TOTAL,
-    WHEEL,
+    POWERS,
     Trace,
+    between,
     color_bar,
     heat,
     line,
@@ -28,8 +26,73 @@ from tribodyn.plot.theme.style import (
 from tribodyn.types import Array
 
 if TYPE_CHECKING:
-    from tribodyn.analysis import Cepstrum, CyclicCoherence, Kurtogram, NarrowbandDemodulation
+    from tribodyn.analysis import (
+        Cepstrum,
+        CyclicCoherence,
+        Kurtogram,
+        NarrowbandDemodulation,
+        SynchronousAverage,
+    )
     from tribodyn.measurement import SidebandCursors
+
+#: Most points of a curve; a mean revolution has 2.6 per mesh harmonic.
+_POINTS = 6000
+#: Points per period of the highest order.
+_FINE = 4
+
+
+def finer(values: Array) -> Array:
+    """Evaluate the Fourier series of a signal at more angles, for a smooth curve."""
+    from scipy.signal import resample
+
+    return np.asarray(resample(values, min(_FINE * values.size, max(_POINTS, values.size))))
+
+
+@drawing(
+    heading="Mean revolution",
+    caption="Vibration synchronous with the shaft, over its angle from the first pulse of the "
+    "tachometer, or from the first sample where there is none. Above, the mean revolution with a "
+    "band of two standard errors; below, the residual, without the mesh harmonics and the lowest "
+    "shaft orders, and the difference, without their first sidebands too. A local bump of the "
+    "difference indicates a faulty tooth.",
+    of="SynchronousAverage",
+    made_by="Call tribodyn.analysis.time_synchronous_average(...) and its plot method.",
+)
+def synchronous_average(average: SynchronousAverage) -> Any:
+    """Draw mean revolution, residual and difference over the angle of the shaft."""
+    unit = readable(average.unit)
+    mean = finer(average.signal)
+    angle = 360.0 * np.arange(mean.size) / mean.size
+    error = 2.0 * np.interp(angle, np.degrees(average.angle), average.scatter, period=360.0)
+    band = between(angle, mean + error, mean - error, "2 standard errors", FILLS[PINION])
+    band[0]["name"] = "standard error"
+    difference = finer(average.difference())
+    rows: tuple[tuple[Any, ...], ...] = (
+        ("Mean revolution", mean, PINION, {}, 1.2),
+        ("Residual", finer(average.residual()), TOTAL, GREY_ZERO, 1.0),
+        ("Difference", difference, WHEEL, GREY_ZERO, 1.0),
+    )
+    panels: list[Panel] = []
+    for name, values, color, axis, height in rows:
+        trace = line(angle, values, name.lower(), color, unit=unit, width=1.4)
+        traces = [trace] if panels else [*band, trace]
+        panels.append(Panel(label_with(name.split()[0], unit), traces, axis, height))
+    swing, bump = float(np.ptp(mean)), float(np.abs(difference).max())
+    place, tooth = average.local_place()
+    of_tooth = f", tooth {tooth} of {average.teeth}" if average.difference_is_clear else ""
+    title = (
+        f"{average.revolutions} revolutions: {with_unit(swing, average.unit)} peak to peak, "
+        f"difference up to {with_unit(bump, average.unit)} "
+        f"about {np.degrees(place):.0f}°{of_tooth}"
+    )
+    return over_a_turn(title, panels)
+
+
+def over_a_turn(title: str, panels: list[Panel]) -> Sketch:
+    """Stack panels over the angle of a shaft."""
+    axis = {"range": [0.0, 360.0], "dtick": 45}
+    return stack(title, "Angle of the shaft [°]", panels, {"xaxis": axis})
+
 
 #: Colours from the smallest to the largest value.
 _SCALE = [[0.0, "#ffffff"], [0.3, "#c6dbef"], [0.6, "#6baed6"], [0.8, "#2171b5"], [1.0, "#08306b"]]
@@ -38,7 +101,6 @@ _MAP, _MOST = 1.8, 480
 
 
 @drawing(
-    "narrowband_demodulation",
     heading="Demodulated mesh harmonic",
     caption="Amplitude and phase of a mesh harmonic over the angle of the shaft. A slow wave is "
     "run-out; a short dip of the phase is a tooth that yields, such as one with a root crack.",
@@ -56,15 +118,14 @@ def narrowband_demodulation(demodulation: NarrowbandDemodulation) -> Any:
         Panel("Phase [rad]", [line(angle, phase, "phase", PINION, unit="rad")], GREY_ZERO),
     ]
     title = (
-        f"Mesh harmonic {demodulation.harmonic}: amplitude {significant(float(size.min()))} to "
-        f"{significant(float(size.max()))} %, phase lags most at "
-        f"{significant(float(angle[lowest]))}°, by {significant(float(-phase[lowest]))} rad"
+        f"Mesh harmonic {demodulation.harmonic}: amplitude {significant(size.min())} to "
+        f"{significant(size.max())} %, phase lags most at "
+        f"{significant(angle[lowest])}°, by {significant(-phase[lowest])} rad"
     )
     return over_a_turn(title, panels)
 
 
 @drawing(
-    "cepstrum",
     heading="Cepstrum",
     caption="Each peak gathers a family of evenly spaced lines; its quefrency is the inverse of "
     "their spacing, such as the period of the shaft whose sidebands they are. Peaks at multiples "
@@ -95,7 +156,7 @@ def cepstrum(result: Cepstrum, *, shortest: float = 0.0) -> Any:
     largest = np.array([1e3 * top]), np.array([size])
     curves = [
         line(1e3 * quefrency, values, "cepstrum", TOTAL, width=1.0),
-        marked(*largest, "largest", WHEEL, size=8, symbol="circle-open"),
+        marked(*largest, "largest", WHEEL, 8, "circle-open"),
     ]
     title = (
         f"Largest peak {significant(size)} at {significant(1e3 * top, 4)} ms: lines every "
@@ -111,7 +172,6 @@ def _heatmap(x: Array, y: Array, values: Array, title: str, hover: str, top: flo
 
 
 @drawing(
-    "kurtogram",
     heading="Kurtogram",
     caption="Spectral kurtosis of equal bands, more and narrower ones from top to bottom. The "
     "darkest band contains the most impulsive vibration; its envelope shows how often the impacts "
@@ -140,7 +200,7 @@ def kurtogram(result: Kurtogram) -> Any:
     heatmap = _heatmap(frequency, levels, np.array(rows), "kurtosis", "%{x:.5g} Hz", most)
     title = (
         f"Most impulsive from {significant(low)} to {significant(high)} Hz (one of {best} bands): "
-        f"kurtosis {significant(float(result.kurtosis[result.best]))}"
+        f"kurtosis {significant(result.kurtosis[result.best])}"
     )
     axis: Trace = {"tickvals": np.arange(counts.size).tolist(), "autorange": "reversed"}
     axis |= {"ticktext": [str(count) for count in counts], "showgrid": False}
@@ -154,7 +214,6 @@ def kurtogram(result: Kurtogram) -> Any:
 
 
 @drawing(
-    "cyclic_coherence",
     heading="Cyclic coherence",
     caption="Squared coherence over the frequency of the carrier and of its modulation. Random "
     "impacts that repeat show as vertical lines at multiples of their rate. Below, the mean over "
@@ -167,11 +226,8 @@ def cyclic_coherence(result: CyclicCoherence) -> Any:
     alpha = result.cyclic_frequency
     groups = np.arange(0, alpha.size, -(-alpha.size // _MOST))
     most = np.maximum.reduceat(result.coherence, groups, axis=1)
-    ends = np.append(groups[1:], alpha.size)
-    top = [
-        a + int(np.argmax(result.coherence[:, a:b].max(axis=0)))
-        for a, b in zip(groups, ends, strict=True)
-    ]
+    parts = np.split(result.coherence.max(axis=0), groups[1:])
+    top = [a + int(np.argmax(part)) for a, part in zip(groups, parts, strict=True)]
     mean = result.enhanced_envelope_spectrum()
     largest = int(np.argmax(mean))
     hover, end = "%{y:.5g} Hz modulated with %{x:.5g} Hz", max(float(most.max()), result.threshold)
@@ -181,8 +237,8 @@ def cyclic_coherence(result: CyclicCoherence) -> Any:
         line(alpha, mean, "mean", TOTAL, width=1.2),
         line(alpha[[0, -1]], np.full(2, limit), "limit of noise", PINION, dash="dot"),
     ]
-    title = f"Most coherent modulation at {significant(float(alpha[largest]), 4)} Hz: mean "
-    title += f"{significant(float(mean[largest]))}, noise up to {significant(limit)}"
+    title = f"Most coherent modulation at {significant(alpha[largest], 4)} Hz: mean "
+    title += f"{significant(mean[largest])}, noise up to {significant(limit)}"
     title = title if mean[largest] > limit else "No modulation is more coherent than noise"
     carriers = Panel("Carrier [Hz]", [heatmap], {"showgrid": False}, _MAP)
     panels = [carriers, from_zero("Mean coherence", curves)]
@@ -190,7 +246,6 @@ def cyclic_coherence(result: CyclicCoherence) -> Any:
 
 
 @drawing(
-    "sideband_cursors",
     heading="Sidebands in the orders",
     caption="Orders around a carrier with cursors at even distances, on a logarithmic scale; the "
     "dashed line is the median of the lines between the cursors. Full circles stand out of it: "
@@ -212,21 +267,18 @@ def sideband_cursors(cursors: SidebandCursors) -> Any:
         line(np.array([low, high]), np.full(2, max(cursors.floor, least)), "between the cursors",
              MUTED, unit=unit, dash="dash"),
     ]  # fmt: skip
-    for name, rows, symbol in (
-        ("clear", cursors.clear, "circle"),
-        ("in the noise", ~cursors.clear, "circle-open"),
-    ):
+    kinds = (("clear", cursors.clear, "circle"), ("in the noise", ~cursors.clear, "circle-open"))
+    for name, rows, symbol in kinds:
         if rows.any():
-            heights, style = np.maximum(cursors.amplitude[rows], least), Trace(size=8, unit=unit)
-            curves.append(marked(cursors.order[rows], heights, name, WHEEL, symbol=symbol, **style))
+            heights = np.maximum(cursors.amplitude[rows], least)
+            curves.append(marked(cursors.order[rows], heights, name, WHEEL, 8, symbol, unit=unit))
     names = [f"{k:+d}" if k else "carrier" for k in cursors.number]
     marks = zip(names, cursors.order, strict=True)
     top = cursors.strongest
-    axis = {"type": "log", "exponentformat": "power"}
     title = (
         f"Order {significant(cursors.carrier, 4)}: strongest sideband {cursors.number[top]:+d} at "
-        f"{significant(float(cursors.order[top]), 4)}, {cursors.level[top]:.1f} dB"
+        f"{significant(cursors.order[top], 4)}, {cursors.level[top]:.1f} dB"
     )
-    panel = Panel(amplitude_label(cursors.unit), curves, axis, 1.5)
+    panel = Panel(amplitude_label(cursors.unit), curves, POWERS, 1.5)
     layout = {"hovermode": "closest", "xaxis": {"range": [low, high]}, **event_lines(marks)}
     return stack(title, "Order [cycles per revolution]", [panel], layout)

@@ -9,6 +9,7 @@ import numpy as np
 
 from tribodyn.drawing import drawing
 from tribodyn.plot.signals.maps import amplitude_label, with_unit
+from tribodyn.plot.theme.colors import MUTED, PINION, TOTAL, WHEEL
 from tribodyn.plot.theme.labels import (
     axis_label,
     display_unit,
@@ -19,7 +20,7 @@ from tribodyn.plot.theme.labels import (
     significant,
 )
 from tribodyn.plot.theme.panels import Panel, event_lines, from_zero, stack
-from tribodyn.plot.theme.style import MUTED, PINION, TOTAL, WHEEL, Trace, bars, line, marked
+from tribodyn.plot.theme.style import POWERS, Trace, bars, line, marked
 from tribodyn.signals.spectrum import distinct_peaks
 from tribodyn.types import Array
 
@@ -36,10 +37,9 @@ def strongest_lines(place: Array, size: Array, most: int = _LINES) -> tuple[Arra
     """Thin a spectrum to the largest line of every interval, which preserves peaks."""
     if size.size <= most:
         return place, size
-    length = -(-size.size // most)
-    starts = np.arange(0, size.size, length)
-    ends = np.append(starts[1:], size.size)
-    largest = [a + int(np.argmax(size[a:b])) for a, b in zip(starts, ends, strict=True)]
+    starts = np.arange(0, size.size, -(-size.size // most))
+    parts = np.split(size, starts[1:])
+    largest = [a + int(np.argmax(part)) for a, part in zip(starts, parts, strict=True)]
     return place[largest], size[largest]
 
 
@@ -55,8 +55,7 @@ def spectrum_panel(spectrum: SignalSpectrum, to: float | None = None) -> Panel:
     scaling = "Mean square" if spectrum.scaling == "power" else "Spectral density"
     top = float(np.log10(size.max())) if size.max() > 0.0 else 0.0
     low = float(np.log10(max(size[size > 0.0].min(initial=1.0), 1e-300)))
-    axis: Trace = {"type": "log", "exponentformat": "power"}
-    axis["range"] = [max(low, top - _DECADES) - 0.2, top + 0.3]
+    axis = {**POWERS, "range": [max(low, top - _DECADES) - 0.2, top + 0.3]}
     return Panel(label_with(scaling, unit), [curve], axis, 1.4)
 
 
@@ -69,12 +68,10 @@ def _peaks(spectrum: SignalSpectrum, unit: str) -> list[Trace]:
         return []
     place, size = np.array([(each.frequency, each.amplitude) for each in peaks]).T
     hover = f"%{{x:.6g}} Hz: %{{y:.4g}} {unit}<extra></extra>"
-    style: Trace = {"symbol": "circle-open", "hovertemplate": hover}
-    return [marked(place, size, "largest peaks", WHEEL, size=8, **style)]
+    return [marked(place, size, "largest peaks", WHEEL, 8, "circle-open", hovertemplate=hover)]
 
 
 @drawing(
-    "signal_spectrum",
     heading="Spectrum",
     caption="Amplitude over the frequency; circles mark the largest peaks, interpolated between "
     "the lines. The mean of the signal, the line at zero, is left out. Mean square and "
@@ -100,7 +97,7 @@ def signal_spectrum(
     -------
     plotly.graph_objects.Figure
     """
-    layout: dict[str, Any] = {"hovermode": "closest", **event_lines(marks)}
+    layout: Trace = {"hovermode": "closest", **event_lines(marks)}
     if to is not None:
         layout["xaxis"] = {"range": [0.0, to]}
     panels = [spectrum_panel(spectrum, to)]
@@ -113,15 +110,14 @@ def spectrum_title(spectrum: SignalSpectrum) -> str:
     frequency, size = spectrum.frequency[above], spectrum.amplitude[above]
     top = int(np.argmax(size))
     if not size[top] > 0.0:
-        return f"No line above zero up to {significant(float(frequency[-1]), 4)} Hz"
+        return f"No line above zero up to {significant(frequency[-1], 4)} Hz"
     return (
-        f"Strongest at {significant(float(frequency[top]), 4)} Hz: "
-        f"{with_unit(float(size[top]), spectrum.value_unit)}"
+        f"Strongest at {significant(frequency[top], 4)} Hz: "
+        f"{with_unit(size[top], spectrum.value_unit)}"
     )
 
 
 @drawing(
-    "harmonic_spectrum",
     heading="Harmonics",
     caption="Peak amplitude over multiples of the mesh frequency. Lines between "
     "integer harmonics belong to a response with a period of several mesh cycles.",
@@ -132,25 +128,18 @@ def harmonic_spectrum(spectrum: Spectrum) -> Any:
     """Draw the amplitudes over the mesh harmonics as bars."""
     top = int(np.argmax(spectrum.amplitude))
     unit = readable(spectrum.unit)
-    bars: Trace = {
-        "type": "bar",
-        "x": spectrum.order,
-        "y": spectrum.amplitude,
-        "name": "amplitude",
-        "marker": {"color": TOTAL},
-        "customdata": spectrum.frequency,
-        "hovertemplate": f"%{{y:.4g}} {unit} at %{{customdata:.5g}} Hz<extra></extra>",
-    }
+    hover = f"%{{y:.4g}} {unit} at %{{customdata:.5g}} Hz<extra></extra>"
+    lines = bars(spectrum.order, spectrum.amplitude, "amplitude", TOTAL, hover)
+    lines["customdata"] = spectrum.frequency
     return stack(
-        f"Harmonic {spectrum.order[top]:.4g} ({significant(float(spectrum.frequency[top]))} Hz) "
-        f"is the strongest: {with_unit(float(spectrum.amplitude[top]), spectrum.unit)}",
+        f"Harmonic {spectrum.order[top]:.4g} ({significant(spectrum.frequency[top])} Hz) "
+        f"is the strongest: {with_unit(spectrum.amplitude[top], spectrum.unit)}",
         "Mesh harmonic",
-        [from_zero(amplitude_label(spectrum.unit), [bars], 1.4)],
+        [from_zero(amplitude_label(spectrum.unit), [lines], 1.4)],
     )
 
 
 @drawing(
-    "sidebands",
     heading="Sidebands",
     caption="The carrier and its sidebands. Symmetric sidebands indicate a load that "
     "varies with the shaft (amplitude modulation), asymmetric sidebands additional uneven "
@@ -187,7 +176,6 @@ def _over_speed(speed: Array, values: Array, name: str, unit: str) -> Trace:
 
 
 @drawing(
-    "order_cut",
     heading="Order cut",
     caption="Amplitude of an order over the speed. A peak is a speed at which "
     "the order excites a natural frequency.",
@@ -199,15 +187,14 @@ def order_cut(cut: OrderCut) -> Any:
     """Draw the amplitude of an order over the speed."""
     top = int(np.argmax(cut.amplitude))
     title = (
-        f"Order {cut.order:.4g} reaches {with_unit(float(cut.amplitude[top]), cut.unit)} at "
-        f"{rounded('speed', float(cut.speed[top]), 4)}"
+        f"Order {cut.order:.4g} reaches {with_unit(cut.amplitude[top], cut.unit)} at "
+        f"{rounded('speed', cut.speed[top], 4)}"
     )
     curve = _over_speed(cut.speed, cut.amplitude, f"order {cut.order:.4g}", cut.unit)
     return stack(title, axis_label("speed"), [from_zero(amplitude_label(cut.unit), [curve], 1.4)])
 
 
 @drawing(
-    "overall_level",
     heading="Overall level",
     caption="Alternating rms of the signal over the speed; the circle marks the largest value.",
     of="OverallLevel",
@@ -220,12 +207,12 @@ def overall_level(level: OverallLevel) -> Any:
     curve = _over_speed(level.speed, level.rms, "level", level.unit)
     hover = f"%{{y:.4g}} {unit} at %{{x:.5g}} {display_unit('speed')}, after %{{customdata:.4g}} s"
     curve |= {"customdata": level.time, "hovertemplate": f"{hover}<extra></extra>"}
-    place, style = displayed("speed", level.speed[[top]]), Trace(symbol="circle-open", unit=unit)
-    loudest = marked(place, level.rms[[top]], "largest", MUTED, size=9, **style)
+    place = displayed("speed", level.speed[[top]])
+    loudest = marked(place, level.rms[[top]], "largest", MUTED, 9, "circle-open", unit=unit)
     curves = [{**each, "showlegend": False} for each in (curve, loudest)]
     title = (
-        f"Highest level at {rounded('speed', float(level.speed[top]), 4)}: "
-        f"{with_unit(float(level.rms[top]), level.unit)} rms"
+        f"Highest level at {rounded('speed', level.speed[top], 4)}: "
+        f"{with_unit(level.rms[top], level.unit)} rms"
     )
     panel = from_zero(label_with("Alternating rms", unit), curves, 1.4)
     return stack(title, axis_label("speed"), [panel], {"hovermode": "closest"})

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, SupportsFloat
 
 import numpy as np
 
 from tribodyn.analysis import OrderMap
 from tribodyn.drawing import drawing
+from tribodyn.plot.theme.colors import GRID, INK, MUTED, PINION, TOTAL, WHEEL
 from tribodyn.plot.theme.labels import (
     axis_label,
     display_unit,
@@ -18,18 +19,7 @@ from tribodyn.plot.theme.labels import (
     significant,
 )
 from tribodyn.plot.theme.panels import Panel, from_zero, stack
-from tribodyn.plot.theme.style import (
-    GRID,
-    INK,
-    MUTED,
-    PINION,
-    TOTAL,
-    WHEEL,
-    Trace,
-    color_bar,
-    heat,
-    line,
-)
+from tribodyn.plot.theme.style import Trace, color_bar, heat, line
 from tribodyn.types import Array
 
 if TYPE_CHECKING:
@@ -47,7 +37,7 @@ _CUTS = ((TOTAL, "solid"), (PINION, "dash"), (WHEEL, "dot"))
 _CURVES, _POINTS, _REACH = 40, 600, 6.0
 
 
-def with_unit(value: float, unit: str) -> str:
+def with_unit(value: SupportsFloat, unit: str) -> str:
     """Write an amplitude with three digits and its unit."""
     return f"{significant(value)} {readable(unit)}".rstrip()
 
@@ -78,7 +68,6 @@ def amplitude_heatmap(x: Array, y: Array, amplitude: Array, unit: str, hover: st
 
 
 @drawing(
-    "spectrogram",
     heading="Spectrogram",
     caption="Amplitudes over time and frequency. Lines that rise with the speed are orders "
     "of a shaft; horizontal lines are natural frequencies. Below, the rms over time.",
@@ -98,7 +87,7 @@ def spectrogram(result: Spectrogram) -> Any:
     ]
     title = (
         f"Strongest at {significant(frequency)} Hz after {significant(moment)} s: "
-        f"{with_unit(float(result.amplitude[number, block]), result.unit)}"
+        f"{with_unit(result.amplitude[number, block], result.unit)}"
     )
     return stack(title, "Time [s]", panels, {"hovermode": "closest"})
 
@@ -108,18 +97,14 @@ def strongest_orders(result: OrderMap) -> list[float]:
     most = np.sqrt(np.mean(result.amplitude**2, axis=1))
     main_lobe = 3  # lines: main lobe of the window
     most[:main_lobe] = 0.0
-    orders: list[float] = []
-    limit = 0.01 * float(most.max())
-    peak = np.flatnonzero(
-        (most >= np.append(0.0, most[:-1])) & (most > np.append(most[1:], 0.0)) & (most > limit)
-    )
+    above = (most >= np.append(0.0, most[:-1])) & (most > np.append(most[1:], 0.0))
+    peak = np.flatnonzero(above & (most > 0.01 * float(most.max())))
     lines: list[int] = []
     reach = result.amplitude.max(axis=1)
     for number in peak[np.argsort(reach[peak])[::-1]]:
-        if all(abs(number - other) > main_lobe for other in lines) and len(orders) < 3:
+        if all(abs(number - other) > main_lobe for other in lines):
             lines.append(int(number))
-            orders.append(float(result.order[number]))
-    return orders
+    return [float(result.order[number]) for number in lines[:3]]
 
 
 def _axis(result: OrderMap) -> tuple[Array, str, str]:
@@ -132,7 +117,6 @@ def _axis(result: OrderMap) -> tuple[Array, str, str]:
 
 
 @drawing(
-    "order_map",
     heading="Order map",
     caption="Vibration synchronous with the shaft is a horizontal line; its order is the number "
     "of cycles per revolution. Where the line darkens, the order excites a natural frequency. "
@@ -158,8 +142,8 @@ def order_map(result: OrderMap) -> Any:
         block = int(np.argmax(first.amplitude))
         title = (
             f"Order {orders[0]:.4g} is the strongest: "
-            f"{with_unit(float(first.amplitude[block]), result.unit)} at "
-            f"{rounded('speed', float(first.speed[block]))}"
+            f"{with_unit(first.amplitude[block], result.unit)} at "
+            f"{rounded('speed', first.speed[block])}"
         )
     panels = [
         Panel("Order", [surface], height=MAP_HEIGHT),
@@ -169,7 +153,6 @@ def order_map(result: OrderMap) -> Any:
 
 
 @drawing(
-    "waterfall",
     heading="Waterfall",
     caption="Stacked spectra, from the first at the bottom to the last at the top, "
     "with a common scale. The spectrum with the highest peak is coloured.",
@@ -200,7 +183,7 @@ def waterfall(result: OrderMap | Spectrogram) -> Any:
         values = level + height * (_REACH / (peak or 1.0))
         traces.append(line(across, values, name, color, customdata=height, **style))
     ticks = np.unique(np.linspace(0, chosen.size - 1, 6).round().astype(int))
-    what = f"order {place[number]:.4g}" if by_order else f"{significant(float(place[number]))} Hz"
+    what = f"order {place[number]:.4g}" if by_order else f"{significant(place[number])} Hz"
     axis = {"tickvals": ticks.tolist(), "ticktext": [names[k] for k in ticks], "showgrid": False}
     axis["tickfont"] = {"color": MUTED}
     panel = Panel("Speed" if by_order else "Time", traces, axis, height=2.6)
@@ -211,5 +194,5 @@ def waterfall(result: OrderMap | Spectrogram) -> Any:
 def _when(result: OrderMap | Spectrogram, block: int) -> str:
     """Format the speed or the time of a block."""
     if isinstance(result, OrderMap):
-        return rounded("speed", float(result.speed[block]))
-    return f"{significant(float(result.time[block]))} s"
+        return rounded("speed", result.speed[block])
+    return f"{significant(result.time[block])} s"

@@ -9,16 +9,16 @@ import numpy as np
 
 from tribodyn.drawing import drawing
 from tribodyn.plot.signals.maps import amplitude_heatmap
+from tribodyn.plot.theme.colors import COLORS, MUTED, TOTAL, WHEEL
 from tribodyn.plot.theme.labels import axis_label, displayed, readable, rounded, significant
 from tribodyn.plot.theme.panels import Panel, stack
-from tribodyn.plot.theme.style import MUTED, PAIR_COLORS, PINION, TOTAL, WHEEL, Trace, line
+from tribodyn.plot.theme.style import Trace, dots, line
 from tribodyn.types import Array
 
 if TYPE_CHECKING:
     from tribodyn.analysis import OrderMap
     from tribodyn.dynamics import RunUp
 
-_COLORS = (PINION, WHEEL, *PAIR_COLORS)
 #: Default number of order cuts, highest order of the search, most labelled resonances.
 _ORDER_CURVES, _HIGHEST_ORDER, _NAMED = 4, 12, 6
 #: A rising or falling part of the run is plotted separately from this many mesh cycles on.
@@ -42,64 +42,45 @@ def signal_label(run: RunUp, signal: str) -> tuple[str, str]:
 def _parts(run: RunUp) -> list[tuple[Any, str]]:
     """Rising and falling part of the run with the dash of their curves."""
     rate = run.cycles.rate
-    parts: list[tuple[Any, str]] = (
-        [("up", "solid")] if np.count_nonzero(rate > 0.0) > _MIN_CYCLES else []
-    )
-    return parts + ([("down", "dot")] if np.count_nonzero(rate < 0.0) > _MIN_CYCLES else [])
+    parts = ((("up", "solid"), rate > 0.0), (("down", "dot"), rate < 0.0))
+    return [part for part, cycles in parts if np.count_nonzero(cycles) > _MIN_CYCLES]
 
 
 def _strongest(run: RunUp, signal: str, part: Any) -> list[float]:
     from tribodyn.analysis import order_cut
 
     highest = min(_HIGHEST_ORDER, run.samples // 2 - 1)
-    tops = [
-        float(order_cut(run, order, signal, part=part).amplitude.max())
-        for order in range(1, highest + 1)
-    ]
+    cuts = (order_cut(run, order, signal, part=part) for order in range(1, highest + 1))
+    tops = [float(cut.amplitude.max()) for cut in cuts]
     return sorted(float(k + 1) for k in np.argsort(tops)[::-1][:_ORDER_CURVES])
 
 
-def _marks(peaks: Sequence[Any], factor: float, unit: str) -> dict[str, Any]:
+def _marks(peaks: Sequence[Any], factor: float, unit: str) -> Trace:
     """Markers on the peaks, labelled with order and mode."""
-    texts = [
-        f"{peak.order:g}×" + (f"<br>mode {peak.mode}" if peak.mode >= 0 else "") for peak in peaks
-    ]
-    facts = [
-        f"order {peak.order:g} at {significant(peak.frequency, 4)} Hz"
-        + (
-            f", mode {peak.mode} at {significant(peak.mode_frequency, 4)} Hz"
-            if peak.mode >= 0
-            else ", no natural mode close by"
-        )
-        + (f", close to the mains frequency of {peak.mains:g} Hz" if peak.mains else "")
-        for peak in peaks
-    ]
-    return {
-        "type": "scatter",
-        "mode": "markers+text",
-        "x": displayed("speed", np.array([peak.speed for peak in peaks])),
-        "y": [factor * peak.amplitude for peak in peaks],
-        "text": texts,
-        "textposition": "top center",
-        "textfont": {"size": 11, "color": MUTED},
-        "cliponaxis": False,
-        "name": "resonance",
-        "marker": {"color": TOTAL, "size": 8, "symbol": "circle-open", "line": {"width": 2}},
-        "customdata": facts,
-        "hovertemplate": f"%{{customdata}}: %{{y:.4g}} {unit}<extra>resonance</extra>",
-    }
+    texts, facts = [], []
+    for peak in peaks:
+        texts.append(f"{peak.order:g}×" + f"<br>mode {peak.mode}" * (peak.mode >= 0))
+        mode = ", no natural mode close by"
+        if peak.mode >= 0:
+            mode = f", mode {peak.mode} at {significant(peak.mode_frequency, 4)} Hz"
+        if peak.mains:
+            mode += f", close to the mains frequency of {peak.mains:g} Hz"
+        facts.append(f"order {peak.order:g} at {significant(peak.frequency, 4)} Hz{mode}")
+    x = displayed("speed", np.array([peak.speed for peak in peaks]))
+    marker = {"color": TOTAL, "size": 8, "symbol": "circle-open", "line": {"width": 2}}
+    marks = dots(x, [factor * peak.amplitude for peak in peaks], "resonance", marker, text=texts,
+                 textposition="top center", textfont={"size": 11, "color": MUTED})  # fmt: skip
+    hover = f"%{{customdata}}: %{{y:.4g}} {unit}<extra>resonance</extra>"
+    more = {"mode": "markers+text", "cliponaxis": False, "customdata": facts}
+    return {**marks, **more, "hovertemplate": hover}
 
 
 def _distinct(peaks: Sequence[Any]) -> list[Any]:
     """Drop resonances close to a stronger one of the same order."""
     distinct: list[Any] = []
     for peak in peaks:
-        close = [
-            abs(peak.speed / other.speed - 1.0) < _APART
-            for other in distinct
-            if other.order == peak.order
-        ]
-        if not any(close):
+        same = [other.speed for other in distinct if other.order == peak.order]
+        if all(abs(peak.speed / speed - 1.0) >= _APART for speed in same):
             distinct.append(peak)
     return distinct
 
@@ -108,14 +89,13 @@ def _title(levels: list[Any], peaks: Sequence[Any], unit: str, factor: float) ->
     top = max(levels, key=lambda level: float(level.rms.max()))
     at = int(np.argmax(top.rms))
     direction = " while the speed falls" if len(levels) > 1 and top is levels[1] else ""
-    text = f"Loudest at {rounded('speed', float(top.speed[at]))}{direction}: "
+    text = f"Loudest at {rounded('speed', top.speed[at])}{direction}: "
     text += f"{significant(factor * float(top.rms[at]))} {unit} rms"
     close = [peak for peak in peaks if abs(peak.speed / top.speed[at] - 1.0) < 0.05]
     return text + (f", from order {close[0].order:g} of the mesh" if close else "")
 
 
 @drawing(
-    "run_up",
     heading="Run-up",
     caption="Overall level and mesh orders over the speed: solid for rising, dotted for falling "
     "speed. Where the two differ, the response jumps or the speed changes too quickly for a "
@@ -153,7 +133,7 @@ def run_up(
         for level, (part, dash) in zip(levels, parts, strict=True)
     ]
     cuts = []
-    for color, order in zip(_COLORS, chosen, strict=False):
+    for color, order in zip(COLORS, chosen, strict=False):
         for number, (part, dash) in enumerate(parts):
             cut = order_cut(run, order, signal, part=part)
             style: Trace = {"unit": unit, "dash": dash, "width": 1.8, "legendgroup": f"{order:g}"}
@@ -214,10 +194,10 @@ def _modes(run: RunUp, speed: Array, top: float) -> list[Trace]:
     for number, (natural, part) in enumerate(zip(run.modes.frequency, share, strict=True)):
         if 0.0 < natural < top and part >= _SHARE:
             name = f"mode {number}, {100.0 * part:.0f} % mesh"
-            curve = line(ends, [natural, natural], name, WHEEL, unit="Hz", dash="dash", width=1.2)
-            text = [f"mode {number}: {significant(float(natural), 4)} Hz", ""]
-            label = {"mode": "lines+text", "text": text, "textposition": "top right"}
-            traces.append({**curve, **label, "showlegend": False, "textfont": {"color": WHEEL}})
+            text = [f"mode {number}: {significant(natural, 4)} Hz", ""]
+            style: Trace = {"mode": "lines+text", "text": text, "textposition": "top right"}
+            style |= {"unit": "Hz", "dash": "dash", "width": 1.2, "textfont": {"color": WHEEL}}
+            traces.append(line(ends, [natural] * 2, name, WHEEL, showlegend=False, **style))
     return traces
 
 
@@ -232,7 +212,7 @@ def _top(run: RunUp) -> float:
     return top
 
 
-def _on_one_scale(surfaces: list[tuple[float, dict[str, Any]]]) -> None:
+def _on_one_scale(surfaces: list[tuple[float, Trace]]) -> None:
     """Give all panels one colour scale, relative to the largest amplitude."""
     largest = max(top for top, _ in surfaces)
     has_scale = False
@@ -243,7 +223,6 @@ def _on_one_scale(surfaces: list[tuple[float, dict[str, Any]]]) -> None:
 
 
 @drawing(
-    "run_up_map",
     heading="Run-up over frequency",
     caption="Amplitudes over speed and frequency. Rising lines are mesh orders, "
     "horizontal lines natural modes that strain the mesh; an order resonates where they cross. "

@@ -1,4 +1,4 @@
-"""Sobol indices, confidence band of a mean curve, and columns of computed data."""
+"""Variance shares of inputs, confidence band of a mean, and columns of computed data."""
 
 from __future__ import annotations
 
@@ -8,21 +8,23 @@ import numpy as np
 
 from tribodyn.drawing import drawing
 from tribodyn.errors import Argument, InputError, did_you_mean
-from tribodyn.plot.theme.labels import readable, scaled, significant
+from tribodyn.plot.theme.colors import FILLS, GRID, MUTED, PAIR_COLORS, PINION, TOTAL, WHEEL
+from tribodyn.plot.theme.labels import capitalized, label_with, readable, scaled, significant
 from tribodyn.plot.theme.panels import Panel, stack
-from tribodyn.plot.theme.style import FILLS, PINION, TOTAL, WHEEL, Trace, figure, line, marked
+from tribodyn.plot.theme.style import ABOVE, Trace, axis, bars, between, line, marked, plane_figure
 from tribodyn.types import Array
 
 if TYPE_CHECKING:
-    from tribodyn.study import DataSet
+    from tribodyn.study import CaseSensitivity, DataSet
     from tribodyn.uncertainty import Band, SobolIndices
 
+#: Axis of shares of the variance.
+_SHARE = axis("Share of the variance [%]", rangemode="tozero")
 #: Panels of a table, and points of one.
 _PANELS, _POINTS = 8, 3000
 
 
 @drawing(
-    "sobol_indices",
     heading="Contribution of each input to the variance",
     caption="Shares of the variance of the output. The first-order index is the share of an input "
     "alone, the total-order index the share that would vanish if the input were fixed, with all "
@@ -37,42 +39,25 @@ def sobol_indices(indices: SobolIndices) -> Any:
     order = np.argsort(indices.total_order)
     names = [str(indices.name[k]) for k in order]
     traces = [
-        {
-            "type": "bar",
-            "orientation": "h",
-            "x": 100.0 * values[order],
-            "y": names,
-            "name": label,
-            "marker": {"color": color},
-            "hovertemplate": f"%{{y}}, {label}: %{{x:.3g}} %<extra></extra>",
-        }
+        bars(100.0 * values[order], names, label, color,
+             f"%{{y}}, {label}: %{{x:.3g}} %<extra></extra>", orientation="h")
         for label, values, color in (
             ("total order", indices.total_order, WHEEL),
             ("first order", indices.first_order, PINION),
         )
-    ]
+    ]  # fmt: skip
     top = order[-1]
     title = (
         f"{significant(100.0 * float(indices.first_order[top]))} % of the variance comes from "
         f"{indices.name[top]} alone, {significant(100.0 * float(indices.total_order[top]))} % "
         "with its interactions"
     )
-    return figure(
-        title,
-        traces,
-        {
-            "height": 190 + 52 * len(names),
-            "hovermode": "closest",
-            "barmode": "group",
-            "xaxis": {"title": {"text": "Share of the variance [%]"}, "rangemode": "tozero"},
-            "yaxis": {"title": {"text": "Input"}, "ticks": ""},
-            "legend": {"traceorder": "reversed", "x": 1.01, "xanchor": "left", "y": 1.0},
-        },
-    )
+    legend = {"traceorder": "reversed", "x": 1.01, "xanchor": "left", "y": 1.0}
+    layout: Trace = {"height": 190 + 52 * len(names), "barmode": "group", "legend": legend}
+    return plane_figure(title, traces, _SHARE, axis("Input", ticks=""), **layout)
 
 
 @drawing(
-    "band",
     heading="Mean and its band",
     caption="The mean over the repeats, and the band that holds the true mean with the stated "
     "probability, for the entire curve at once or for each point separately.",
@@ -111,17 +96,12 @@ def band(result: Band, x: Any = None, label: str = "") -> Any:
         "the curve" if result.simultaneous else "each point"
     )
     if mean.size == 1:
-        points = marked(place, mean, "mean", PINION, size=9, symbol="circle", unit=unit)
+        points = marked(place, mean, "mean", PINION, size=9, unit=unit)
         ends = {"array": high - mean, "arrayminus": mean - low, "color": PINION, "width": 6}
         traces: list[Trace] = [{**points, "error_y": ends}]
     else:
-        edge = {"type": "scatter", "mode": "lines", "line": {"width": 0}, "hoverinfo": "skip"}
-        traces = [
-            {**edge, "x": place, "y": low, "showlegend": False, "name": name},
-            {**edge, "x": place, "y": high, "fill": "tonexty", "fillcolor": FILLS[PINION],
-             "name": name},
-            line(place, mean, "mean", PINION, unit=unit),
-        ]  # fmt: skip
+        edges = between(place, low, high, name, FILLS[PINION])
+        traces = [*edges, line(place, mean, "mean", PINION, unit=unit)]
     layout = {"xaxis": {"showticklabels": False, "ticks": ""}} if mean.size == 1 else {}
     widest = int(np.argmax(high - low))
     half = 0.5 * float(high[widest] - low[widest])
@@ -135,7 +115,6 @@ def band(result: Band, x: Any = None, label: str = "") -> Any:
 
 
 @drawing(
-    "data_set",
     heading="Columns of the table",
     caption="The columns over one of them, each row a point. Name another column for the "
     "horizontal axis with x.",
@@ -174,7 +153,7 @@ def data_set(data: DataSet, x: str = "") -> Any:
     for name in others[:_PANELS]:
         values, label = _column(data, name, chosen)
         unit = label.rpartition("[")[2].rstrip("]") if "[" in label else ""
-        points = marked(place, values, name, TOTAL, size=4, symbol="circle", unit=unit)
+        points = marked(place, values, name, TOTAL, size=4, unit=unit)
         panels.append(Panel(label.replace(" [", "<br>["), [points], height=0.8))
     left_out = len(others) - _PANELS
     more = f"; {left_out} more columns" if left_out > 0 else ""
@@ -186,6 +165,68 @@ def _column(data: DataSet, name: str, rows: Array) -> tuple[Array, str]:
     """Values of a column in a unit that is read easily, and the label of its axis."""
     values = np.asarray(data[name], dtype=float)
     factor, unit = scaled(values, readable(data.units.get(name, "")))
-    label = name.replace("_", " ")
-    label = label[:1].upper() + label[1:]
-    return factor * values[rows], label if unit in ("", "-", "1") else f"{label} [{unit}]"
+    return factor * values[rows], label_with(capitalized(name), unit)
+
+
+#: Height of a row, and of the margins above and below the rows [px].
+_ROW, _FRAME = 46, 190
+#: Names and colours of the two kinds of share.
+_KINDS = (("alone", PINION), ("with interactions", PAIR_COLORS[0]))
+
+
+@drawing(
+    heading="Contribution of each tolerance",
+    caption="Share of the variance due to each input: alone, and with interactions, "
+    "which is the share that would vanish if the input were known exactly. Thin lines are "
+    "bootstrap intervals: use a larger sample where they are long.",
+    of="CaseSensitivity",
+    made_by='Call tribodyn.sobol_indices(case, "peak_mesh_force", {"operation.torque": '
+    '"90 N*m +- 5 %"}, seed=1) and its plot method.',
+)
+def sensitivity(shares: CaseSensitivity) -> Any:
+    """Draw the shares of the inputs as bars, one group per summary figure."""
+    figures, inputs = [str(name) for name in shares.figure], [str(key) for key in shares.input]
+    orders = (shares.first_order, shares.total_order)
+    bands = (shares.first_order_band, shares.total_order_band)
+    labels = [[_wrapped_name(name) for name in figures for _ in inputs], inputs * len(figures)]
+    traces = [
+        _bars(labels, np.asarray(order), band, name, color)
+        for order, band, (name, color) in zip(orders, bands, _KINDS, strict=True)
+    ]
+    count = len(inputs) * len(figures)
+    y = axis("", autorange="reversed", automargin=True, dividercolor=GRID)
+    layout = {"barmode": "group", "bargap": 0.25, "height": _FRAME + _ROW * count, "legend": ABOVE}
+    return plane_figure(_title(figures, inputs, shares.total_order), traces, _SHARE, y, **layout)
+
+
+def _bars(labels: Any, order: Array, band: Array, name: str, color: str) -> Trace:
+    values = 100.0 * order.ravel()
+    hover = f"%{{x:.3g}} % {name}<extra></extra>"
+    # Estimates may lie outside 0 to 100 %; the intervals are clipped.
+    clipped = np.clip(100.0 * np.asarray(band), 0.0, 100.0)
+    low, high = (clipped[..., end, :].ravel() for end in (0, 1))
+    above, below = np.maximum(high - values, 0.0), np.maximum(values - low, 0.0)
+    ends = {"type": "data", "array": above, "arrayminus": below, "color": MUTED, "width": 3}
+    more: Trace = {"orientation": "h", "error_x": {**ends, "thickness": 1.2}}
+    return bars(values, labels, name, color, hover, **more)
+
+
+def _wrapped_name(name: str) -> str:
+    """Name of a summary figure, wrapped at 20 characters."""
+    parts, lines = name.split("_"), [""]
+    for part in parts:
+        if len(lines[-1]) + len(part) > 20:
+            lines.append("")
+        lines[-1] = f"{lines[-1]} {part}".strip()
+    return "<br>".join(lines)
+
+
+def _title(figures: list[str], inputs: list[str], total: Array) -> str:
+    largest = [int(row.argmax()) for row in total]
+    share = f"{100.0 * min(max(total[0, largest[0]], 0.0), 1.0):.0f} %"
+    if len(figures) == 1:
+        quantity = figures[0].replace("_", " ")
+        return f"{share} of the variance of the {quantity} comes from {inputs[largest[0]]}"
+    if len(set(largest)) == 1:
+        return f"Most of the spread comes from {inputs[largest[0]]}"
+    return f"The spread comes from {len(set(largest))} inputs, by figure"

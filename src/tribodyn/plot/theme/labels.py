@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from typing import Any
+from typing import Any, SupportsFloat
 
 import numpy as np
 
@@ -50,13 +50,14 @@ def displayed(name: str, values: Any) -> Array:
     return np.asarray(values, dtype=float) * convert(1.0, quantity.unit, quantity.display_unit)
 
 
-def rounded(name: str, value: float, digits: int = 3) -> str:
+def rounded(name: str, value: SupportsFloat, digits: int = 3) -> str:
     """Format an SI value in its display unit for a title or a card."""
-    return f"{significant(float(displayed(name, value)), digits)} {display_unit(name)}".rstrip()
+    return f"{significant(displayed(name, value), digits)} {display_unit(name)}".rstrip()
 
 
-def significant(value: float, digits: int = 3) -> str:
+def significant(value: SupportsFloat, digits: int = 3) -> str:
     """Format a number with significant digits; the integer part is never rounded."""
+    value = float(value)
     if value == 0.0:
         return "0"
     decimals = max(digits - 1 - math.floor(math.log10(abs(value))), 0)
@@ -89,10 +90,14 @@ def unit_of(name: str) -> str:
     return "rad" if "theta" in name else "m"
 
 
+def capitalized(name: str) -> str:
+    """Write a name as words, the first with a capital."""
+    label = name.replace("_", " ")
+    return label[:1].upper() + label[1:]
+
+
 def parameter_axis(name: str, values: Any, unit: str) -> tuple[Array, str]:
     """Return the values of a parameter in their display unit and the label of the axis."""
-    label = name.replace("_", " ")
-    label = label[:1].upper() + label[1:]
     factor, display = scaled(values, unit)
     values_in_display_unit = factor * np.asarray(values, dtype=float)
-    return values_in_display_unit, label_with(label, display)
+    return values_in_display_unit, label_with(capitalized(name), display)

@@ -1,4 +1,4 @@
-"""Vertically stacked panels with one common horizontal axis or one axis each."""
+"""Stacked panels over a common axis or one axis each, and curves of quantities in them."""
 
 from __future__ import annotations
 
@@ -10,8 +10,10 @@ from typing import Any
 import numpy as np
 
 from tribodyn.drawing import Sketch
-from tribodyn.plot.theme.style import BOTTOM, MUTED, TOP, Trace, figure
-from tribodyn.types import Array
+from tribodyn.plot.theme.colors import MUTED
+from tribodyn.plot.theme.labels import axis_label, display_unit, displayed
+from tribodyn.plot.theme.style import BOTTOM, TOP, Trace, figure, line, marked
+from tribodyn.types import Array, Index
 
 #: Pixels of one panel, of the gap between panels, and of the gap with an axis and a title in it.
 _PANEL, _GAP, _WIDE_GAP = 230, 34, 84
@@ -30,7 +32,7 @@ class Panel:
 
     label: str  #: label of the vertical axis, with its unit
     traces: Sequence[Trace]  #: curves as :func:`line` returns them
-    axis: dict[str, Any] = field(default_factory=dict)  #: further properties of the vertical axis
+    axis: Trace = field(default_factory=dict)  #: further properties of the vertical axis
     height: float = 1.0  #: height relative to the other panels
     size: float = 0.0  #: of the values that cancel in the curves, in their unit
     note: str = ""  #: text above the panel
@@ -41,7 +43,7 @@ class Panel:
         several = len(self.traces) > 1
         return [{"showlegend": several, **trace, **place} for trace in self.traces]
 
-    def notes(self, top: float) -> list[dict[str, Any]]:
+    def notes(self, top: float) -> list[Trace]:
         """Text above the panel, and a note of curves that nobody sees, as they lie on others."""
         hidden = _covered(self.traces)
         texts = [f"{name} lies on {first}" for name, first in list(hidden.items())[:_NOTED]]
@@ -56,7 +58,7 @@ class Panel:
         ]
 
     @property
-    def vertical(self) -> dict[str, Any]:
+    def vertical(self) -> Trace:
         """Properties of the vertical axis; rounding does not fill it."""
         values = np.concatenate([np.ravel(y) for y in map(_heights, self.traces)] or [np.zeros(0)])
         values = values[np.isfinite(values)]
@@ -105,7 +107,7 @@ class Row:
 
     label: str  #: label of the horizontal axis, with its unit
     panel: Panel  #: curves and vertical axis
-    axis: dict[str, Any] = field(default_factory=dict)  #: further properties of the horizontal axis
+    axis: Trace = field(default_factory=dict)  #: further properties of the horizontal axis
     marks: Iterable[tuple[str, float]] = ()  #: names and positions of vertical event lines
 
 
@@ -125,14 +127,12 @@ def _suffix(number: int) -> str:
     return str(number + 1) if number else ""
 
 
-def stack(
-    title: str, x_label: str, panels: Sequence[Panel], layout: dict[str, Any] | None = None
-) -> Sketch:
+def stack(title: str, x_label: str, panels: Sequence[Panel], layout: Trace | None = None) -> Sketch:
     """Stack panels over one common horizontal axis, each with a legend to its right."""
     more = dict(layout or {})
     domains, height = _domains(panels, _GAP)
     x_axis = {"title": {"text": x_label}, "anchor": f"y{_suffix(len(panels) - 1)}"}
-    merged: dict[str, Any] = {"xaxis": {**x_axis, **more.pop("xaxis", {})}, "height": height}
+    merged: Trace = {"xaxis": {**x_axis, **more.pop("xaxis", {})}, "height": height}
     traces: list[Trace] = []
     notes = list(more.pop("annotations", ()))
     for number, (panel, domain) in enumerate(zip(panels, domains, strict=True)):
@@ -145,11 +145,11 @@ def stack(
     return figure(title, traces, {**merged, **({"annotations": notes} if notes else {}), **more})
 
 
-def stack_rows(title: str, rows: Sequence[Row], layout: dict[str, Any] | None = None) -> Sketch:
+def stack_rows(title: str, rows: Sequence[Row], layout: Trace | None = None) -> Sketch:
     """Stack panels, each over its own horizontal axis and with its own legend."""
     more = dict(layout or {})
     domains, height = _domains([row.panel for row in rows], _WIDE_GAP)
-    merged: dict[str, Any] = {"height": height, "hovermode": "x unified"}
+    merged: Trace = {"height": height, "hovermode": "x unified"}
     shapes, notes = list(more.pop("shapes", ())), list(more.pop("annotations", ()))
     traces: list[Trace] = []
     for number, (row, domain) in enumerate(zip(rows, domains, strict=True)):
@@ -168,11 +168,11 @@ def stack_rows(title: str, rows: Sequence[Row], layout: dict[str, Any] | None = 
     return figure(title, traces, {**merged, "shapes": shapes, "annotations": notes, **more})
 
 
-def _legend(top: float) -> dict[str, Any]:
+def _legend(top: float) -> Trace:
     return {"x": 1.01, "xanchor": "left", "y": top, "yanchor": "top"}
 
 
-def event_lines(places: Iterable[tuple[str, float]], share: float = 1.0) -> dict[str, Any]:
+def event_lines(places: Iterable[tuple[str, float]], share: float = 1.0) -> Trace:
     """Mark positions on the horizontal axis by dotted lines with a short name on top.
 
     ``share`` is the fraction of the figure's width that the axis takes.
@@ -205,3 +205,44 @@ def _levels(names: dict[float, str], share: float) -> list[int]:
         needed = _CHARACTER * (1 + 0.5 * (len(first) + len(second))) * span
         levels.append(0 if right - left > needed or levels[-1] else 1)
     return levels
+
+
+#: Axes that begin at zero, and that mark their zero.
+FROM_ZERO, ZERO = {"rangemode": "tozero"}, {"zeroline": True}
+
+
+def curve(quantity: str, x: Any, values: Any, name: str, color: str, **style: Any) -> Trace:
+    """Curve of SI values of a quantity in its display unit."""
+    return line(x, displayed(quantity, values), name, color, unit=display_unit(quantity), **style)
+
+
+def points(quantity: str, x: Any, values: Any, name: str, color: str, **style: Any) -> Trace:
+    """Marked SI values of a quantity in its display unit."""
+    return marked(x, displayed(quantity, values), name, color, unit=display_unit(quantity), **style)
+
+
+def curves(
+    quantity: str,
+    label: str | None,
+    x: Any,
+    rows: Iterable[tuple[Any, ...]],
+    axis: Trace | None = None,
+    height: float = 1.0,
+    **style: Any,
+) -> Panel:
+    """Panel with curves of a quantity over one axis; each row has name, values, colour, dash."""
+    traces = [
+        curve(quantity, x, values, name, color, dash=dash[0] if dash else "solid", **style)
+        for name, values, color, *dash in rows
+    ]
+    return Panel(axis_label(quantity, label), traces, axis or {}, height)
+
+
+def extremes(values: Array, most: int) -> Index:
+    """Indices of the minimum and maximum of every group of samples, about ``most`` of them."""
+    if values.size <= most:
+        return np.arange(values.size)
+    starts = np.arange(0, values.size, -(-2 * values.size // most))
+    parts = np.split(values, starts[1:])
+    ends = [(a + np.argmin(p), a + np.argmax(p)) for a, p in zip(starts, parts, strict=True)]
+    return np.unique(np.array(ends).ravel())

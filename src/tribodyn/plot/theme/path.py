@@ -9,8 +9,9 @@ import numpy as np
 
 from tribodyn.contact import path_of_contact
 from tribodyn.contact.path import pitch_point_age
+from tribodyn.plot.theme.colors import MUTED
 from tribodyn.plot.theme.labels import axis_label, displayed
-from tribodyn.plot.theme.style import MUTED, Trace
+from tribodyn.plot.theme.style import Trace
 from tribodyn.types import Array
 
 if TYPE_CHECKING:

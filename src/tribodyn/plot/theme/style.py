@@ -1,44 +1,32 @@
-"""Style of all figures: colours with fixed roles, fonts, grids, curves, bars, maps, buttons.
-
-The colours are those of Okabe and Ito, which remain distinguishable under the
-common forms of colour blindness; curves that share a panel differ in dash as well.
-"""
+"""Style of all figures: fonts, grids, curves, bars, maps, buttons."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from typing import Any
 
 import numpy as np
 
 from tribodyn.drawing import Sketch
+from tribodyn.plot.theme.colors import GRID, INK, MUTED
 from tribodyn.types import Array
 
-#: One curve as plotly describes it.
+#: Part of a figure, such as a curve or an axis, as plotly describes it.
 Trace = dict[str, Any]
 
 FONT = "system-ui, -apple-system, 'Segoe UI', Roboto, 'Helvetica Neue', Arial, sans-serif"
-INK = "#1f2933"
-MUTED = "#6b7785"
-GRID = "#e4e8ec"
-#: Axis that marks its zero.
+#: Axis that marks its zero, one without a grid, and that of powers of ten; legend on top.
 GREY_ZERO = {"zeroline": True, "zerolinecolor": "#c5ccd3"}
-#: Fixed roles, so that a colour means the same thing in every figure.
-PINION = "#0072B2"
-WHEEL = "#D55E00"
-TOTAL = INK
-PAIR_COLORS = ("#009E73", "#CC79A7", "#56B4E9", "#E69F00")
-#: Colours of maps of values, from the smallest to the largest.
-HEAT = [[0.0, "#f2f6fa"], [0.5, "#56B4E9"], [0.75, PINION], [1.0, WHEEL]]
-#: Light fill that goes with a line colour.
-FILLS = {PINION: "rgba(0, 114, 178, 0.14)", WHEEL: "rgba(213, 94, 0, 0.14)"}
+BARE = {"zeroline": False, "showgrid": False}
+POWERS = {"type": "log", "exponentformat": "power"}
+ABOVE = {"orientation": "h", "x": 0.0, "y": 1.0, "yanchor": "bottom"}
 #: Pixels above and below the panels of a figure.
 TOP, BOTTOM = 74, 58
 #: The line that follows the pointer, and the number that it points at.
 _SPIKE = {"spikecolor": MUTED, "spikethickness": 1, "spikedash": "solid", "hoverformat": ".4g"}
 
 
-def _axis(**more: Any) -> dict[str, Any]:
+def _axis(**more: Any) -> Trace:
     return {
         "gridcolor": GRID,
         "linecolor": MUTED,
@@ -54,11 +42,9 @@ def _axis(**more: Any) -> dict[str, Any]:
     }
 
 
-def figure(
-    title: str, traces: Sequence[dict[str, Any]], layout: dict[str, Any] | None = None
-) -> Sketch:
+def figure(title: str, traces: Sequence[Trace], layout: Trace | None = None) -> Sketch:
     """Describe a figure in the style of the package."""
-    common: dict[str, Any] = {
+    common: Trace = {
         "template": {"layout": {"xaxis": _axis(**_SPIKE), "yaxis": _axis()}},
         "title": {
             "text": title,
@@ -80,7 +66,18 @@ def figure(
     return Sketch(list(traces), {**common, **(layout or {})})
 
 
-def button_row(choices: Sequence[tuple[str, dict[str, Any]]]) -> dict[str, Any]:
+def axis(label: str, **more: Any) -> Trace:
+    """Axis with a label; ``more`` are properties of plotly."""
+    return {"title": {"text": label}, **more}
+
+
+def note(x: Any, y: Any, text: str, *, size: int = 12, color: str = INK, **more: Any) -> Trace:
+    """Text at a point; ``more`` are properties of plotly."""
+    font = {"size": size, "color": color}
+    return {"x": x, "y": y, "text": text, "showarrow": False, "font": font, **more}
+
+
+def button_row(choices: Sequence[tuple[str, Trace]]) -> Trace:
     """Describe buttons above the left end of the panels, clear of plotly's mode bar."""
     return {
         "type": "buttons",
@@ -97,6 +94,23 @@ def button_row(choices: Sequence[tuple[str, dict[str, Any]]]) -> dict[str, Any]:
         "bgcolor": "white",
         "font": {"size": 12},
     }
+
+
+def plane_figure(title: str, traces: Sequence[Trace], x: Trace, y: Trace, **layout: Any) -> Sketch:
+    """Describe a figure of one plane; ``x`` and ``y`` are its axes."""
+    return figure(title, traces, {"hovermode": "closest", "xaxis": x, "yaxis": y, **layout})
+
+
+def choice(
+    labels: Sequence[str], titles: Sequence[str], visible: Sequence[list[bool]], first: int
+) -> Trace:
+    """Describe a menu; each entry shows its title and some of the traces."""
+    entries = [
+        {"label": label, "method": "update", "args": [{"visible": shown}, {"title.text": title}]}
+        for label, title, shown in zip(labels, titles, visible, strict=True)
+    ]
+    place = {"x": 1.0, "xanchor": "right", "y": 1.12, "yanchor": "top", "bgcolor": "white"}
+    return {"buttons": entries, "active": first, **place}
 
 
 #: Points of a curve up to which each of them is drawn.
@@ -136,6 +150,18 @@ def between(x: Any, low: Any, high: Any, name: str, fill: str, **more: Any) -> l
     return [lower, {**edge, "y": high, "fill": "tonexty", "fillcolor": fill, "name": name, **more}]
 
 
+def strokes(x: Any, y: Any, color: str, width: float = 1.2, **more: Any) -> Trace:
+    """Describe lines without a hover text; ``more`` are properties of plotly."""
+    style = {"line": {"color": color, "width": width}, "hoverinfo": "skip"}
+    return {"type": "scatter", "mode": "lines", "x": x, "y": y, **style, **more}
+
+
+def dots(x: Any, y: Any, name: str, marker: Trace, **more: Any) -> Trace:
+    """Describe points by the properties of their marker."""
+    points = {"type": "scatter", "mode": "markers", "x": x, "y": y}
+    return {**points, "name": name, "marker": marker, **more}
+
+
 def bars(x: Any, y: Any, name: str, color: Any, hover: str, **more: Any) -> Trace:
     """Describe bars; ``hover`` is the template of their hover text."""
     marker = color if isinstance(color, dict) else {"color": color}
@@ -149,7 +175,25 @@ def heat(x: Any, y: Any, z: Any, colors: Any, hover: str, **more: Any) -> Trace:
             "hovertemplate": f"{hover}<extra></extra>", "showlegend": False, **more}  # fmt: skip
 
 
-def color_bar(title: str) -> dict[str, Any]:
+def contour(x: Any, y: Any, z: Any, colors: Any, hover: str, unit: str, length: float) -> Trace:
+    """Describe a map with labelled lines of equal values, and a colour bar of that length."""
+    levels = {"showlabels": True, "labelfont": {"size": 10, "color": INK}}
+    style = {"ncontours": 16, "contours": levels, "line": {"width": 0.6, "color": MUTED}}
+    bar = {**color_bar(""), "title": {"text": f"[{unit}]"}, "len": length}
+    return {**heat(x, y, z, colors, hover, colorbar=bar), "type": "contour", **style}
+
+
+def sankey(
+    links: Iterable[tuple[int, int, float, str]], hover: str, node_hover: str, **node: Any
+) -> Trace:
+    """Describe flows (source, target, value, colour) between nodes with these properties."""
+    columns = zip(("source", "target", "value", "color"), zip(*links, strict=True), strict=True)
+    flows = {**dict(columns), "hovertemplate": f"{hover}<extra></extra>"}
+    nodes = {"hovertemplate": f"{node_hover}<extra></extra>", **node}
+    return {"type": "sankey", "arrangement": "snap", "node": nodes, "link": flows}
+
+
+def color_bar(title: str) -> Trace:
     """Colour bar beside the map at the top of a figure."""
     place = {"len": 0.62, "y": 1.0, "yanchor": "top", "thickness": 14, "x": 1.01, "xanchor": "left"}
     return {**place, "title": {"text": title, "side": "top", "font": {"size": 13, "color": MUTED}}}
@@ -162,10 +206,13 @@ def stems(x: Array, y: Array, foot: float = 0.0) -> tuple[Array, Array]:
     return np.stack((x, x, gap), axis=1).ravel(), np.stack((feet, y, gap), axis=1).ravel()
 
 
-def translucent(color: str, opacity: float) -> str:
-    """Return a colour with an opacity between 0 and 1."""
-    red, green, blue = (int(color[place : place + 2], 16) for place in (1, 3, 5))
-    return f"rgba({red}, {green}, {blue}, {opacity})"
+def animated(
+    sketch: Sketch, frames: Iterable[list[Trace]], moving: Sequence[int] | None = None
+) -> Sketch:
+    """Add frames named 0, 1, ... to a figure, with the numbers of the traces that they replace."""
+    which = {} if moving is None else {"traces": moving}
+    sketch.frames = [{"name": str(k), "data": data, **which} for k, data in enumerate(frames)]
+    return sketch
 
 
 def player(
@@ -173,10 +220,10 @@ def player(
     milliseconds: int,
     *,
     redraw: bool,
-    slider: dict[str, Any],
+    slider: Trace,
     buttons: float,
-) -> dict[str, Any]:
-    """Slider over frames named 0, 1, ... with a label each, and buttons that play them.
+) -> Trace:
+    """Slider over :func:`animated` frames with a label each, and buttons that play them.
 
     ``slider`` places the slider, ``buttons`` is the height of the buttons.
     """
@@ -211,10 +258,10 @@ def player(
 
 
 def marked(
-    x: Any, y: Any, name: str, color: str, *, size: float, symbol: str, unit: str = "", **more: Any
+    x: Any, y: Any, name: str, color: str, size: float, symbol: str = "circle", **more: Any
 ) -> Trace:
-    """Describe marked points whose hover text carries their unit."""
+    """Describe marked points whose hover text carries their ``unit``."""
     marker = {"size": size, "symbol": symbol, "color": color}
-    points = line(x, y, name, color, unit=unit, mode="markers", marker=marker, **more)
+    points = line(x, y, name, color, mode="markers", marker=marker, **more)
     del points["line"]
     return points

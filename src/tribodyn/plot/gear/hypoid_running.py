@@ -1,19 +1,134 @@
-"""A hypoid pair under load: pressure, friction and film on the flank, load sharing."""
+"""A running hypoid pair: kinematics, displaced gears, load, pressure, friction and film."""
 
 from __future__ import annotations
 
+import math
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from tribodyn.drawing import drawing
 from tribodyn.ehl.load_share import REGIME_LIMITS
+from tribodyn.plot.gear.hypoid import outline, pattern
+from tribodyn.plot.theme.colors import (
+    FILLS,
+    HEAT,
+    INK,
+    MUTED,
+    PAIR_COLORS,
+    PINION,
+    TOTAL,
+    WHEEL,
+    translucent,
+)
+from tribodyn.plot.theme.labels import axis_label, display_unit, displayed, significant
 from tribodyn.plot.theme.panels import Panel, Row, from_zero, stack, stack_rows
-from tribodyn.plot.theme.style import HEAT, INK, MUTED, PAIR_COLORS, TOTAL, WHEEL, Trace, heat, line
+from tribodyn.plot.theme.style import Trace, between, heat, line, marked
 from tribodyn.types import Array
 
 if TYPE_CHECKING:
+    from tribodyn.gear import HypoidKinematics, Misalignment, MisalignmentStudy
     from tribodyn.mesh import HypoidFriction, HypoidLoadedContact
+
+
+def _over_line(place: Array, values: Array, name: str, color: str, unit: str) -> list[Trace]:
+    """Mean over each contact line with a band from minimum to maximum."""
+    least, mean, most = (f(values, axis=1) for f in (np.nanmin, np.nanmean, np.nanmax))
+    fill = FILLS.get(color, translucent(color, 0.12))
+    band = between(place, least, most, name, fill, showlegend=False)
+    return [*band, line(place, mean, name, color, unit=unit)]
+
+
+@drawing(
+    heading="Kinematics of the flanks",
+    caption="Mean over the contact line with a band from minimum to maximum, over the rotation of "
+    "the wheel. The flanks of a hypoid pair also slide along the tooth, so that the sliding speed "
+    "never reaches zero.",
+    of="HypoidKinematics",
+    made_by="Call tribodyn.gear.hypoid_kinematics(contact, pinion_speed) and its plot method.",
+)
+def hypoid_kinematics(motion: HypoidKinematics) -> Any:
+    """Draw speeds, slide-to-roll ratio and radius of the gap over the rotation of the wheel."""
+    place = np.degrees(motion.rotation)
+    speed = display_unit("sliding_speed")
+    rolling = [
+        *_over_line(place, motion.pinion_rolling_speed, "pinion rolls", PINION, speed),
+        *_over_line(place, motion.wheel_rolling_speed, "wheel rolls", WHEEL, speed),
+    ]
+    sliding = [
+        *_over_line(place, motion.sliding_speed, "sliding", TOTAL, speed),
+        *_over_line(place, motion.entrainment_speed, "entrainment", "#009E73", speed),
+    ]
+    ratio = _over_line(place, motion.slide_to_roll_ratio, "slide to roll", TOTAL, "")
+    gap = _over_line(place, 1e3 * motion.equivalent_radius, "radius", TOTAL, "mm")
+    panels = [
+        Panel(axis_label("sliding_speed", "Speed"), sliding),
+        Panel(axis_label("sliding_speed", "Rolling speed"), rolling),
+        Panel("Slide to roll ratio", ratio),
+        Panel("Radius of the gap [mm]", gap),
+    ]
+    low, high = (float(f(motion.sliding_speed)) for f in (np.nanmin, np.nanmax))
+    title = (
+        f"The flanks slide at {significant(low)} to {significant(high)} {speed} with the pinion at "
+        f"{significant(displayed('speed', motion.pinion_speed), 4)} rpm"
+    )
+    return stack(title, "Rotation of the wheel [°]", panels)
+
+
+_COLORS = (PINION, WHEEL, *PAIR_COLORS, INK)
+#: Letter of each displacement, unit and factor from SI.
+_LETTERS = {
+    "offset": ("V", "µm", 1e6),
+    "pinion_axial": ("H", "µm", 1e6),
+    "wheel_axial": ("J", "µm", 1e6),
+    "shaft_angle": ("α", "arcmin", 60.0 * math.degrees(1.0)),
+}
+
+
+def _label(misalignment: Misalignment) -> str:
+    parts = [
+        f"{letter} {getattr(misalignment, name) * factor:+.3g} {unit}"
+        for name, (letter, unit, factor) in _LETTERS.items()
+        if getattr(misalignment, name)
+    ]
+    return ", ".join(parts) or "nominal"
+
+
+@drawing(
+    heading="Contact with displaced gears",
+    caption="Flank of the wheel with the marked pattern and the mean place of the contact for each "
+    "displacement: V of the offset, H of the pinion and J of the wheel along their axes, α of the "
+    "shaft angle. Below, the transmission error of the running pair without load.",
+    of="MisalignmentStudy",
+    made_by="Call tribodyn.gear.misalignment_study.",
+)
+def hypoid_misalignment(study: MisalignmentStudy) -> Any:
+    """Draw patterns on the flank and the transmission error of each case."""
+    flank: list[Trace] = [outline(study.contacts[0])]
+    errors: list[Trace] = []
+    for number, contact in enumerate(study.contacts):
+        color, label = _COLORS[number % len(_COLORS)], _label(contact.misalignment)
+        flank.append(pattern(contact, label, color))
+        x, y = 1e3 * study.along[number], 1e3 * study.across[number]
+        more: Trace = {"unit": "mm", "showlegend": False}
+        flank.append(marked([x], [y], label, color, size=9, symbol="cross", **more))
+        turn, error = np.degrees(contact.rotation), 1e6 * contact.angular_transmission_error
+        leads = contact.leads
+        more["unit"], ahead = "µrad", error[leads] - error[leads].max()
+        errors.append(line(turn[leads], ahead, label, color, **more))
+    rows = [
+        Row(
+            "Along the pitch cone of the wheel, towards the heel [mm]",
+            Panel("Across, towards the tip [mm]", flank, {"scaleanchor": "x"}, height=1.4),
+        ),
+        Row("Rotation of the wheel from the calculation point [°]",
+            Panel("Wheel ahead [µrad]", errors)),
+    ]  # fmt: skip
+    ends = f"{1e6 * study.peak_to_peak.min():.3g}", f"{1e6 * study.peak_to_peak.max():.3g}"
+    side = study.contacts[0].flanks.side
+    title = f"Transmission error of {' to '.join(dict.fromkeys(ends))} µrad on the {side} flank"
+    return stack_rows(title, rows, {"hovermode": "closest"})
+
 
 #: Points of a map along and across the flank.
 _GRID = (90, 45)
@@ -78,12 +193,11 @@ def _regimes(heat: Trace) -> Trace:
     }
 
 
-def _across() -> dict[str, Any]:
+def _across() -> Trace:
     return {"scaleanchor": "x", "constrain": "domain"}
 
 
 @drawing(
-    "hypoid_pressure",
     heading="Pressure on the flank",
     caption="Flank of the wheel: maximum Hertzian pressure of every cell while its pair passes "
     "through the mesh. Blank areas never carry load; the dashed line is the common flank.",
@@ -102,7 +216,6 @@ def hypoid_pressure(loaded: HypoidLoadedContact) -> Any:
 
 
 @drawing(
-    "hypoid_load",
     heading="Load sharing and transmission error",
     caption="Over one mesh cycle: the share of the torque of each pair, the lag of the wheel "
     "with and without load, and the mesh stiffness on the line of action.",
@@ -155,7 +268,6 @@ def _friction_caption(friction: HypoidFriction) -> str:
 
 
 @drawing(
-    "hypoid_friction",
     heading="Friction and film on the flank",
     caption=_friction_caption,
     of=("HypoidFriction", "Result.hypoid_friction"),
