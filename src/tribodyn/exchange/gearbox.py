@@ -16,6 +16,8 @@ from tribodyn.record import html_table
 _GEARS = ("cylindrical_gear", "ring_gear")
 #: Stages that are not pairs of cylindrical gears.
 _OTHER_STAGES = ("bevel_stage", "worm_stage")
+#: Components with the temperature of the oil, the first ones before the others.
+_OILED = ("gear_casing", "cylindrical_stage")
 #: Largest plausible deviation of a tip circle from the standard one, in modules.
 _TIP_MODULES = 2.0
 
@@ -141,6 +143,12 @@ class Load:
     source: int | None = None
     driven: bool = False
     oil_temperature: float | None = None
+
+
+def add_remark(model: GearboxModel, text: str) -> None:
+    """Add a remark to those of the model, once."""
+    if text not in model.remarks:
+        model.remarks.append(text)
 
 
 class GearboxModel:
@@ -326,7 +334,7 @@ class GearboxModel:
             )
         forms, remarks = forms_of(self.file, component, flanks, radii)
         for remark in remarks:
-            self._remark(remark)
+            add_remark(self, remark)
         return replace(gear, modification=forms)
 
     def _flanks(self, gear: Component) -> list[Component]:
@@ -337,22 +345,25 @@ class GearboxModel:
                 for name in ("normal_pressure_angle", "addendum_modification_coefficient"):
                     unit = "rad" if name.endswith("angle") else ""
                     if sides[0].number(name, unit) != sides[1].number(name, unit):
-                        self._remark(f"{gear}: {name} of its flanks differs; the left one is used")
+                        add_remark(
+                            self, f"{gear}: {name} of its flanks differs; the left one is used"
+                        )
             if sides:
                 return sides
         return []
 
     def _without_implausible_tip(self, gear: StageGear, component: Component) -> StageGear:
         if gear.tip_diameter is None:
-            self._remark(f"{component}: no tip diameter; that of the standard addendum is used")
+            add_remark(self, f"{component}: no tip diameter; that of the standard addendum is used")
             return gear
         reference = gear.teeth * gear.normal_module / math.cos(gear.helix_angle)
         standard = reference + 2.0 * gear.normal_module * (1.0 + gear.profile_shift_coefficient)
         if abs(gear.tip_diameter - abs(standard)) <= _TIP_MODULES * gear.normal_module:
             return gear
-        self._remark(
+        add_remark(
+            self,
             f"{component}: tip_diameter = {gear.tip_diameter * 1e3:g} mm is ignored: the standard "
-            f"addendum gives {abs(standard) * 1e3:.2f} mm"
+            f"addendum gives {abs(standard) * 1e3:.2f} mm",
         )
         return replace(gear, tip_diameter=None)
 
@@ -375,8 +386,8 @@ class GearboxModel:
         source = next(iter(torques)) if len(torques) == 1 else None
         driven = source is not None and torques[source] * speeds.get(source, 1.0) < 0.0
         units = [c for c in case.values() if c.kind == "gear_unit"]
-        casing = [c for c in case.values() if c.kind == "gear_casing"]
-        oil = [t for c in casing if (t := c.number("temperature_lubricant", "K")) is not None]
+        oiled = [c for kind in _OILED for c in case.values() if c.kind == kind]
+        oil = [t for c in oiled if (t := c.number("temperature_lubricant", "K")) is not None]
         shares = [s for c in units if (s := c.number("load_duration_fraction", "")) is not None]
         serial = not self._planetary
         source_torque = {} if source is None else {source: abs(torques[source])}
@@ -409,22 +420,23 @@ class GearboxModel:
         first, second = stage.gear_1, stage.gear_2
         shift_sum = first.profile_shift_coefficient + second.profile_shift_coefficient
         if abs(first.normal_module - second.normal_module) > 1e-9:
-            self._remark(f"stage {stage.id}: the modules of its gears differ")
+            add_remark(self, f"stage {stage.id}: the modules of its gears differ")
         elif abs(shift_sum - stage.shift_sum) > 5e-3:
-            self._remark(
+            add_remark(
+                self,
                 f"stage {stage.id}: the profile shifts sum up to {shift_sum:.4f}, the centre "
-                f"distance has no backlash at {stage.shift_sum:.4f}"
+                f"distance has no backlash at {stage.shift_sum:.4f}",
             )
 
     def _remark_on_rest(self) -> None:
         for kind in _OTHER_STAGES:
             if kind in self.components:
-                self._remark(f"{self.components[kind]} {kind}: not computed, and not read")
+                add_remark(self, f"{self.components[kind]} {kind}: not computed, and not read")
         for planetary in self.file.of_kind("planetary_stage"):
-            self._remark(f"{planetary}: {self._epicyclic() or 'its gears are listed'}")
+            add_remark(self, f"{planetary}: {self._epicyclic() or 'its gears are listed'}")
         torques = {load.source for load in self.loads}
         if torques == {None}:
-            self._remark("there is not exactly one torque from which all others follow")
+            add_remark(self, "there is not exactly one torque from which all others follow")
 
     def _epicyclic(self) -> str:
         """Text on sun, planets and ring of a single planetary stage."""
@@ -438,10 +450,6 @@ class GearboxModel:
             f"sun {sun}, {planets} planets {outer[0].gear_1.teeth}, ring {ring} teeth; ratio "
             f"{1.0 + ring / sun:.4g} with a fixed ring; equally spaced planets {fits}assemble"
         )
-
-    def _remark(self, text: str) -> None:
-        if text not in self.remarks:
-            self.remarks.append(text)
 
 
 def _needed(component: Component, name: str, unit: str) -> float:

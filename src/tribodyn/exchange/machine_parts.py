@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from tribodyn.errors import InputError
-from tribodyn.exchange.gearbox import GearboxModel, StageGear
+from tribodyn.exchange.gearbox import GearboxModel, StageGear, add_remark
 from tribodyn.exchange.rexs_file import Component
 from tribodyn.types import Array
 
@@ -69,12 +69,6 @@ class Axis:
         if coordinate is None or self.start is None:
             return None
         return self.sense * float(self.start @ self.along + coordinate)
-
-
-def add_remark(model: GearboxModel, text: str) -> None:
-    """Add a remark to those of the model, once."""
-    if text not in model.remarks:
-        model.remarks.append(text)
 
 
 def point(component: Component, name: str = "support_vector") -> Array | None:

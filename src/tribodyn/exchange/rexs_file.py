@@ -34,13 +34,16 @@ _UNITS = {
     "N/(mmmum)": "N/mm/um",
     "kgm^2": "kg*m^2",
 }
-#: Names of attributes in REXS 2.0.0 that had another one before.
-_RENAMED = {
-    "arithmetic_mean_roughness_flank_iso_4287_1997": "arithmetic_average_roughness_flank",
-    "tip_corner_radius_factor_reference_profile": "tip_radius_factor",
+#: Names of later versions -> the first name, of attributes that are read.
+RENAMED = {
+    "operating_time_fraction": "load_duration_fraction",  # 1.3
+    "arithmetic_mean_roughness_flank_iso_4287_1997": "arithmetic_average_roughness_flank",  # 2.0.0
+    "tip_corner_radius_factor_reference_profile": "tip_radius_factor",  # 2.0.0
 }
-#: Versions whose attributes are known; the first ones have other spellings, too.
-VERSIONS = ("1.0", "1.1", "1.2", "1.3", "1.4", "1.5", "1.6", "0.10", "0.90", "1.00", "1.10")
+#: Versions whose attributes are known; the last ones have other spellings, too.
+VERSIONS = (
+    *(f"1.{minor}" for minor in range(8)), "2.0.0", "2.0", "0.10", "0.90", "1.00", "1.10",
+)  # fmt: skip
 #: Attributes of gears, tools, shafts and bearings that are read or say nothing of their shape.
 _NAMES = """
     addendum_coefficient_reference_profile addendum_modification_coefficient
@@ -321,7 +324,7 @@ def _components(items: Any, place: str) -> dict[int, Component]:
         if number in components:
             raise InputError(f"two components have the number {number}", place, "", _REMEDY)
         values = {
-            _RENAMED.get(str(a.get("id")), str(a.get("id", ""))): Value(
+            RENAMED.get(str(a.get("id")), str(a.get("id", ""))): Value(
                 _content(a), str(a.get("unit", ""))
             )
             for a in _dicts(item, "attributes", place)
@@ -382,8 +385,8 @@ def version_remark(file: RexsFile) -> str:
     ]
     name = f"version {file.version}" if file.version else "a version that the file does not name"
     return (
-        f"REXS {name} is read by the names of attributes in versions 1.0 to 1.6 and those that "
-        f"2.0.0 renamed; not read are, of {'; of '.join(lost) or 'gears, shafts, bearings: none'}"
+        f"REXS {name} is not known and is read by the names of attributes in versions 1.0 to "
+        f"2.0.0; not read are, of {'; of '.join(lost) or 'gears, shafts, bearings: none'}"
     )
 
 

@@ -8,7 +8,7 @@ from typing import Any
 
 from tribodyn import units
 from tribodyn.errors import InputError
-from tribodyn.exchange.gearbox import GearboxModel, Load, Stage, StageGear
+from tribodyn.exchange.gearbox import GearboxModel, Load, Stage, StageGear, add_remark
 from tribodyn.exchange.rexs_file import model_of
 from tribodyn.exchange.write import WHOLE_CASE, tree_of
 from tribodyn.lubricant import Lubricant
@@ -178,21 +178,33 @@ def _values(model: GearboxModel, stage: Stage, load: Load) -> tuple[dict[str, An
 
 def rack_values(model: GearboxModel, pinion: StageGear, wheel: StageGear) -> dict[str, float]:
     """Basic rack of both gears if the same rack-shaped tool cuts them."""
-    tools = []
-    for gear in (pinion, wheel):
-        for relation in model.file.related("ordered_reference", origin=gear.id):
-            tool = model.file.components[relation.of("referenced") or gear.id]
-            if tool.kind == "rack_shaped_tool":
-                dedendum = tool.number("addendum_coefficient_reference_profile", "")
-                round_ = tool.number("tip_radius_factor", "")
-                tools.append((dedendum, round_))
-    if len(tools) == 2 and tools[0] == tools[1] and None not in tools[0]:
-        dedendum, round_ = tools[0]
-        return {
-            "gears.dedendum_coefficient": float(dedendum or 0.0),
-            "gears.rack_tip_radius_coefficient": float(round_ or 0.0),
-        }
-    return {}
+    racks = [_racks(model, gear) for gear in (pinion, wheel)]
+    if racks[0] != racks[1] or len(racks[0]) != 1 or None in racks[0][0]:
+        return {}
+    dedendum, round_ = racks[0][0]
+    return {
+        "gears.dedendum_coefficient": float(dedendum or 0.0),
+        "gears.rack_tip_radius_coefficient": float(round_ or 0.0),
+    }
+
+
+def _racks(model: GearboxModel, gear: StageGear) -> list[tuple[float | None, float | None]]:
+    """Dedendum and tip radius of the rack-shaped tools of a gear or its flanks, each once."""
+    file = model.file
+    flanks = [
+        n for r in file.related("flank", gear=gear.id) for role, n in r.refs if role != "gear"
+    ]
+    numbers = [r.of("referenced") for r in file.related("ordered_reference", origin=gear.id)]
+    for flank in flanks:
+        numbers += [r.of("tool") for r in file.related("manufacturing_step", workpiece=flank)]
+    tools = [file.components[n] for n in dict.fromkeys(numbers) if n is not None]
+    racks = [tool for tool in tools if tool.kind == "rack_shaped_tool"]
+    for rack in racks:
+        if rack.number("protuberance_amount", "m") or rack.number("protuberance_amount_factor", ""):
+            add_remark(model, f"{rack}: its protuberance is ignored")
+    names = ("addendum_coefficient_reference_profile", "tip_radius_factor")
+    sizes = ((rack.number(names[0], ""), rack.number(names[1], "")) for rack in racks)
+    return list(dict.fromkeys(sizes))
 
 
 def material_values(model: GearboxModel, *origins: int | None) -> dict[str, float]:

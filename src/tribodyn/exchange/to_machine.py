@@ -8,10 +8,9 @@ from typing import Any
 import numpy as np
 
 from tribodyn.errors import InputError, Problem
-from tribodyn.exchange.gearbox import GearboxModel, Load, Stage
+from tribodyn.exchange.gearbox import GearboxModel, Load, Stage, add_remark
 from tribodyn.exchange.machine_parts import (
     Axis,
-    add_remark,
     axes_of,
     bearing_tables,
     gear_table,

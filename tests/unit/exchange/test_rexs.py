@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import csv
 import io
 import json
 import math
+import re
 import zipfile
 from pathlib import Path
 from typing import Any
@@ -14,6 +16,8 @@ import pytest
 import tribodyn as td
 from tribodyn.errors import InputError
 from tribodyn.exchange import case_from_rexs, read_rexs, write_rexs
+from tribodyn.exchange.gearbox import GearboxModel
+from tribodyn.exchange.rexs_file import RENAMED, model_of
 from tribodyn.exchange.write import WHOLE_CASE
 from tribodyn.gear import zero_backlash_center_distance
 from tribodyn.lubricant import Lubricant
@@ -446,6 +450,7 @@ def test_names_and_units_of_later_versions_give_the_same_case(tmp_path: Path) ->
             new = {"id": "protuberance_amount", "unit": "mm", "floating_point": 0.1}
             component["attributes"].append(new)
     for version in ("2.0.0", "1.7", "3.1"):
+        known = version != "3.1"
         tree["model"]["version"] = version
         model = read_rexs(stored(tree, tmp_path))
         after = case_from_rexs(model)
@@ -453,7 +458,61 @@ def test_names_and_units_of_later_versions_give_the_same_case(tmp_path: Path) ->
         assert dict(after.values()) == same
         assert after.gears.rack_tip_radius_coefficient == pytest.approx(0.3)
         assert after.gears.pinion.roughness_ra == pytest.approx(0.7e-6)
-        remark = model.remarks[0]
-        assert remark.startswith(f"REXS version {version} is read by the names of attributes in")
-        assert "of rack_shaped_tool: " in remark
-        assert "protuberance_amount" in remark
+        assert any("its protuberance is ignored" in remark for remark in model.remarks)
+        unknown = [remark for remark in model.remarks if remark.startswith("REXS version")]
+        assert len(unknown) == (not known)
+        assert all(re.search("rack_shaped_tool: .*protuberance_amount", text) for text in unknown)
+
+
+def test_every_name_that_the_change_logs_rename_is_read_by_both_names() -> None:
+    """A table of all 406 renamed attributes, and the names that the reader asks for."""
+    folder = Path(td.exchange.__file__).parent
+    source = "".join(path.read_text("utf-8") for path in folder.glob("*.py"))
+    read = {*re.findall(r'"([a-z_0-9]{6,})"', source)} - {*RENAMED, "tip_diameter"}
+    rows = csv.DictReader((MODELS / "renamed.csv").read_text("utf-8").splitlines())
+    renamed = [(row["old"], row["new"]) for row in rows if row["old"] in read]
+    assert len(renamed) >= 3
+    other = {"name": "catalogue_designation"}  # of a bearing, read by both names where it is
+    assert {new: old for old, new in renamed if old not in other} == RENAMED
+
+
+def test_times_are_read_by_the_name_of_version_1_3_and_the_oil_of_a_stage(tmp_path: Path) -> None:
+    text = (MODELS / "two_stages.rexs").read_text("utf-8-sig")
+    first = read_rexs(MODELS / "two_stages.rexs")
+    later = text.replace("load_duration_fraction", "operating_time_fraction")
+    (tmp_path / "later.rexs").write_text(later, "utf-8")
+    second = read_rexs(tmp_path / "later.rexs")
+    assert [load.share for load in second.loads] == [0.2, 0.3, 0.35, 0.15]
+    assert second.loads == first.loads
+    assert second.remarks == first.remarks
+    tree = json.loads((MODELS / "two_stages.rexsj").read_text("utf-8"))["model"]
+    for load in tree["load_spectrum"]["load_cases"]:
+        for part in load["components"]:
+            if part["type"] == "gear_casing":
+                part |= {"type": "cylindrical_stage", "id": 19}
+    moved = GearboxModel(model_of(tree, "moved"))
+    assert [load.oil_temperature for load in moved.loads] == pytest.approx([343.15] * 4)
+
+
+@pytest.mark.parametrize("amount", [0.0, 0.1])
+def test_tools_of_manufacturing_steps_make_the_rack(amount: float, tmp_path: Path) -> None:
+    case = td.load_case("helical-pair").replace({"gears.rack_tip_radius_coefficient": 0.3})
+    write_rexs(case, tmp_path / "first.rexsj")
+    tree = json.loads((tmp_path / "first.rexsj").read_text("utf-8"))["model"]
+    for part in tree["components"]:
+        part["attributes"] = [a for a in part["attributes"] if a["id"] != WHOLE_CASE]
+        if part["type"] == "rack_shaped_tool":
+            new = {"id": "protuberance_amount", "unit": "mm", "floating_point": amount}
+            part["attributes"].append(new)
+            tool = part["id"]
+    kept = [r for r in tree["relations"] if r["type"] != "ordered_reference"]
+    flanks = [r["refs"][1]["id"] for r in kept if r["type"] == "flank"]
+    assert len(flanks) == 2
+    steps = [
+        {"id": 90 + n, "type": "manufacturing_step", "order": 1,
+         "refs": [{"role": "workpiece", "id": n}, {"role": "tool", "id": tool}]}
+        for n in flanks
+    ]  # fmt: skip
+    model = GearboxModel(model_of(tree | {"relations": [*kept, *steps]}, "steps"))
+    assert case_from_rexs(model).gears.rack_tip_radius_coefficient == pytest.approx(0.3)
+    assert any("protuberance" in remark for remark in model.remarks) == bool(amount)
