@@ -164,6 +164,25 @@ def test_two_phases_give_the_motion_of_a_common_period(options, accuracy):
         assert np.abs(getattr(at, name) - expected).max() < accuracy * np.abs(expected).max()
 
 
+@pytest.mark.parametrize(
+    ("options", "points", "fine"),
+    [
+        ({}, 10, 48),
+        ({"friction": True, "amplitude": 0.02}, (12, 8), 64),
+        ({"jumps": True, "amplitude": 0.02}, 16, 96),
+        ({"gap": 0.1, "amplitude": 0.12}, 24, 96),
+    ],
+)
+def test_the_stated_error_is_that_against_a_fine_solution(options, points, fine):
+    system, frequencies = two_meshes(((1, 0), (0, 1)), **options), (0.25, 0.11 * np.sqrt(2))
+    coarse, exact = (harmonic_balance(system, frequencies, steps=n) for n in (points, fine))
+    times = np.random.default_rng(1).uniform(0.0, 1e3, 500)
+    at, expected = coarse.at(times).deflection, exact.at(times).deflection
+    error = np.abs(at - expected).max() / np.abs(expected).max()
+    assert error / 3.0 < coarse.step_error < 3.0 * error
+
+
+@pytest.mark.filterwarnings("ignore:.*step-size")
 def test_flanks_that_separate_are_solved_with_second_order():
     clock = harmonic_balance(two_meshes((5, 3), gap=0.1, amplitude=0.12), 0.05)
     system, errors = two_meshes(((1, 0), (0, 1)), gap=0.1, amplitude=0.12), []

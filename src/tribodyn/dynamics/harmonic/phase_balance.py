@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 
@@ -17,8 +17,7 @@ from tribodyn.dynamics.equations.orbit_coordinates import (
 )
 from tribodyn.dynamics.equations.phases import read_frequencies
 from tribodyn.dynamics.equations.system import System, contact_label
-from tribodyn.dynamics.harmonic.meshwise_inverse import MeshwiseInverse
-from tribodyn.dynamics.harmonic.newton import Solution, newton
+from tribodyn.dynamics.harmonic.newton import Solution, State, newton
 from tribodyn.dynamics.harmonic.phase_grid import PhaseGrid
 from tribodyn.dynamics.harmonic.phase_residual import Part, PhaseResidual, parts_of
 from tribodyn.dynamics.harmonic.phase_response import (
@@ -47,8 +46,8 @@ _LIMIT, _WORST = 1e-2, 0.2
 #: Damping added at first where Newton's method does not converge, over the critical damping at
 #: the highest mesh frequency, and the factors by which it is reduced; Newton steps with each.
 _ADDED, _TRIES = (0.3, 0.1, 0.03, 0.01, 0.003), 12
-#: Newton steps in which the error halves if the points suffice, and accuracy of an estimate.
-_PATIENCE, _ROUGH = 5, 0.1
+#: Newton steps in which the error halves if the points suffice.
+_PATIENCE = 5
 
 
 def phase_cost(frequencies: int, contacts: Sequence[int]) -> tuple[int, float, float]:
@@ -60,24 +59,13 @@ def phase_cost(frequencies: int, contacts: Sequence[int]) -> tuple[int, float, f
     return unknowns, memory, 0.3 + 2e-4 * unknowns
 
 
-class _Points(NamedTuple):
-    """Points over each phase: of the parts that follow it, and of all others."""
+#: Points over each phase of the grids of all parts.
+Points = tuple[tuple[int, ...], ...]
 
-    fine: tuple[int, ...]
-    coarse: tuple[int, ...]
 
-    def shape(self, axes: frozenset[int]) -> tuple[int, ...]:
-        """Points of the grid of a part that follows these phases."""
-        return tuple(
-            fine if axis in axes else min(fine, coarse)
-            for axis, (fine, coarse) in enumerate(zip(*self, strict=True))
-        )
-
-    def doubled(self, which: Mask) -> _Points:
-        """Twice the points over some phases: of the parts that follow them, and of others."""
-        counts = np.array([*self.fine, *self.coarse]) * np.where(which, 2, 1)
-        fine, coarse = np.split(counts, 2)
-        return _Points(tuple(fine.tolist()), tuple(coarse.tolist()))
+def doubled(points: Points, which: Mask) -> Points:
+    """Twice the points of some parts over some phases (parts, phases)."""
+    return tuple(tuple(row) for row in (np.array(points) * np.where(which, 2, 1)).tolist())
 
 
 @dataclass
@@ -99,9 +87,9 @@ class _Search:
         structure, _ = close_contacts(means, rows.sampled_forces(), start)
         return cls(rows, structure, parts_of(system, frequency, structure, start), start)
 
-    def residual(self, points: _Points, known: PhaseResidual | None = None) -> PhaseResidual:
+    def residual(self, points: Points, known: PhaseResidual | None = None) -> PhaseResidual:
         """Residual on grids with so many points over each phase."""
-        grids = [PhaseGrid(points.shape(part.axes), self.rows.frequency) for part in self.parts]
+        grids = [PhaseGrid(shape, self.rows.frequency) for shape in points]
         return PhaseResidual(self.parts, grids, self.rows.force, known)
 
     def still(self, residual: PhaseResidual) -> Array:
@@ -131,18 +119,17 @@ class _Search:
         return trial if part == 0.0 else Solution(residual.at(y), np.inf, 0, 0)
 
     def first(
-        self, points: _Points, start: PhaseResponse | None, tolerance: float, free: bool
-    ) -> tuple[_Points, PhaseResidual, Solution]:
+        self, points: Points, start: PhaseResponse | None, tolerance: float, free: bool
+    ) -> tuple[Points, PhaseResidual, Solution]:
         """Motion on the first grids, with more points if they are free and it is not found."""
-        known = None
+        known, followed = None, self.followed()
         while True:
             residual = self.residual(points, known)
             y = self.linear(residual) if start is None else self._resampled(start, residual)
             solution = newton(residual, y, 0.01 * tolerance, patience=_PATIENCE)
-            grids = (np.repeat([True, both], len(points.fine)) for both in (True, False))
-            trials = [points.doubled(which) for which in grids]
-            more = min(trials, key=self.size) if self.size(trials[0]) > _MOST else trials[0]
-            last = not free or max(points.fine) >= _LAST or self.size(more) > _MOST
+            more = doubled(points, np.ones_like(followed))
+            more = more if self.size(more) <= _MOST else doubled(points, followed)
+            last = not free or np.max(points) >= _LAST or self.size(more) > _MOST
             if last and not solution.error <= tolerance:
                 damped = self.damped(residual, y, tolerance)
                 solution = min(solution, damped, key=lambda each: each.error)
@@ -150,10 +137,15 @@ class _Search:
                 return points, residual, solution
             points, known = more, residual
 
-    def size(self, points: _Points) -> int:
+    def followed(self) -> Mask:
+        """Phases that each part follows (parts, phases)."""
+        phases = range(self.rows.frequency.size)
+        return np.array([[axis in part.axes for axis in phases] for part in self.parts])
+
+    def size(self, points: Points) -> int:
         """Number of unknowns on grids with so many points over each phase."""
-        widths = [math.prod(points.shape(p.axes)) * p.along.shape[1] for p in self.parts]
-        return sum(widths)
+        widths = (part.along.shape[1] for part in self.parts)
+        return sum(math.prod(shape) * w for shape, w in zip(points, widths, strict=True))
 
     def _resampled(self, start: PhaseResponse, residual: PhaseResidual) -> Array:
         """Motion of the parts of another solution."""
@@ -167,19 +159,15 @@ class _Search:
             for part in residual.parts
         ])  # fmt: skip
 
-    def changes(self, points: _Points, residual: PhaseResidual, y: Array) -> Array:
-        """Change of a motion with twice the points over each phase and over those of others."""
-        state, count = residual.at(y), len(points.fine)
-        pairs = zip(residual.parts, state.parts, strict=True)
-        inverses = {id(part): MeshwiseInverse(part, each) for part, each in pairs}
-        errors = np.concatenate((np.zeros(count), residual.unfelt(state)))
-        for place in range(2 * count):
-            finer = self.residual(points.doubled(np.arange(2 * count) == place), residual)
-            if finer.size > residual.size:
-                finer.inverses = inverses
-                trial = finer.at(residual.refined(y, finer))
-                change = float(np.abs(finer.correction(trial, _ROUGH)[0]).max()) / state.size
-                errors[place] = max(errors[place], change)
+    def changes(self, points: Points, residual: PhaseResidual, state: State) -> Array:
+        """Change of a motion with twice the points of each part over each phase."""
+        errors = residual.unfelt(state)
+        for place in np.ndindex(errors.shape):
+            which = np.zeros(errors.shape, dtype=bool)
+            which[place] = True
+            finer = self.residual(doubled(points, which), residual)
+            change = float(np.abs(finer.change(residual, state, place[0])).max()) / state.size
+            errors[place] = max(errors[place], change)
         return errors
 
 
@@ -193,19 +181,19 @@ def phase_balance(
         remedy = "Give the Response of another frequency of the same system, or leave it out"
         raise InputError(what, "start", why, remedy)
     search = _Search.of(system, frequency)
-    points = _first_points(search.rows) if steps is None else _read_steps(steps, system.phases)
+    points = _first_points(search) if steps is None else _read_steps(steps, search)
     points, residual, solution = search.first(points, start, tolerance, steps is None)
     step_error, smooth = float("nan"), True
-    poor, before = np.zeros(2 * system.phases, dtype=bool), np.zeros(2 * system.phases)
+    poor, before = np.zeros(np.shape(points), dtype=bool), np.zeros(np.shape(points))
     while solution.error <= tolerance:
-        errors = search.changes(points, residual, solution.state.y)
+        errors = search.changes(points, residual, solution.state)
         smooth &= bool(errors[poor].sum() <= _FALLING * before[poor].sum())
         step_error = float(errors.sum())
         limit, most = (_ACCURATE, _MANY) if smooth else (_ENOUGH, _MOST)
-        poor = errors > max(limit / errors.size, _WORST * errors.max())
+        poor = errors > (limit / errors.size if smooth else _WORST * errors.max())
         if steps is not None or step_error <= limit:
             break
-        more, before = points.doubled(poor), errors
+        more, before = doubled(points, poor), errors
         if search.size(more) > most:
             break
         finer = search.residual(more, residual)
@@ -217,11 +205,11 @@ def phase_balance(
     converged = bool(solution.error <= tolerance)
     error = max(solution.error, float(np.finfo(float).eps))
     facts = {"error": error, "step_error": step_error, "converged": converged}
-    motion = phase_response(search.rows, residual, solution.state, points=points.fine, **facts)
+    motion = phase_response(search.rows, residual, solution.state, points=_most(points), **facts)
     if not converged:
         return _integrated(search, residual, solution, tolerance, motion)
     if step_error > _LIMIT:
-        warn("step-size", _coarse(points, step_error, steps is None), stacklevel=3)
+        warn("step-size", _coarse(_most(points), step_error, steps is None), stacklevel=3)
     return motion
 
 
@@ -246,31 +234,36 @@ def _integrated(
     return marched
 
 
-def _first_points(rows: PhaseRows) -> _Points:
+def _first_points(search: _Search) -> Points:
     """Points over each phase with which an automatic choice starts."""
+    rows = search.rows
     cycles = np.abs([mesh.cycles for mesh in rows.meshes]).max(axis=0)
     turns = [np.abs(term.cycles) for each in rows.system.contacts for term in each.turning]
     shafts = np.max(turns, axis=0) if turns else np.ones_like(cycles)
     counts = np.where(cycles > 0.0, _MESH * cycles, _SHAFT * np.maximum(shafts, 1.0))
-    fine = tuple(int(count) for count in counts)
-    others = _OTHERS if len(fine) <= _FEW else _OTHERS // 2
-    return _Points(fine, tuple(min(count, others) for count in fine))
+    others = _OTHERS if counts.size <= _FEW else _OTHERS // 2
+    shapes = np.where(search.followed(), counts, np.minimum(counts, others)).astype(int)
+    return tuple(tuple(shape) for shape in shapes.tolist())
 
 
-def _read_steps(steps: Any, phases: int) -> _Points:
+def _read_steps(steps: Any, search: _Search) -> Points:
     """Points over each phase: one whole number for all, or one for each."""
     counts: Index = np.atleast_1d(np.asarray(steps))
+    phases = search.rows.frequency.size
     if counts.size not in (1, phases):
         what, why = f"steps = {steps}", f"There are {phases} phases"
         raise InputError(what, "steps", why, "Give a whole number for each, or one for all")
-    listed = tuple(
-        require_whole("steps", count, 4) for count in np.broadcast_to(counts, (phases,)).tolist()
-    )
-    return _Points(listed, listed)
+    listed = (require_whole("steps", n, 4) for n in np.broadcast_to(counts, (phases,)).tolist())
+    return (tuple(listed),) * len(search.parts)
 
 
-def _coarse(points: _Points, step_error: float, automatic: bool) -> str:
-    counts = " x ".join(map(str, points.fine))
+def _most(points: Points) -> tuple[int, ...]:
+    """Points over each phase of the finest grid over it."""
+    return tuple(max(counts) for counts in zip(*points, strict=True))
+
+
+def _coarse(points: tuple[int, ...], step_error: float, automatic: bool) -> str:
+    counts = " x ".join(map(str, points))
     remedy = "Give more steps, or omit them for an automatic choice"
     if automatic:
         remedy = "Forces that jump or bend with the teeth need more; give steps for more points"

@@ -32,6 +32,8 @@ from tribodyn.types import Array, ComplexArray, Index, Mask
 
 #: Bytes of the vectors of a linear solution, and the fewest of them.
 _MEMORY, _FEWEST = 2**29, 30
+#: Vectors of a linear solution up to which an approximate inverse serves for the next one.
+_SERVES = 12
 #: Largest part of a residual that a linear solution leaves.
 _LOOSE = 0.1
 
@@ -136,8 +138,6 @@ class OnGrid(NamedTuple):
 class _Link(NamedTuple):
     """How the forces of a part move another one."""
 
-    to: int
-    by: int
     into: Index  #: places of the common lines in the grid of the first
     of: Index  #: and of the second
     receptances: ComplexArray
@@ -160,13 +160,20 @@ class PhaseResidual(Residual):
             same.get((id(part), grid.shape)) or OnGrid.of(part, grid, force)
             for part, grid in zip(parts, grids, strict=True)
         ]
-        self.links = [
-            self._link(to, by) for to in range(len(parts)) for by in range(len(parts)) if to != by
+        links = {} if known is None else known.links
+        pairs = [(to, by) for to in range(len(parts)) for by in range(len(parts)) if to != by]
+        same_parts = [
+            known is not None and part is known.parts[n] for n, part in enumerate(self.parts)
         ]
+        self.links = {
+            (to, by): links[to, by] if same_parts[to] and same_parts[by] else self._link(to, by)
+            for to, by in pairs
+        }
         widths = [grid.size * part.along.shape[1] for part, grid in zip(parts, grids, strict=True)]
         self.ends = np.cumsum([0, *widths])
-        #: Approximate inverses of parts whose states do not change.
-        self.inverses: dict[int, MeshwiseInverse] = {}
+        #: Approximate inverses of parts at their last states, and whether they still serve.
+        old = {} if known is None else known.inverses
+        self.inverses = {id(part): old[id(part)] for part in self.parts if id(part) in old}
         self.excess = np.zeros(1)  #: additional damping of all contacts [N*s/m]
 
     def _link(self, to: int, by: int) -> _Link:
@@ -174,7 +181,7 @@ class PhaseResidual(Residual):
         numbers = first.grid.common(second.grid)
         into, of = first.grid.places(numbers), second.grid.places(numbers)
         matrices = first.structure.receptances(first.grid.omega[into], second.structure.push)
-        return _Link(to, by, into, of, matrices)
+        return _Link(into, of, matrices)
 
     @property
     def size(self) -> int:
@@ -207,9 +214,9 @@ class PhaseResidual(Residual):
             (part.receptances @ line[..., None])[..., 0] + (part.loaded if loaded else 0.0)
             for part, line in zip(self.parts, lines, strict=True)
         ]
-        for link in self.links:
-            pushed = lines[link.by][link.of]
-            moved[link.to][link.into] += (link.receptances @ pushed[..., None])[..., 0]
+        for (to, by), link in self.links.items():
+            pushed = lines[by][link.of]
+            moved[to][link.into] += (link.receptances @ pushed[..., None])[..., 0]
         return [part.grid.values(line * part.grid.size)
                 for part, line in zip(self.parts, moved, strict=True)]  # fmt: skip
 
@@ -244,14 +251,14 @@ class PhaseResidual(Residual):
         return product
 
     def unfelt(self, state: State) -> Array:
-        """Motion of contacts that grids of other parts leave out, by phase, over its size."""
+        """Motion of each part that its grid leaves out, over each phase (parts, phases)."""
         # Such lines of a part move the contacts of others through the structure; only that part of
         # their force is missing which the stiffness varies about its mean.
-        left_out = np.zeros(len(self.parts[0].grid.shape))
+        left_out = np.zeros((len(self.parts), len(self.parts[0].grid.shape)))
         for by, pushing in zip(self.parts, state.parts, strict=True):
             lines = by.grid.spectrum(pushing.force) / by.grid.size
             lines[by.grid.unpaired] = 0.0
-            for to, moving in zip(self.parts, state.parts, strict=True):
+            for number, (to, moving) in enumerate(zip(self.parts, state.parts, strict=True)):
                 beyond = 2 * np.abs(by.grid.numbers) >= np.array(to.grid.shape)
                 if to is by or not beyond.any():
                     continue
@@ -263,7 +270,7 @@ class PhaseResidual(Residual):
                 varies = np.abs(mean - moving.law.stiffness).max() / np.abs(mean).max()
                 for axis in np.flatnonzero(beyond.any(axis=0)):
                     total = 2.0 * np.sqrt(np.sum(size[beyond[rows[1:], axis]] ** 2))
-                    left_out[axis] = max(left_out[axis], varies * total)
+                    left_out[number, axis] = max(left_out[number, axis], varies * total)
         return left_out / state.size
 
     def accuracy(self, norms: list[float]) -> float:
@@ -272,11 +279,34 @@ class PhaseResidual(Residual):
         fell = norms[-1] / norms[-2] if len(norms) > 1 else 1.0
         return float(np.clip(0.9 * fell**2, LINEAR, _LOOSE))
 
+    def change(self, coarser: PhaseResidual, state: State, number: int) -> Array:
+        """Estimate the change of a solution with more points of one part."""
+        part, old = self.parts[number], coarser.parts[number]
+        states, none = list(state.parts), np.zeros(len(part.structure.members))
+        y = old.grid.refined(states[number].y, part.grid)
+        states[number] = part.at(y, none, closed=False)
+        moved = self.responses([each.force for each in states], loaded=True)
+        right = [motion - each.y for motion, each in zip(moved, states, strict=True)]
+        # The new lines as they are, the lines of before by their approximate inverse.
+        inverses = coarser.inverses_at(state)
+        before = part.grid.refined(right[number], old.grid)
+        felt = inverses[number](before) - before
+        changes = [
+            each + old.grid.refined(felt, part.grid) if n == number else inverse(each)
+            for n, (inverse, each) in enumerate(zip(inverses, right, strict=True))
+        ]
+        return self.joined(changes)
+
+    def inverses_at(self, state: State) -> list[MeshwiseInverse]:
+        """Approximate inverse of the derivative for each part alone, as long as it serves."""
+        for part, each in zip(self.parts, state.parts, strict=True):
+            if id(part) not in self.inverses:
+                self.inverses[id(part)] = MeshwiseInverse(part, each)
+        return [self.inverses[id(part)] for part in self.parts]
+
     def nearly(self, state: State) -> Callable[[Array], Array]:
         """Product with an approximate inverse of the derivative: that of each part alone."""
-        pairs = zip(self.parts, state.parts, strict=True)
-        known = self.inverses
-        inverses = [known.get(id(part)) or MeshwiseInverse(part, each) for part, each in pairs]
+        inverses = self.inverses_at(state)
 
         def product(right: Array) -> Array:
             return self.joined(
@@ -291,4 +321,7 @@ class PhaseResidual(Residual):
         solution, count = solve_linear(
             lambda x: product(nearly(x)), -state.residual, accuracy, vectors
         )
-        return nearly(solution), count
+        step = nearly(solution)
+        if count > _SERVES:
+            self.inverses.clear()
+        return step, count

@@ -7,7 +7,7 @@ alone, so that they are evaluated once at each different mesh phase and distribu
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import Any
 
@@ -25,6 +25,8 @@ from tribodyn.types import Array, Index
 
 #: Mesh phases nearer than this are the same; part of a turning error that is no jump.
 _SAME, _CLOSED = 1e-12, 1e-6
+#: Most mesh phases whose entries are cached.
+_CACHED = 512
 #: Steps of a mesh cycle on which entries are searched for jumps and averaged.
 _STEPS = 128
 #: Points over each phase at which the direction of the external force is sampled.
@@ -46,6 +48,7 @@ class Mesh:
     offset: float
     contacts: Index  #: their numbers in the system
     frictions: Index
+    _nodes: dict[Any, Nodes] = field(default_factory=dict)  #: entries at few phases
 
     @cached_property
     def events(self) -> tuple[float, ...]:
@@ -68,7 +71,11 @@ class Mesh:
     def at(self, points: Array, rate: float, before: bool = False) -> tuple[Nodes, Index]:
         """Entries at the different mesh phases of points (p, phases), and the row of each."""
         different, rows = _different(phase_sum(points, self.cycles, self.offset))
-        return self.nodes(different, rate, before), rows
+        key = different.tobytes(), rate, before
+        nodes = self._nodes.get(key) or self.nodes(different, rate, before)
+        if different.size <= _CACHED:
+            self._nodes[key] = nodes
+        return nodes, rows
 
 
 @dataclass(frozen=True, eq=False)
