@@ -39,7 +39,8 @@ class Option:
     :func:`text` and :func:`file_path`. Ranges and defaults are in SI.
     """
 
-    kind: str  #: "number", "numbers", "integer", "choice", "flag", "text" or "file"
+    #: "number", "numbers", "integer", "choice", "flag", "text" or "file", of parts "list", "share"
+    kind: str
     meaning: str  #: one line
     default: Any = None  #: ``REQUIRED`` where one must be given, None where one is derived or none
     symbol: str = ""
@@ -86,7 +87,8 @@ class Option:
             sign = "above " if self.positive else ""
             return f"{sign}{self.show(self.low)} to {self.show(self.high)}"
         finite = f"any finite value in {self.display_unit}" if self.unit else "any finite value"
-        return {"text": "text", "file": "path of a file"}.get(self.kind, finite)
+        kinds = {"text": "text", "file": "path of a file", "list": "a list", "share": "up to 100 %"}
+        return kinds.get(self.kind, finite)
 
 
 def number(

@@ -5,15 +5,15 @@ from __future__ import annotations
 import tomllib
 from collections.abc import Iterator, Mapping
 from functools import lru_cache
-from typing import Any
+from typing import Any, NamedTuple
 
 from tribodyn.model import Option
-from tribodyn.study.case.case import Case
-from tribodyn.study.case.checks import DEFAULT_MARK, case_options
+from tribodyn.study.case.checks import DEFAULT_MARK
 from tribodyn.study.case.gears import is_idle
-from tribodyn.study.case.provenance import derived_values, effective, provenance
+from tribodyn.study.case.provenance import effective, provenance
 from tribodyn.study.case.reference import choice_meanings, explanations, start_toml
-from tribodyn.study.case.section import Section, Table
+from tribodyn.study.case.section import Section, Table, table_in
+from tribodyn.study.machine.tables import SHARED
 from tribodyn.study.pipeline.citations import sources_of
 from tribodyn.units import UnitProblemError, convert, split, usual_units
 
@@ -26,9 +26,9 @@ _GREEK = {
     "eta": "η", "theta": "θ", "lambda": "λ", "Lambda": "Λ", "mu": "µ", "nu": "ν", "rho": "ρ",
     "sigma": "σ", "tau": "τ", "phi": "φ", "omega": "ω", "Delta": "Δ",
 }  # fmt: skip
-_TITLES = {"dynamics": "Structure", "operation": "Speed and load"}
+_TITLES = {"dynamics": "Structure and motion", "operation": "Speed and load"}
 #: Tables that are expanded at first.
-_OPEN = ("gears", "lubricant", "operation")
+_OPEN = ("gears", "lubricant", "operation")  # of a machine the last
 
 
 def key_label(key: str) -> str:
@@ -138,84 +138,118 @@ def _help(key: str, option: Option) -> str:
     return ". ".join(part for part in parts if part)
 
 
-class CaseForm:
-    """Form of a case, with typed text that is not part of the case yet."""
+class _Place(NamedTuple):
+    """A table of a case, with its values as typed."""
 
-    def __init__(self, case: Case, typed: Typed, units: Mapping[str, str]) -> None:
+    key: str
+    section: type[Section]
+    data: Mapping[str, Any]
+    meaning: str
+
+    @property
+    def fields(self) -> Mapping[str, Option | Table]:
+        """Its keys, without those of the model that it names."""
+        return self.section.keys_for(self.data)
+
+    def inside(self, name: str) -> str:
+        """Dotted key of what is in it."""
+        return f"{self.key}.{name}" if self.key else name
+
+
+class CaseForm:
+    """Form of a case by its tables, with typed text that is not part of the case yet."""
+
+    def __init__(self, case: Any, typed: Typed, units: Mapping[str, str]) -> None:
         self.case, self.typed, self.units = case, typed, units
-        self._effective, self._derived = effective(case), derived_values(case)
+        self._effective, self._derived = effective(case), case._derived_values()
         self._origins = provenance(case)
+        pairs = () if case.lumped else case.mesh_pairs()
+        #: Pair of gears whose models stand for those of all meshes.
+        self._pair = case if case.lumped else next((pair for _, pair, _ in pairs), None)
 
     def groups(self) -> list[dict[str, Any]]:
         """All tables with their fields: the essential ones first, the others collapsed."""
-        case_groups = [self._group("", Case, "Case", "")]
-        for name, table in Case.fields.items():
-            if isinstance(table, Table) and self._is_used(name):
-                case_groups.append(self._group(name, table.kind, key_label(name), table.meaning))
-        return case_groups
+        root = _Place("", self.case.root, self.case.user_input.data, "")
+        top = [self._group(root, []), *map(self._whole, self._inside(root))]
+        return [group for group in top if _is_filled(group)]
 
     def options(self) -> dict[str, Option]:
         """All options of the case by key."""
-        options_by_key: dict[str, Option] = {}
-        pending: list[tuple[str, type[Section]]] = [("", Case)]
-        for prefix, section in pending:
-            for name, option in self._options(prefix, section):
-                options_by_key[name] = option
-            for name, table in section.fields.items():
-                if isinstance(table, Table) and self._is_used(f"{prefix}{name}"):
-                    pending.append((f"{prefix}{name}.", table.kind))
-        return options_by_key
+        places = [_Place("", self.case.root, self.case.user_input.data, "")]
+        for place in places:
+            places += self._inside(place)
+        return {key: option for place in places for key, option in self._options(place)}
+
+    def _inside(self, place: _Place) -> list[_Place]:
+        """Tables in a table: those that may be given, and of a part those of models that are."""
+        declared = place.section.fields
+        return [
+            _Place(key, field.kind, table_in(place.data, name), field.meaning)
+            for name, field in place.fields.items()
+            if isinstance(field, Table)
+            and (name in declared or name in place.data)
+            # tables of gears are filtered by key
+            and ((key := place.inside(name)).startswith("gears") or not self._idle(key))
+        ]
 
     def _idle(self, key: str) -> bool:
-        return is_idle(key, self._chosen("gears.kind"))
-
-    def _is_used(self, table: str) -> bool:
-        """Whether a table has an effect and fixed keys; tables of gears are filtered by key."""
-        return table.startswith("gears") or not (table == "faults" or self._idle(table))
+        """Whether a key has no effect in this case."""
+        group, part, name = (*key.split(".", 2), "", "")[:3]
+        if group == "gears" and not self.case.lumped:
+            of_stage = self.case.lone_stage is not None or part in self.case.planet_names
+            return of_stage and name in ("shaft", "position")
+        if self._pair is None:
+            return group in SHARED
+        kind = self._chosen("gears.kind") if self.case.lumped else self._pair.gears.kind
+        return is_idle(key, kind)
 
     def _chosen(self, key: str) -> Any:
-        return self.typed.get(key) or self._effective.get(key)
+        return self.typed.get(key) or self._effective.get(key) or self._of_pair(key)
 
-    def _options(self, prefix: str, section: type[Section]) -> Iterator[tuple[str, Option]]:
+    def _of_pair(self, key: str) -> Any:
+        return None if self._pair is None else self._pair._effective.get(key)
+
+    def _options(self, place: _Place) -> Iterator[tuple[str, Option]]:
         """Options of a table and of the model that it names."""
-        section_options = {name: o for name, o in section.fields.items() if isinstance(o, Option)}
-        if section.selector:
-            named = self._chosen(f"{prefix}{section.selector}")
-            section_options |= case_options(prefix.removesuffix("."), named)
-        for name, option in section_options.items():
-            if not self._idle(f"{prefix}{name}"):
-                yield f"{prefix}{name}", option
+        options = {n: o for n, o in place.fields.items() if isinstance(o, Option)}
+        if selector := place.section.selector:
+            model = place.section.model_named(self._chosen(place.inside(selector)))
+            options |= model.case_options if model is not None else {}
+        for name, option in options.items():
+            if option.kind != "list" and not self._idle(key := place.inside(name)):
+                yield key, option
 
-    def _group(self, key: str, section: type[Section], title: str, meaning: str) -> dict[str, Any]:
-        prefix = f"{key}." if key else ""
-        fields = [(name, self._field(name, o)) for name, o in self._options(prefix, section)]
-        chosen = f"{prefix}{section.selector}" if section.selector else ""
+    def _whole(self, place: _Place) -> dict[str, Any]:
+        """A table with the tables in it."""
+        inner = map(self._whole, self._inside(place))
+        return self._group(place, [group for group in inner if _is_filled(group)])
+
+    def _group(self, place: _Place, inner: list[dict[str, Any]]) -> dict[str, Any]:
+        key, selector = place.key, place.section.selector
+        fields = [(name, self._field(name, option)) for name, option in self._options(place)]
+        chosen = f"{key}.{selector}" if selector else ""
         filled = [name for name, field in fields if field["value"]]
         first = {*essential(), *filled, chosen, *(n for n, f in fields if f["required"])}
-        inner = [
-            self._group(f"{key}.{name}", table.kind, key_label(name), table.meaning)
-            for name, table in section.fields.items()
-            if isinstance(table, Table) and key
-        ]
+        is_open = _OPEN if self.case.lumped else _OPEN[-1:]
         return {
             "key": key or "case",
-            "title": _TITLES.get(key, title),
-            "meaning": meaning,
+            "title": _TITLES.get(key, key_label(key) if key else "Case"),
+            "meaning": place.meaning,
             "note": str(self._chosen(chosen)) if chosen else "",
             "values": len({*filled} - {chosen}) + sum(group["values"] for group in inner),
-            "open": key.partition(".")[0] in _OPEN and not key.endswith("modification"),
+            "open": key.partition(".")[0] in is_open and not key.endswith("modification"),
             "fields": [field for name, field in fields if name in first],
             "more": [field for name, field in fields if name not in first],
-            "groups": [
-                group for group in inner if group["fields"] or group["more"] or group["groups"]
-            ],
+            "groups": inner,
         }
 
     def _field(self, key: str, option: Option) -> dict[str, Any]:
         default = self._effective.get(key)
-        default = self._derived.get(key) if default is None else default
+        default = self._derived.get(key, self._of_pair(key)) if default is None else default
+        if default is None and not option.required:
+            default = option.default
         unit = self.units.get(key, "")
-        field = field_of(key, option, self._text(key), default, unit)
+        field = field_of(key, option, self._text(key, option), default, unit)
         if key in self.typed and option.kind == "number":
             field["value"], field["unit"] = self._as_typed(key, unit or field["unit"])
         if field["kind"] == "choice":
@@ -227,7 +261,7 @@ class CaseForm:
         text = self.typed[key]
         return (text.removesuffix(unit).strip() if unit else text), unit
 
-    def _text(self, key: str) -> str:
+    def _text(self, key: str, option: Option) -> str:
         """Value as text: typed, or as the case file has it; empty where it has a default."""
         if key in self.typed:
             return self.typed[key]
@@ -238,7 +272,7 @@ class CaseForm:
             return str(value).lower()
         if isinstance(value, list | tuple):
             return ", ".join(str(item) for item in value)
-        return f"{value:.12g}" if isinstance(value, float) else str(value)
+        return f"{value:.12g} {option.unit}".strip() if isinstance(value, float) else str(value)
 
     def _choice_help(self, key: str) -> str:
         """Meaning and sources of the chosen name."""
@@ -247,3 +281,8 @@ class CaseForm:
         return " ".join(
             filter(None, (f"{name}: {choice_meanings().get(name, '')}".rstrip(": "), *sources))
         )
+
+
+def _is_filled(group: Mapping[str, Any]) -> bool:
+    """Whether a group shows anything."""
+    return bool(group["fields"] or group["more"] or group["groups"])

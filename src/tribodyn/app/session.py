@@ -9,7 +9,6 @@ from typing import TYPE_CHECKING, Any
 
 from tribodyn.app.case_form import CaseForm, key_label
 from tribodyn.app.jobs import Job, Jobs
-from tribodyn.app.machine_form import MachineForm
 from tribodyn.app.studies import (
     STUDIES,
     first_names,
@@ -25,7 +24,6 @@ from tribodyn.cases.load import load_case
 from tribodyn.errors import InputError, TribodynError, collected
 from tribodyn.model import Option
 from tribodyn.study.result_comparison import differing
-from tribodyn.study.studies.needs import PAIRS, kind_of
 from tribodyn.units import UnitProblemError, format_quantity, parse, split
 from tribodyn.validated_files import plain_number
 
@@ -81,10 +79,9 @@ class TabSession:
         self.edits += 1
 
     @property
-    def form(self) -> CaseForm | MachineForm:
+    def form(self) -> CaseForm:
         """The form of the case."""
-        kind = CaseForm if kind_of(self.case) in PAIRS else MachineForm
-        return kind(self.case, self.typed, self.units)  # type: ignore[arg-type]
+        return CaseForm(self.case, self.typed, self.units)
 
     @property
     def job_in_view(self) -> Job | None:

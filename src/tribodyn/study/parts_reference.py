@@ -6,11 +6,11 @@ from collections.abc import Iterator
 
 from tribodyn.machine import ROLLING_BEARINGS
 from tribodyn.model import Option
+from tribodyn.study.case.rating_tables import PartRating
 from tribodyn.study.case.reference import default_of, key_tables, start_toml, walk
-from tribodyn.study.case.section import Section, section_at
-from tribodyn.study.machine.pair_cases import GROUPS, SHARED
-from tribodyn.study.machine.read_parts import rolling_options
-from tribodyn.study.machine.tables import APART, TABLES, HypoidMeshTable
+from tribodyn.study.case.section import Section, Table, section_at
+from tribodyn.study.machine.tables import SHARED, HypoidMeshTable, rolling_options
+from tribodyn.study.machine_tables import MachineTables
 
 #: Files to start from.
 STARTS = ("machine", "stage", "hypoid")
@@ -18,11 +18,11 @@ STARTS = ("machine", "stage", "hypoid")
 
 def machine_keys() -> Iterator[tuple[str, Option, str]]:
     """Iterate over the keys of parts with their tables; NAME stands for that of a part."""
-    for group, table in TABLES.items():
-        path = (group, "NAME") if group in (*GROUPS, "planets") else (group,)
-        for name, option in APART.get(group, {}).items():
-            yield ".".join((*path, name)), option, default_of(option)
-        yield from walk(table, path)
+    for group, field in MachineTables.fields.items():
+        if isinstance(field, Table) and group not in SHARED:
+            yield from walk(field.kind, (group,))
+        if group == "rating":
+            yield from walk(PartRating, (group,))
         if group == "bearings":
             yield from _rolling_keys(group)
         if group == "meshes":
@@ -48,6 +48,5 @@ def start_of(kind: str) -> str:
 
 def _section(path: tuple[str, ...]) -> type[Section] | None:
     """Table of a case of parts or of a pair at a path."""
-    if path[0] in SHARED or len(path) > 2 or path == ("gears",):
-        return section_at(path)
-    return TABLES.get(path[0]) or section_at(path)
+    pair = path[0] == "gears" and path[1:] in ((), ("pinion",), ("wheel",))
+    return section_at(path, None if pair else MachineTables) or section_at(path)

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 import tribodyn as td
-from tribodyn.app.machine_form import MachineForm
+from tribodyn.app.case_form import CaseForm
 from tribodyn.errors import InputError
 from tribodyn.gear import Misalignment
 from tribodyn.study import MachineCase
@@ -144,7 +144,7 @@ def test_engine_and_load_are_coupled_in_the_case_file() -> None:
     assert machine.kinematics.shafts["pinion"].torque == pytest.approx(500.0)
     assert machine.couplings["clutch"].torsional_stiffness == 1e5
     assert case.option_of("couplings.clutch.torsional_stiffness").unit == "N*m/rad"
-    fields = MachineForm(case, {}, {}).options()
+    fields = CaseForm(case, {}, {}).options()
     assert fields["meshes.axle.offset"].unit == "m"
     assert "couplings.clutch.torsional_damping" in fields
     assert "meshes.axle.normal_module" not in fields

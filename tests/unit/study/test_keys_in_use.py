@@ -17,18 +17,18 @@ from tribodyn.study import MachineCase
 from tribodyn.study.case.checks import case_options
 from tribodyn.study.case.gears import Modification
 from tribodyn.study.case.section import Section
-from tribodyn.study.machine.pair_cases import MESH_KEYS
 from tribodyn.study.machine.tables import (
+    MESH_KEYS,
     BearingTable,
     CouplingTable,
     GearTable,
     MeshTable,
     MotionTable,
     OperationTable,
-    PlanetsTable,
     ShaftTable,
     SolverTable,
 )
+from tribodyn.study.machine_tables import PlanetsTable
 
 pytestmark = pytest.mark.filterwarnings("ignore::tribodyn.errors.ModelWarning")
 

@@ -110,7 +110,7 @@ def test_load_cases_have_names_and_shares(reducer):
         ({"operation.speed": "5"}, "operation.speed", "has no unit"),
         ({"lubricant.temperature": "5"}, "lubricant.temperature", "has no unit"),
         ({"shafts.input.sections": [["5 mm"]]}, "shafts.input.sections", "diameters"),
-        ({"load_cases": [{"share": "120 %"}]}, "load_cases.share", "at most 1"),
+        ({"load_cases": [{"share": "120 %"}]}, "--set load_cases.1.share", "at most 1"),
         ({"load_cases": [{"share": 0.6}, {"share": 0.6}]}, "load_cases", "add up to 120 %"),
         ({"housing.mass_file": "missing.mtx"}, "housing.mass_file", "cannot be read"),
         ({"planets": {}}, "planets", "no stage"),

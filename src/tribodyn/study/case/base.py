@@ -5,7 +5,7 @@ from __future__ import annotations
 from abc import abstractmethod
 from collections.abc import Callable
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Self
+from typing import TYPE_CHECKING, Any, ClassVar, Self
 
 from tribodyn.arguments.display import brief
 from tribodyn.errors import InputError
@@ -16,11 +16,13 @@ from tribodyn.study.case.write import case_rows, case_table
 if TYPE_CHECKING:
     from tribodyn.errors import Problem
     from tribodyn.model import Option
+    from tribodyn.study.case.section import Section
 
 
 class BaseCase:
     """What follows from the checked values of a case by dotted key, and from what was typed."""
 
+    root: ClassVar[type[Section]]  #: declares the tables of the case
     title: str
     origin: str | None
     _source: Source

@@ -241,6 +241,7 @@ class Case(CaseData, case=True):
 
 
 Case.__signature__ = signature_of(Case)
+Case.root = Case
 
 
 def changed_tables(

@@ -108,7 +108,7 @@ def _read(
             problems.append((location, Problem(f'there is no key "{key}"', "", why, remedy)))
             continue
         try:
-            values[key] = read_value(spec, key.rpartition(".")[2], value)
+            values[key] = unmarked(read_value(spec, key.rpartition(".")[2], value))
         except FaultError as fault:
             problems.append((location, fault.problem))
     return values, problems

@@ -7,7 +7,7 @@ in addition to its declared keys. Options of another model and unknown keys are 
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from inspect import Parameter, Signature
 from pathlib import Path
 from typing import Any, ClassVar, NamedTuple, TypeVar
@@ -18,6 +18,8 @@ from tribodyn.errors import InputError
 from tribodyn.model import Model, Models, Option
 
 Value = TypeVar("Value")
+#: Kinds of values that are checked where a part is made of them.
+RAW_KINDS = ("list", "share")
 
 
 @dataclass(frozen=True)
@@ -133,8 +135,8 @@ class Section:
         return type(self).section_keys().keys
 
     @classmethod
-    def _tables_for(cls, data: Mapping[str, Any]) -> Mapping[str, Option | Table]:
-        """Keys to read from data."""
+    def keys_for(cls, data: Mapping[str, Any]) -> Mapping[str, Option | Table]:
+        """Keys of a table with these values, without those of the model that it names."""
         return cls.fields
 
     @classmethod
@@ -175,15 +177,47 @@ class NamedTables(Section):
         return vars(self)
 
     @classmethod
-    def _tables_for(cls, data: Mapping[str, Any]) -> Mapping[str, Option | Table]:
+    def keys_for(cls, data: Mapping[str, Any]) -> Mapping[str, Option | Table]:
         """One inner table for each name in the data."""
         inner: Table = cls.fields["NAME"]  # type: ignore[assignment]
         return dict.fromkeys(data, inner)
 
 
-def section_at(path: tuple[str, ...]) -> type[Section] | None:
+def named_rows(value: Any) -> list[tuple[str, Mapping[str, Any]]]:
+    """Tables of a list of tables, such as ``[[load_cases]]``, with their names or numbers."""
+    if not isinstance(value, list | tuple) or not all(isinstance(row, Mapping) for row in value):
+        return []
+    return [(str(row.get("name", number)), row) for number, row in enumerate(value, 1)]
+
+
+def table_in(data: Mapping[str, Any], name: str) -> Mapping[str, Any]:
+    """Table of a name in a table, the rows of a list by their names; empty where it is none."""
+    value = data.get(name)
+    return value if isinstance(value, Mapping) else dict(named_rows(value))
+
+
+def option_at(root: type[Section], data: Mapping[str, Any], key: str) -> Option | None:
+    """Option of a dotted key of these tables; of a value of a list its number ends the key."""
+    *path, name = key.split(".")
+    section, inner = root, data
+    for depth, each in enumerate(path, 1):
+        field = section.keys_for(inner).get(each)
+        if not isinstance(field, Table):
+            listed = isinstance(field, Option) and field.kind == "numbers" and depth == len(path)
+            return replace(field, kind="number") if listed and name.isdigit() else None  # type: ignore[type-var]
+        section, inner = field.kind, table_in(inner, each)
+    keys, model = section.keys_for(inner), None
+    if section.selector:  # a table of a part may leave the model to the table for all parts
+        shared = table_in(data, path[-1]).get(section.selector) if path else None
+        chosen = inner.get(section.selector) or shared or keys[section.selector].default
+        model = section.model_named(getattr(chosen, "value", chosen))
+    option = (model.declared.get(name) if model else None) or keys.get(name, section.spec(name))
+    return option if isinstance(option, Option) else None
+
+
+def section_at(path: tuple[str, ...], root: type[Section] | None = None) -> type[Section] | None:
     """Return the class of the table at a dotted path of a case, or None."""
-    section = Section.case_class
+    section = root or Section.case_class
     for name in path:
         table = section.fields.get(name)
         if not isinstance(table, Table):
@@ -264,10 +298,10 @@ class Choice(NamedTuple):
     keys: SectionKeys
 
 
-def choices(inputs: Mapping[str, Any]) -> dict[str, Choice]:
+def choices(inputs: Mapping[str, Any], root: type[Section] | None = None) -> dict[str, Choice]:
     """Return the models that the tables name, by table; ``inputs`` has dotted keys."""
     chosen = {}
-    for name, field in Section.case_class.fields.items():
+    for name, field in (root or Section.case_class).fields.items():
         if isinstance(field, Table) and field.kind.selector:
             selector, keys = field.kind.selector, field.kind.section_keys()
             model_name = inputs.get(f"{name}.{selector}", field.kind.fields[selector].default)

@@ -16,6 +16,7 @@ from typing import Any, NamedTuple
 from tribodyn.errors import InputError, Problem
 from tribodyn.model import Option
 from tribodyn.nomenclature import QUANTITIES
+from tribodyn.study.case.section import named_rows
 from tribodyn.study.case.values import Plain, written
 from tribodyn.uncertainty import distribution
 from tribodyn.units import UnitProblemError, convert, split
@@ -70,31 +71,12 @@ def _unsound(key: str, value: Any, depth: int) -> Problem | None:
 
 
 def plain(data: Any) -> Any:
-    """Mark all values of nested mappings as Python values, where a bare float is SI."""
+    """Mark numbers of tables from Python, where a bare one is SI; lists of numbers as a whole."""
     if isinstance(data, Mapping):
-        return {
-            key: _marks(value) if key == "assumed" else plain(value) for key, value in data.items()
-        }
-    return data if isinstance(data, Plain) else Plain(data)
-
-
-def _marks(table: Any) -> Any:
-    """Mark the values in ``[assumed]``; reasons stay plain text."""
-    if not isinstance(table, Mapping):
-        return table
-    return {
-        key: {**mark, "value": plain(mark["value"])}
-        if isinstance(mark, Mapping) and "value" in mark
-        else mark
-        for key, mark in table.items()
-    }
-
-
-def named_rows(value: Any) -> list[tuple[str, Mapping[str, Any]]]:
-    """Tables of a list of tables, such as ``[[load_cases]]``, with their names or numbers."""
-    if not isinstance(value, list | tuple) or not all(isinstance(row, Mapping) for row in value):
-        return []
-    return [(str(row.get("name", number)), row) for number, row in enumerate(value, 1)]
+        return {str(key): plain(value) for key, value in data.items()}
+    if isinstance(data, list | tuple) and any(isinstance(each, _NESTED) for each in data):
+        return [plain(item) for item in data]
+    return data if isinstance(data, str | bool | Plain) else Plain(data)
 
 
 class UserInput(dict[str, Any]):
@@ -202,8 +184,10 @@ class Source:
 
     def where(self, key: str) -> str:
         """Format the location ``file:line: key``, without the parts that are unknown."""
-        if key in self.replaced:
-            return f"{self.replaced[key]} {key}"
+        parts = key.split(".")
+        tables = (".".join(parts[:end]) for end in range(len(parts), 0, -1))
+        if by := next((self.replaced[each] for each in tables if each in self.replaced), ""):
+            return f"{by} {key}"
         if not self.name:
             return key
         line = self.line(key)

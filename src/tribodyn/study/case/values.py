@@ -7,7 +7,7 @@ import math
 import numbers as numeric
 import operator
 import re
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass
 from functools import lru_cache
@@ -24,7 +24,7 @@ from tribodyn.errors import Problem, shortened
 from tribodyn.model import REQUIRED, Option
 from tribodyn.nomenclature import GEARS
 from tribodyn.scope import not_modelled
-from tribodyn.study.case.section import Choice, Section, Table, section_at
+from tribodyn.study.case.section import RAW_KINDS, Choice, Section, Table, named_rows, section_at
 
 
 class Term(NamedTuple):
@@ -241,7 +241,9 @@ def _name(spec: Option, name: str, value: Any) -> str:
 
 
 def read_value(spec: Option, name: str, value: Any) -> Any:
-    """Check one value and return it in SI."""
+    """Check one value and return it in SI; lists of parts, which have own checks, as they are."""
+    if spec.kind in RAW_KINDS:
+        return value
     as_text = not isinstance(value, Plain)
     if isinstance(value, Plain):
         value = value.value
@@ -308,7 +310,7 @@ def read_fields(
     values: dict[str, Any] = {}
     model = chosen[path].model if path in chosen else None
     # The options of a model take precedence over keys of the same name.
-    fields = cls._tables_for(data)
+    fields = cls.keys_for(data)
     options = {**fields, **model.case_options} if model else fields
     for name, field in options.items():
         key = f"{path}.{name}" if path else name
@@ -321,7 +323,7 @@ def read_fields(
                 values[name] = read_value(field, name, data[name])
             except FaultError as fault:
                 problems.append((key, fault.problem))
-        elif name in cls.fields:
+        elif name in fields:
             values[name] = field.default
             if values[name] is REQUIRED:
                 values[name] = None
@@ -343,7 +345,7 @@ def _read_inner(
         if table.default == "required":
             problems.append((key, _missing_table(table.kind, key)))
             return None
-    inner = data.get(name, {})
+    inner = dict(named_rows(data.get(name))) or data.get(name, {})
     if isinstance(inner, Mapping):
         return read_table(table.kind, inner, key, chosen, problems)
     what = f"{name} = {written(inner)}"
@@ -356,17 +358,17 @@ def _unexpected_keys(
 ) -> Iterator[tuple[str, Problem]]:
     """Report keys that neither this table nor its model has."""
     unexpected = list(islice((name for name in data if name not in options), _MAX_UNKNOWN))
-    available = cls.section_keys().keys if unexpected else {}
+    of_models = cls.section_keys().owners if unexpected else {}
     for name in unexpected:
-        key, option = (f"{path}.{name}" if path else name), available.get(name)
-        if isinstance(option, Option):
+        key, option = (f"{path}.{name}" if path else name), cls.spec(name)
+        if option is not None and name in of_models:
             # Options of another model are reported by the cross checks.
             try:
                 read_value(option, name, data[name])
             except FaultError as fault:
                 yield key, fault.problem
         else:
-            yield key, unknown_key(tuple(key.split(".")), data[name], cls)
+            yield key, unknown_key(tuple(key.split(".")), data[name], cls, [*options, *of_models])
 
 
 def _missing(option: Option, name: str, path: str) -> Problem:
@@ -455,11 +457,16 @@ def with_typed_keys(
             yield typed_keys.get(corrected, "") + key[len(corrected) :], problem
 
 
-def unknown_key(path: tuple[str, ...], value: Any, section: type[Section] | None = None) -> Problem:
+def unknown_key(
+    path: tuple[str, ...],
+    value: Any,
+    section: type[Section] | None = None,
+    keys: Sequence[str] = (),
+) -> Problem:
     """Return the problem of an unknown key, with the closest key or the table that has it."""
     *table, name = path
     section = section or section_at(tuple(table))
-    keys = list(section.section_keys().keys) if section else []
+    keys = list(dict.fromkeys(keys or (section.section_keys().keys if section else ())))
     keys += [] if table else ["assumed"]
     entry = f"{name} = {written(value)}" if not isinstance(value, Mapping) else f"table [{name}]"
     location = f"[{'.'.join(table)}]" if table else "the top of the file"

@@ -18,7 +18,7 @@ from tribodyn.study.case.provenance import (
     provenance,
     spec_of,
 )
-from tribodyn.study.case.section import Section, Table, section_at
+from tribodyn.study.case.section import RAW_KINDS, Section, Table, section_at
 from tribodyn.study.case.values import written
 
 if TYPE_CHECKING:
@@ -175,7 +175,9 @@ def _quoted(key: str) -> str:
 
 def _recorded(case: BaseCase, key: str, value: Any) -> str:
     spec = case.option_of(key)
-    return json.dumps(value, ensure_ascii=False) if spec is None else _toml_value(spec, value)
+    if spec is None or spec.kind in RAW_KINDS:
+        return json.dumps(value, ensure_ascii=False)
+    return _toml_value(spec, value)
 
 
 def _table_meaning(case: CaseData, place: str) -> str:
@@ -198,7 +200,9 @@ def case_rows(case: BaseCase) -> list[tuple[str, str, str]]:
 
 
 def _shown(spec: Option | None, value: Any) -> str:
-    return written(value).strip('"') if spec is None else spec.show(value)
+    if spec is None or spec.kind in RAW_KINDS:
+        return written(value).strip('"')
+    return spec.show(value)
 
 
 def case_table(case: BaseCase) -> str:

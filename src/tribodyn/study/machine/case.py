@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from copy import copy
-from functools import cached_property
+from functools import cached_property, partial
 from pathlib import Path
 from typing import Any, ClassVar, Literal
 
@@ -26,19 +26,16 @@ from tribodyn.machine import (
 from tribodyn.machine.plane_law import with_exchanged_gears
 from tribodyn.study.case.case import Case
 from tribodyn.study.case.provenance import Assumption, reason_faults
-from tribodyn.study.case.sections import LubricantData
-from tribodyn.study.case.user_input import Source
-from tribodyn.study.case.values import KeyedProblems
+from tribodyn.study.case.section import Section, choices, table_in
+from tribodyn.study.case.sections import LubricantData, heat_problems
+from tribodyn.study.case.user_input import Source, UserInput
+from tribodyn.study.case.values import KeyedProblems, read_table
 from tribodyn.study.faults.machine_section import impossible_faults, machine_fault_problems
 from tribodyn.study.machine.housing_files import read_housing
 from tribodyn.study.machine.load_cases import LoadCase, read_loads
 from tribodyn.study.machine.pair_cases import (
-    GROUPS,
-    MESH_KEYS,
-    SHARED,
     constant_law,
     inputs_under,
-    mesh_tables,
     pair_case,
     pinion_and_wheel,
     read_blanks,
@@ -48,28 +45,22 @@ from tribodyn.study.machine.pair_cases import (
     with_forms,
 )
 from tribodyn.study.machine.read_parts import (
-    add_material,
     add_shafts,
-    check_tables,
+    completed,
+    each_part,
+    is_faulty,
+    parts_of,
     read_bearing,
     read_coupling,
-    read_each,
-    read_fault_table,
     read_gear,
-    read_heat,
     read_rated_parts,
     read_shaft,
-    read_solver,
-    table_of,
-    tables_of,
+    solver_problems,
 )
-from tribodyn.study.machine.tables import (
-    MeshDynamics,
-    MotionTable,
-    mesh_table_kind,
-)
+from tribodyn.study.machine.tables import GROUPS, MeshDynamics
 from tribodyn.study.machine.unused_keys import unused_keys
 from tribodyn.study.machine.user_tables import PartsBase, default_assumptions, stated_assumptions
+from tribodyn.study.machine_tables import MachineTables
 from tribodyn.study.mesh_inputs import MeshInputs
 from tribodyn.study.planetary.machine_stages import (
     MEMBERS,
@@ -80,10 +71,6 @@ from tribodyn.study.planetary.machine_stages import (
     stage_mesh,
 )
 
-_TOP = (
-    *("title", "origin", *GROUPS, "planets", "housing", "operation", "load_cases", "dynamics"),
-    *("solver", *SHARED, "assumed"),
-)
 #: Tables in which problems of parts are placed.
 _PLACED = (*GROUPS, "planets", "operation", "housing", "lubricant")
 #: Keys of a mesh that its object takes as they are.
@@ -124,53 +111,53 @@ class MachineCase(PartsBase):
     """
 
     lumped: ClassVar[Literal[False]] = False  #: its parts vibrate
+    root = MachineTables
     gears: dict[str, Gear]
     operating_point: LoadCase
+    load_cases: tuple[LoadCase, ...]  #: of ``[[load_cases]]``
 
     def __init__(self, source: Source | None = None, /, **data: Any) -> None:
         origin = source or Source()
         problems = self._take(source, data)
-        check_tables(self.data, _TOP, problems)
-        problems += unused_keys(self.data)
-        self.title: str = self.data.get("title", self.kind)
-        self.origin: str | None = self.data.get("origin")
-        problems += reason_faults(self.data.get("assumed", {}))
-        groups = {group: tables_of(self.data, group, problems) for group in GROUPS}
-        self._blanks = read_blanks(groups, problems)
-        material = add_material(self.data, groups)
-        stages = read_stages(self.data, groups["gears"], problems, origin)
+        ready = completed(self.data)
+        tables: Any = self._read_tables(ready, problems)
+        self.title: str = tables.title or self.kind
+        self.origin: str | None = tables.origin
+        groups = {name: parts_of(tables, name) for name in (*GROUPS, "planets", "load_cases")}
+        self._blanks, widths = read_blanks(groups, problems)
+        stages = read_stages(groups["planets"], groups["gears"], problems)
         if self.lone_stage in stages:
             problems += floating_members(f"planets.{self.lone_stage}", stages[self.lone_stage][0])
-        self.gears = read_each(groups, "gears", read_gear, problems)
-        self.implied_shafts = add_shafts(groups["shafts"], self.gears, stages, material)
-        self.shafts: dict[str, Shaft] = read_each(groups, "shafts", read_shaft, problems)
-        self.bearings: dict[str, Bearing] = read_each(groups, "bearings", read_bearing, problems)
+        gears = {n: t for n, t in groups["gears"].items() if n not in self.planet_names}
+        self.gears = each_part(gears, partial(read_gear, widths=widths), problems)
+        self.shafts: dict[str, Shaft] = each_part(groups["shafts"], read_shaft, problems)
+        self.bearings: dict[str, Bearing] = each_part(groups["bearings"], read_bearing, problems)
         self._mesh_dynamics: dict[str, Any] = {}
         self._stage_of: dict[str, tuple[CaseStage, str]] = {}
         self._pairs: dict[str, Case] = {}
         self._teeth: dict[tuple[object, ...], tuple[Case, MeshInputs]] = {}
         self._machines: dict[tuple[float, float], Machine] = {}
-        self._mesh_tables = {
-            name: self._read_mesh(name, body, problems) for name, body in groups["meshes"].items()
-        }
+        self._mesh_tables = each_part(groups["meshes"], self._read_mesh, problems)
         if not groups["meshes"] and "planets" not in self.data:
             remedy = 'Add [meshes.NAME] with gears = ["z1", "z2"] and normal_module'
             problems.append(("meshes", Problem("there is no mesh", "", "", remedy)))
-        self.couplings: dict[str, Coupling] = read_each(
-            groups, "couplings", read_coupling, problems
+        self.couplings: dict[str, Coupling] = each_part(
+            groups["couplings"], read_coupling, problems
         )
-        self.housing: Housing | None = read_housing(self.data.get("housing"), problems)
-        self.heat: LubricantData | None = read_heat(self.data.get("lubricant", {}), problems)
-        motion = {k: v for k, v in self.data.get("dynamics", {}).items() if k not in MESH_KEYS}
-        self.rated_parts = read_rated_parts(self.data, self.shafts, problems)
-        self.motion = table_of(MotionTable, motion, "dynamics", problems)
-        self.solver = read_solver(self.data, problems)
-        self.faults: dict[str, Any] = read_each(groups, "faults", read_fault_table, problems)
-        problems += machine_fault_problems(self)
-        self.load_cases: tuple[LoadCase, ...] = ()  #: of ``[[load_cases]]``
-        if (loads := read_loads(self.data, problems)) is not None:
+        self.housing: Housing | None = read_housing(tables.housing, problems)
+        oil = tables.lubricant
+        self.heat: LubricantData | None = oil if getattr(oil, "heat_transfer", None) else None
+        self.rated_parts = read_rated_parts(tables.rating, groups, self.shafts, problems)
+        self.motion, self.solver = tables.dynamics, tables.solver
+        self.faults: dict[str, Any] = groups["faults"]
+        if (
+            loads := read_loads(self.data, tables.operation, groups["load_cases"], problems)
+        ) is not None:
             self.ends, self.operating_point, self.load_cases = loads
         if problems:
+            raise InputError(origin.place(problems))
+        self.implied_shafts = add_shafts(self.shafts, self.gears, stages, tables.material)
+        if problems := machine_fault_problems(self):
             raise InputError(origin.place(problems))
         self._check_meshes()
         try:
@@ -186,6 +173,28 @@ class MachineCase(PartsBase):
             raise InputError(origin.place(problems))
         self._check_spreads(origin)
         self._read_records(data)
+
+    def _read_tables(self, data: Mapping[str, Any], problems: KeyedProblems) -> Any:
+        """Values of all tables; problems of what cannot be read, or has no effect."""
+        problems += unused_keys(self.data)
+        problems += reason_faults(self.data.get("assumed", {}))
+        problems += heat_problems(UserInput({"lubricant": self.data.get("lubricant", {})}))
+        body = {name: value for name, value in data.items() if name != "assumed"}
+        faults: KeyedProblems = []
+        chosen = choices(UserInput(body), MachineTables)
+        tables: Any = read_table(MachineTables, body, "", chosen, faults)
+        for group in (*GROUPS, "planets"):
+            if "" in table_in(body, group):
+                what, remedy = "a part has no name", f"Write [{group}.NAME]"
+                problems.append((group, Problem(what, "", "Others refer to it by name", remedy)))
+        if "planets" in body and not table_in(body, "planets"):
+            remedy = "Write [planets.NAME] with sun, ring, planet, carrier and count, or remove it"
+            problems.append(("planets", Problem("there is no stage", "", "", remedy)))
+        reported = {key for key, _ in problems}
+        problems += [(key, problem) for key, problem in faults if key not in reported]
+        if tables.solver is not None:
+            problems += solver_problems(data, tables.solver)
+        return tables
 
     def __getstate__(self) -> dict[str, Any]:
         """Return the state without what is kept for further loads."""
@@ -218,27 +227,22 @@ class MachineCase(PartsBase):
             self.gears |= parts["gears"]
             self._mesh_tables |= dict.fromkeys(parts["meshes"], stage.table)
 
-    def _read_mesh(self, name: str, body: dict[str, Any], problems: KeyedProblems) -> Any:
-        key = f"meshes.{name}"
-        names = body.get("gears")
+    def _read_mesh(self, name: str, table: Any, problems: KeyedProblems) -> Any:
+        """Table of a mesh, and the law of one with a constant stiffness."""
+        key, names = f"meshes.{name}", table.gears
         listed = names if isinstance(names, list | tuple) else ()
         if len(listed) != 2 or not all(isinstance(each, str) for each in listed):
             remedy = 'Write gears = ["z1", "z2"]'
             what = "gears is missing" if names is None else f"gears = {names!r}"
-            problems.append((f"{key}.gears", Problem(what, "", "A mesh has two gears", remedy)))
-        inner = mesh_tables(body)
-        other = {k: v for k, v in body.items() if k not in (*inner, *MESH_KEYS, "gears")}
-        for shared in SHARED:
-            if shared in other and shared != "stiffness":
-                what, remedy = f"{shared} is not a table", f"Write [{key}.{shared}]"
-                problems.append((f"{key}.{shared}", Problem(what, "", "", remedy)))
-                del other[shared]
-        table = table_of(mesh_table_kind(body), other, key, problems)
-        if table is not None and table.stiffness is not None:
-            shared = self.data.get("dynamics", {})
-            values = {**(shared if isinstance(shared, Mapping) else {}), **body}
+            problem = Problem(what, "", "A mesh has two gears", remedy)
+            problems[:] = [fault for fault in problems if fault[0] != f"{key}.gears"]
+            problems.append((f"{key}.gears", problem))
+        if isinstance(table.stiffness, Section):  # a model of the teeth, in place of a number
+            vars(table)["stiffness"] = None
+        if table.stiffness is not None and not is_faulty(key, problems):
+            values = {**table_in(self.data, "dynamics"), **self.data["meshes"][name]}
             law = {k: v for k, v in values.items() if k in MeshDynamics.fields}
-            self._mesh_dynamics[name] = table_of(MeshDynamics, law, key, problems)
+            self._mesh_dynamics[name] = read_table(MeshDynamics, law, key, {}, problems)
         return table
 
     def _check_meshes(self) -> None:

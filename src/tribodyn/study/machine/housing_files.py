@@ -13,8 +13,7 @@ import numpy as np
 from tribodyn.errors import InputError, Problem
 from tribodyn.machine import Housing
 from tribodyn.study.case.values import KeyedProblems, Plain
-from tribodyn.study.machine.read_parts import built, table_of
-from tribodyn.study.machine.tables import HousingTable
+from tribodyn.study.machine.read_parts import built, is_faulty
 from tribodyn.types import Array
 from tribodyn.validated_files import read_bytes
 
@@ -30,19 +29,15 @@ _MOST = 10_000
 _NODES = "Write [housing.nodes] with six coordinate numbers a node, counted from 0, -1 at rest"
 
 
-def read_housing(body: Any, problems: KeyedProblems) -> Housing | None:
+def read_housing(table: Any, problems: KeyedProblems) -> Housing | None:
     """Housing of the ``[housing]`` table; None without one."""
-    if body is None:
+    if table is None:
         return None
-    count = len(problems)
-    nodes = body.get("nodes", {}) if isinstance(body, Mapping) else {}
+    nodes = table.nodes or {}
     if not isinstance(nodes, Mapping):
         problem = Problem("housing.nodes is not a table", "", "", _NODES)
         problems.append(("housing.nodes", problem))
-        return None
-    inner = {k: v for k, v in body.items() if k != "nodes"} if isinstance(body, Mapping) else body
-    table = table_of(HousingTable, inner, "housing", problems)
-    if len(problems) > count:
+    if is_faulty("housing", problems):
         return None
     try:
         matrices, stored_nodes = _read_files(table)

@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, replace
 from typing import Any, NamedTuple
 
 from tribodyn.errors import Problem
-from tribodyn.study.case.values import KeyedProblems, Plain
-from tribodyn.study.machine.read_parts import read_share, table_of
-from tribodyn.study.machine.tables import LoadCaseTable, OperationTable
+from tribodyn.study.case.section import named_rows
+from tribodyn.study.case.values import KeyedProblems
+from tribodyn.study.machine.read_parts import is_faulty, read_share
 
 
 @dataclass(frozen=True)
@@ -46,46 +46,43 @@ class Loads(NamedTuple):
     load_cases: tuple[LoadCase, ...]
 
 
-def read_loads(data: Mapping[str, Any], problems: KeyedProblems) -> Loads | None:
+def read_loads(
+    data: Mapping[str, Any], operation: Any, tables: Mapping[str, Any], problems: KeyedProblems
+) -> Loads | None:
     """Read ``[operation]`` and ``[[load_cases]]``; None where there is no operating point."""
-    if "operation" not in data:
-        remedy = "Add it with input, output, speed, torque"
-        missing = Problem("the table [operation] is missing", "", "", remedy)
-        problems.append(("operation", missing))
-        return None
-    run = table_of(OperationTable, data["operation"], "operation", problems)
-    if run is None:
-        return None
-    for end in ("input", "output"):
-        if not getattr(run, end):
-            problem = Problem(f'{end} = ""', "", "It names a shaft or a member", "Give its name")
-            problems.append((f"operation.{end}", problem))
-    point = LoadCase("operation", run.speed, run.torque, 1.0)
     rows = data.get("load_cases", [])
     if not isinstance(rows, list | tuple) or not all(isinstance(r, Mapping) for r in rows):
         remedy = "Write [[load_cases]] with share, speed and torque"
         problems.append(("load_cases", Problem("load_cases is no list", "", "", remedy)))
-        rows = []
-    return Loads((run.input, run.output), point, tuple(_load_cases(rows, point, problems)))
+    elif len({name for name, _ in named_rows(rows)}) < len(rows):
+        what = "two load cases have one name"
+        problems.append(("load_cases", Problem(what, "", "", "Rename one of them")))
+    if operation is None or is_faulty("operation", problems):
+        return None
+    for end in ("input", "output"):
+        if not getattr(operation, end):
+            problem = Problem(f'{end} = ""', "", "It names a shaft or a member", "Give its name")
+            problems.append((f"operation.{end}", problem))
+    point = LoadCase("operation", operation.speed, operation.torque, 1.0)
+    loads = tuple(_load_cases(tables, point, problems))
+    total = sum(load.share for load in loads)
+    if total > 1.0 + 1e-9:
+        what, why = f"the shares add up to {100.0 * total:.6g} %", "They are parts of one time"
+        problems.append(("load_cases", Problem(what, "", why, "Correct the shares")))
+    return Loads((operation.input, operation.output), point, loads)
 
 
 def _load_cases(
-    rows: Sequence[Mapping[str, Any]], point: LoadCase, problems: KeyedProblems
-) -> list[LoadCase]:
-    loads = []
-    for place, row in enumerate(rows):
-        body, key = dict(row), "load_cases"
-        share = read_share(f"{key}.share", body.pop("share", 1.0 / len(rows)), problems)
-        body = {"speed": Plain(point.speed), "torque": Plain(point.torque), **body}
-        table = table_of(LoadCaseTable, body, key, problems)
-        if table is not None and share is not None:
-            name = table.name or f"load case {place + 1}"
-            loads.append(LoadCase(name, table.speed, table.torque, share))
-    total = sum(load.share for load in loads)
-    if len(loads) == len(rows) and total > 1.0 + 1e-9:
-        what, why = f"the shares add up to {100.0 * total:.6g} %", "They are parts of one time"
-        problems.append(("load_cases", Problem(what, "", why, "Correct the shares")))
-    if len({load.name for load in loads}) < len(loads):
-        what = "two load cases have one name"
-        problems.append(("load_cases", Problem(what, "", "", "Rename one of them")))
-    return loads
+    rows: Mapping[str, Any], point: LoadCase, problems: KeyedProblems
+) -> Iterator[LoadCase]:
+    for place, (row, table) in enumerate(rows.items()):
+        key = f"load_cases.{row}"
+        if is_faulty(key, problems):
+            continue
+        share: float | None = 1.0 / len(rows)
+        if table.share is not None:
+            share = read_share(f"{key}.share", table.share, problems)
+        if share is not None:
+            stated = {"speed": table.speed, "torque": table.torque}
+            own = {name: value for name, value in stated.items() if value is not None}
+            yield replace(point, name=table.name or f"load case {place + 1}", share=share, **own)

@@ -8,57 +8,38 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from tribodyn.errors import Argument, InputError, Problem, did_you_mean
+from tribodyn.errors import Argument, InputError, Problem
 from tribodyn.gear import Misalignment
-from tribodyn.machine import ROLLING_BEARINGS
 from tribodyn.machine.graph.mesh_checks import gear_hand
 from tribodyn.study.case import gears
 from tribodyn.study.case.case import Case
 from tribodyn.study.case.hypoid import blank_of
-from tribodyn.study.case.provenance import spec_of
-from tribodyn.study.case.rating_tables import NotchTable, PartRating
-from tribodyn.study.case.section import Table
-from tribodyn.study.case.sections import Dynamics, Operation
+from tribodyn.study.case.rating_tables import PartRating
+from tribodyn.study.case.sections import Operation
 from tribodyn.study.case.to_models import usual_backlash
 from tribodyn.study.case.user_input import Source
-from tribodyn.study.case.values import (
-    FaultError,
-    KeyedProblems,
-    Plain,
-    read_table,
-    read_value,
-    unmarked,
-)
-from tribodyn.study.machine.read_parts import rolling_options
+from tribodyn.study.case.values import FaultError, KeyedProblems, Plain, read_value
+from tribodyn.study.machine.read_parts import is_faulty
 from tribodyn.study.machine.tables import (
-    TABLES,
+    HEAT,
+    MESH_KEYS,
+    SHARED,
     HypoidMeshTable,
-    MeshDynamics,
+    OperationTable,
     mesh_table_kind,
-    part_table,
 )
 from tribodyn.study.mesh_inputs import MeshInputs, mesh_inputs
 
 if TYPE_CHECKING:
     from tribodyn.gear import HypoidBlank
     from tribodyn.machine import Gear
-    from tribodyn.model import Option
     from tribodyn.study.machine.case import MachineCase
     from tribodyn.study.machine.load_cases import LoadCase
-    from tribodyn.study.machine.user_tables import PartsBase
 
-#: Tables of models that hold for all meshes, and that a mesh may have for itself.
-SHARED = ("material", "lubricant", "film", "stiffness", "friction", "materials", "rating")
 #: Those that meshes of hypoid gears have not.
 _OF_CYLINDRICAL = ("stiffness", "materials", "rating")
-#: Keys of ``[lubricant]`` of the heat balance, which is that of the whole machine.
-HEAT = ("heat_transfer", "gear_heat_transfer", "ambient_temperature")
 #: Keys of tables of models that are those of the whole machine.
 _OF_MACHINE = (*HEAT, *PartRating.fields)
-#: Keys of ``[dynamics]`` of a pair that belong to its mesh.
-MESH_KEYS = tuple(n for n in Dynamics.fields if n not in ("model", "bearing_damping_ratio"))
-#: Groups of parts, with a table for each part.
-GROUPS = ("shafts", "bearings", "gears", "meshes", "couplings", "faults")
 #: The machine is what vibrates: its pairs have no supports of their own.
 _WITHOUT_SUPPORTS = {"model": "torsional"}
 _ROLES = ("pinion", "wheel")
@@ -285,7 +266,7 @@ def refuse_idle(data: Mapping[str, Any], mesh: str, torque: float, source: Sourc
         return
     what, why = f"mesh {mesh} carries no torque", "Its teeth have no contact to compute"
     remedy = "Name the shaft where the power leaves behind it, or give it a constant stiffness"
-    option = TABLES["operation"].spec("torque")
+    option = OperationTable.spec("torque")
     assert option is not None
     stated = read_value(option, "torque", data["operation"]["torque"])
     key = "operation.output" if stated else "operation.torque"
@@ -314,33 +295,32 @@ def _merged(name: str, shared: Mapping[str, Any], of_mesh: Mapping[str, Any]) ->
 
 
 def read_blanks(
-    groups: Mapping[str, Mapping[str, Any]], problems: KeyedProblems
-) -> dict[str, HypoidBlank]:
-    """Blanks of the hypoid meshes, which give their gears the face widths."""
-    blanks = {}
-    for name, body in groups["meshes"].items():
-        names, bodies = body.get("gears"), groups["gears"]
-        if mesh_table_kind(body) is not HypoidMeshTable or not isinstance(names, list | tuple):
+    tables: Mapping[str, Mapping[str, Any]], problems: KeyedProblems
+) -> tuple[dict[str, HypoidBlank], dict[str, float]]:
+    """Blanks of the hypoid meshes, and the face widths that they give their gears."""
+    blanks: dict[str, HypoidBlank] = {}
+    widths: dict[str, float] = {}
+    for name, mesh in tables["meshes"].items():
+        listed = isinstance(mesh.gears, list | tuple) and all(
+            isinstance(g, str) for g in mesh.gears
+        )
+        if "cutter_radius" not in vars(mesh) or not listed:
             continue
-        pair = [bodies.get(gear, {}) for gear in names if isinstance(gear, str)]
-        teeth = [count for each in pair if type(count := unmarked(each.get("teeth"))) is int]
-        inner = mesh_tables(body)
-        values = {k: v for k, v in body.items() if k in HypoidMeshTable.fields and k not in inner}
-        faults: KeyedProblems = []
-        table = read_table(HypoidMeshTable, values, f"meshes.{name}", {}, faults)
-        widths = [Plain(1.0)] * len(pair)
+        gears = [tables["gears"].get(gear) for gear in mesh.gears]
+        teeth = [table.teeth for table in gears if table is not None and table.teeth]
+        widths |= dict.fromkeys(mesh.gears, 1.0)
+        if len(teeth) != len(_ROLES) or is_faulty(f"meshes.{name}", problems):
+            continue  # others are reported where they are read
         try:
-            if not faults and len(teeth) == len(_ROLES):  # others are reported where they are read
-                blanks[name] = blank = blank_of(table, (teeth[0], teeth[1]))
-                widths = [Plain(getattr(blank, f"face_width_{role}")) for role in _ROLES]
+            blanks[name] = blank = blank_of(mesh, (teeth[0], teeth[1]))
+            both = zip(mesh.gears, _ROLES, strict=True)
+            widths |= {gear: getattr(blank, f"face_width_{role}") for gear, role in both}
         except InputError as error:
             for problem in error.problems:
                 place = problem.where.name if isinstance(problem.where, Argument) else "gears"
                 key = place if place in HypoidMeshTable.fields else "gears"
                 problems.append((f"meshes.{name}.{key}", problem))
-        for each, width in zip(pair, widths, strict=True):
-            each.setdefault("face_width", width)
-    return blanks
+    return blanks, widths
 
 
 def _mounting(body: Mapping[str, Any], misalignment: float | Misalignment) -> dict[str, Any]:
@@ -365,72 +345,3 @@ def constant_law(law: Any) -> dict[str, Any]:
         "damping_ratio": None if has_damping else law.mesh_damping_ratio,
         "error": (lambda phase: size * np.cos(2.0 * np.pi * phase + shift)) if size else 0.0,
     }
-
-
-def option_at(case: PartsBase, path: tuple[str, ...]) -> Option | None:
-    """Option of the key at a path: of a part, of a value in a list, or of a model."""
-    if len(path) < 2:
-        return None
-    group, *names, name = path
-    if group == "shafts" and names[1:2] == ["notches"]:
-        return NotchTable.spec(name) if len(names) == 3 else None
-    if name.isdigit():
-        listed = option_at(case, (group, *names))
-        return replace(listed, kind="number") if listed and listed.kind == "numbers" else None
-    table = _table(case.data, [group, *names[:1]])
-    rolling = str(table.get("type")) if group == "bearings" and table is not None else ""
-    options = rolling_options(ROLLING_BEARINGS[rolling]) if rolling in ROLLING_BEARINGS else {}
-    if name in options:
-        return options[name]
-    part, of_parts = TABLES.get(group), group in (*GROUPS, "planets")
-    if of_parts and table is None:
-        return None
-    if part is not None and (len(names) == of_parts or group == "load_cases"):
-        part = part_table(group, table or {})
-        option = part.spec(name) or (MeshDynamics.spec(name) if group == "meshes" else None)
-        if option is not None:
-            return option
-    if (pair_key := _pair_key(case, group, names, name)) is not None:
-        return spec_of(*pair_key)
-    shared = Case.fields.get(group) if group in (*SHARED, "dynamics") else None
-    return shared.kind.spec(name) if isinstance(shared, Table) else None
-
-
-def unknown_key(case: PartsBase, key: str) -> Problem:
-    """Problem of a key that a case of parts does not have, with the nearest one that it has."""
-    keys = [
-        f"{group}.{part}.{name}"
-        for group in (*GROUPS, "planets")
-        for part in case.data.get(group, {})
-        for name in TABLES[group].fields
-    ]
-    keys += [f"operation.{name}" for name in TABLES["operation"].fields]
-    keys += [name for name, _ in case.values()]
-    what, why = f'there is no key "{key}"', "Keys name the part and its value"
-    part = next((name for name in keys if name.startswith("planets.")), "")
-    example = f"{part.rpartition('.')[0]}.pin_stiffness" if part else "bearings.A.radial_stiffness"
-    remedy = f'Write, for example, "{example}" or "operation.speed"'
-    return Problem(what, "", why, did_you_mean(key, list(dict.fromkeys(keys)), remedy))
-
-
-def _table(data: Mapping[str, Any], path: list[str]) -> Mapping[str, Any] | None:
-    """Table at a path; None where it is not given."""
-    value: Any = data
-    for name in path:
-        value = value.get(name) if isinstance(value, Mapping) else None
-    return value if isinstance(value, Mapping) else None
-
-
-def _pair_key(case: PartsBase, group: str, names: list[str], name: str) -> tuple[Case, str] | None:
-    """Pair of gears that has a value of the case, and its key there."""
-    for key, pair, names_of_gears in case.mesh_pairs():
-        if group in (*SHARED, "dynamics"):
-            return pair, ".".join((group, *names, name))
-        if key == ".".join([group, *names[:1]]):
-            inner = names[1:] or ["dynamics"]
-            inside = ["gears"] if inner[0] in HypoidMeshTable.fields else []
-            return pair, ".".join([*inside, *inner, name])
-        if group == "gears" and names and names[0] in names_of_gears:
-            role = _ROLES[names_of_gears.index(names[0])]
-            return pair, ".".join(("gears", role, *names[1:], name))
-    return None

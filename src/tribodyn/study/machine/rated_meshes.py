@@ -144,7 +144,7 @@ def _bearing(case: MachineCase, loads: Mapping[str, LoadResult], name: str) -> B
         key = "pin_dynamic_load_rating" if stage else "dynamic_load_rating"
         return BearingRating(name, (), reason=f"no {key}")
     kind = str(case.data["bearings"][name].get("type", "")) if not stage else ""
-    bearing = PartBearing(catalogue, rated.conditions, part.rolling, kind)
+    bearing = PartBearing(catalogue, rated.rating, part.rolling, kind)
     exponent, rows = bearing.rated.exponent, []
     for label, load in loads.items():
         flow, balance = load.machine.kinematics.shafts, load.static.bearings[name]

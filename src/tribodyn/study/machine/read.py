@@ -21,6 +21,9 @@ if TYPE_CHECKING:
     from tribodyn.study.case.case import Case
 
 
+_OF_HOUSING = tuple(name for name, option in HousingTable.specs() if option.kind == "file")
+
+
 def is_machine(data: Mapping[str, Any]) -> bool:
     """Whether tables of a case file describe a machine rather than a pair."""
     return any(group in data for group in ("shafts", "meshes", "bearings", "planets"))
@@ -28,7 +31,7 @@ def is_machine(data: Mapping[str, Any]) -> bool:
 
 def machine_files(data: Mapping[str, Any]) -> list[str]:
     """Files that the tables of a machine name, without opening them."""
-    names = {*HousingTable.fields, *(key.rpartition(".")[2] for key in file_keys())}
+    names = {*_OF_HOUSING, *(key.rpartition(".")[2] for key in file_keys())}
     return [
         value
         for key, value in flat_keys(data)
@@ -72,7 +75,7 @@ def _read(
         return changed_file(text, name, changes, by)
     place = Path(name).parent if folder is None else folder
     faults = data.get("faults")
-    tables: list[tuple[Any, tuple[str, ...]]] = [(data.get("housing"), tuple(HousingTable.fields))]
+    tables: list[tuple[Any, tuple[str, ...]]] = [(data.get("housing"), _OF_HOUSING)]
     tables += [
         (table, ("file",)) for table in (faults.values() if isinstance(faults, dict) else ())
     ]

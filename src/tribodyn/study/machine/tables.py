@@ -1,22 +1,47 @@
-"""Tables of a machine in a case file: shafts, bearings, gears, meshes, planets, operation."""
+"""Tables of a machine in a case file: the parts by their names, operation, motion, models."""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Mapping
+from dataclasses import MISSING, fields, replace
+from functools import cache
 from typing import Any
 
 from tribodyn.machine import COUPLINGS, ROLLING_BEARINGS, STEEL
-from tribodyn.model import REQUIRED, choice, file_path, flag, integer, number, numbers, text
+from tribodyn.model import (
+    REQUIRED,
+    Option,
+    choice,
+    file_path,
+    flag,
+    integer,
+    number,
+    text,
+)
 from tribodyn.study.case import gears
-from tribodyn.study.case.rating_tables import BearingCatalogue, PartRating, ShaftStrength
-from tribodyn.study.case.section import Section
+from tribodyn.study.case.case_data import CaseData
+from tribodyn.study.case.rating_tables import BearingCatalogue, NotchTable, ShaftStrength
+from tribodyn.study.case.section import NamedTables, Section, Table, table
 from tribodyn.study.case.sections import Dynamics, MaterialData, Solver
-from tribodyn.study.faults.section import PartFaultTable
 
 _GUARD = "guards against a wrong unit"
 _RPM = math.pi / 30.0
 _TURN = 2.0 * math.pi
+#: Tables of models that hold for all meshes, and that a mesh may have for itself.
+SHARED = ("material", "lubricant", "film", "stiffness", "friction", "materials", "rating")
+_MODELS = {name: replace(CaseData.fields[name], default="none") for name in SHARED}  # type: ignore[type-var]
+#: Keys of ``[dynamics]`` of a pair that belong to its mesh.
+MESH_KEYS = tuple(n for n in Dynamics.fields if n not in ("model", "bearing_damping_ratio"))
+_OF_DYNAMICS = {
+    name: replace(option, default=None, basis="[dynamics]")
+    for name, option in Dynamics.specs()
+    if name in MESH_KEYS
+}
+#: Groups of parts, with a table for each part.
+GROUPS = ("shafts", "bearings", "gears", "meshes", "couplings", "faults")
+#: Keys of ``[lubricant]`` of the heat balance, which is that of the whole machine.
+HEAT = ("heat_transfer", "gear_heat_transfer", "ambient_temperature")
 
 
 def _stiffness(meaning: str, unit: str = "N/m", **more: Any) -> Any:
@@ -24,34 +49,88 @@ def _stiffness(meaning: str, unit: str = "N/m", **more: Any) -> Any:
     return number(more.pop("default", None), 0.0, 1e14, _GUARD, unit=unit, meaning=meaning, **more)
 
 
-def _clearance(meaning: str) -> Any:
+def clearance(meaning: str) -> Any:
+    """Declare a radial clearance."""
     length = {"unit": "m", "display_unit": "um", "example": '"20 um"', "meaning": meaning}
     return number(0.0, 0.0, 0.01, _GUARD, **length)
 
 
-def _position(meaning: str, default: Any = REQUIRED, **more: Any) -> Any:
+def _listed(default: Any, meaning: str, example: str) -> Any:
+    """Declare a list that is checked where its part is made."""
+    return Option("list", meaning, default, example=example)
+
+
+def position(meaning: str, default: Any = REQUIRED, **more: Any) -> Any:
+    """Declare a place along an axis."""
     length_in_mm = {"unit": "m", "display_unit": "mm", "example": '"85 mm"', "meaning": meaning}
     return number(default, -100.0, 100.0, _GUARD, **length_in_mm, **more)
 
 
+class Notches(NamedTables, inner=table(NotchTable, "a notched section")):
+    """The table ``[shafts.NAME.notches]``."""
+
+
 class ShaftTable(MaterialData):
-    """A ``[shafts.NAME]`` table; its ``sections`` and ``notches`` are read apart."""
+    """A ``[shafts.NAME]`` table."""
 
     fields = {**MaterialData.fields, **ShaftStrength.fields}  # noqa: RUF012
 
+    sections: Any = _listed(
+        None,
+        "sections along x: length, outer and inner diameter, and for a cone both diameters of the "
+        "end; a rigid shaft by default",
+        '[["60 mm", "40 mm"], ["20 mm", "50 mm", "10 mm"]]',
+    )
     density: float = number(STEEL.density, 500.0, 25000.0, "polymers to tungsten", of="density")
     moment_of_inertia: float = number(
         0.0, 0.0, 1e7, _GUARD,
         of="moment_of_inertia",
         meaning="moment of inertia of what turns with its beginning, such as an engine",
     )  # fmt: skip
+    notches: Section | None = table(Notches, "notched sections, by name", "none")
+
+
+#: Units of the geometry of rolling bearings by the end of the name.
+_UNITS = {
+    "diameter": ("m", "mm"), "length": ("m", "mm"), "width": ("m", "mm"), "clearance": ("m", "um"),
+    "angle": ("rad", "deg"), "modulus": ("Pa", "GPa"), "preload": ("N", "N"),
+    "temperature": ("K", "degC"),
+}  # fmt: skip
+
+
+@cache
+def rolling_options(law: type) -> dict[str, Option]:
+    """Options of a rolling bearing from the fields of its class."""
+    options = {}
+    for field in fields(law):
+        if not field.init:
+            continue
+        default = None if field.default is MISSING else field.default
+        kind, meaning = str(field.type), field.name.replace("_", " ")
+        if "int" in kind and "float" not in kind:
+            options[field.name] = integer(default, -1000, 1000, "counted", meaning=meaning)
+        elif "bool" in kind:
+            options[field.name] = flag(default, meaning=meaning)
+        elif "str" in kind:
+            options[field.name] = text(default, meaning=meaning)
+        else:
+            unit, display_unit = _UNITS.get(field.name.rpartition("_")[2], ("", ""))
+            example = f'"1 {display_unit}"' if display_unit else "1.0"
+            units = {"unit": unit, "display_unit": display_unit, "example": example}
+            options[field.name] = number(default, -math.inf, math.inf, "", meaning=meaning, **units)
+    return options
 
 
 class BearingTable(BearingCatalogue):
-    """A ``[bearings.NAME]`` table of a linear support; those of a rolling bearing are apart."""
+    """A ``[bearings.NAME]`` table, with the geometry of the rolling bearing that it names."""
 
     shaft: str = text(REQUIRED, meaning="shaft that it carries", example='"input"')
-    position: float = _position("position of its mid plane on the shaft")
+    position: float = position("position of its mid plane on the shaft")
+    type: str | None = choice(
+        None,
+        tuple(ROLLING_BEARINGS),
+        meaning="rolling bearing, which is linearized at its load; a linear support by default",
+    )
     radial_stiffness: tuple[float, ...] | float | None = _stiffness(
         "stiffness across the shaft, one value or those along y and z", pair=True
     )
@@ -80,7 +159,7 @@ class BearingTable(BearingCatalogue):
         default=0.0,
         pair=True,
     )
-    clearance: float = _clearance(
+    clearance: float = clearance(
         "radial distance that the shaft can move before it is held; half of the diametral clearance"
     )
     floating: bool = flag(
@@ -89,6 +168,19 @@ class BearingTable(BearingCatalogue):
         "bearing without contact angle, the other one of the shaft locates it",
     )
     node: str | None = text(None, meaning="node of the housing that carries it", example='"seat A"')
+
+    @classmethod
+    def keys_for(cls, data: Mapping[str, Any]) -> Mapping[str, Option | Table]:
+        """Keys of a support, and those of its rolling bearing; of an unknown type those of all."""
+        name, laws = str(data.get("type", "")), ROLLING_BEARINGS.all()
+        named = [laws[name]] if name in laws else list(laws.values()) if name else []
+        rolling = {key: option for law in named for key, option in rolling_options(law).items()}
+        return {**cls.fields, **{k: o for k, o in rolling.items() if k not in cls.fields}}
+
+
+# What is needed for the life stands behind the others.
+for _name in BearingCatalogue.fields:
+    BearingTable.fields[_name] = BearingTable.fields.pop(_name)
 
 
 class GearTable(gears.Gear):
@@ -104,7 +196,7 @@ class GearTable(gears.Gear):
         meaning="number of teeth",
     )
     shaft: str = text(REQUIRED, meaning="shaft that carries it", example='"input"')
-    position: float | None = _position(
+    position: float | None = position(
         "position of its mid face on the shaft; of a rigid shaft at its node if not given", None
     )
     transverse_moment_of_inertia: float | None = number(
@@ -132,10 +224,18 @@ def _kind_of_mesh(default: str) -> Any:
     return choice(default, _KINDS, meaning="kind of gear pair")
 
 
-class MeshTable(Section):
-    """A ``[meshes.NAME]`` table; its tables of models are read with the pair of gears."""
+def _names(what: str, example: str) -> Any:
+    return _listed(REQUIRED, f"names of both {what}", example)
 
-    fields = {name: gears.Gears.fields[name] for name in _OF_PAIR}  # noqa: RUF012
+
+class MeshTable(Section):
+    """A ``[meshes.NAME]`` table; its tables of models are completed with the pair of gears."""
+
+    fields = {  # noqa: RUF012
+        "gears": _names("gears", '["z1", "z2"]'),
+        **{name: gears.Gears.fields[name] for name in _OF_PAIR},
+        **_OF_DYNAMICS,
+    }
 
     kind: str = _kind_of_mesh("spur")
 
@@ -169,6 +269,19 @@ class MeshTable(Section):
         0.0, 0.0, 1.0, "a part of the mesh cycle", meaning="mesh phase when the clock begins"
     )
 
+    @classmethod
+    def keys_for(cls, data: Mapping[str, Any]) -> Mapping[str, Option | Table]:
+        """Keys of a mesh of its kind, and tables of its models."""
+        return with_models(mesh_table_kind(data).fields, data)
+
+
+def with_models(
+    keys: Mapping[str, Option | Table], data: Mapping[str, Any]
+) -> Mapping[str, Option | Table]:
+    """Keys of a mesh or a stage with tables of models; ``stiffness`` may be a number too."""
+    number = "stiffness" in keys and not isinstance(data.get("stiffness"), Mapping)
+    return {**keys, **{k: table for k, table in _MODELS.items() if k != "stiffness" or not number}}
+
 
 def _apex(gear: str) -> Any:
     return choice("+x", ("+x", "-x"), meaning=f"side of the {gear} on which its apex lies")
@@ -180,8 +293,10 @@ class HypoidMeshTable(Section):
     fields = {  # noqa: RUF012
         name: option
         for name, option in {
+            "gears": _names("gears", '["z1", "z2"]'),
             **gears.HYPOID_KEYS,
             "composite_roughness": gears.Gears.fields["composite_roughness"],
+            **_OF_DYNAMICS,
         }.items()
         if name != "side"
     }
@@ -217,17 +332,21 @@ def mesh_table_kind(body: Mapping[str, Any]) -> type[Section]:
     return HypoidMeshTable if crossed else MeshTable
 
 
-def _coupling_table(name: str) -> type[Section]:
-    """Table of a coupling of a model, whose options are its keys; its shafts are read apart."""
-    model = COUPLINGS.all().get(name, COUPLINGS["linear"])
-    kind = choice("linear", COUPLINGS.names, meaning="kind of coupling")
-    fields = {"model": kind, **model.case_options}
-    table: type[Section] = type("CouplingTable", (Section,), {"fields": fields})
-    return table
+class CouplingTable(Section):
+    """A ``[couplings.NAME]`` table, with the options of its model as keys."""
 
+    fields = {  # noqa: RUF012
+        "shafts": _names("shafts", '["engine", "input"]'),
+        "model": choice("linear", COUPLINGS.names, meaning="kind of coupling"),
+        **COUPLINGS["linear"].case_options,
+    }
 
-#: The ``[couplings.NAME]`` table of a linear coupling.
-CouplingTable = _coupling_table("linear")
+    @classmethod
+    def keys_for(cls, data: Mapping[str, Any]) -> Mapping[str, Option | Table]:
+        """Keys of a coupling of its model, of an unknown one those of a linear one."""
+        model = COUPLINGS.all().get(str(data.get("model", "linear")))
+        own = {name: cls.fields[name] for name in ("shafts", "model")}
+        return cls.fields if model is None else {**own, **model.case_options}
 
 
 class MeshDynamics(Section):
@@ -246,8 +365,13 @@ class MeshDynamics(Section):
 
 
 class HousingTable(Section):
-    """The ``[housing]`` table; its nodes are read apart."""
+    """The ``[housing]`` table."""
 
+    nodes: Any = _listed(
+        None,
+        "rows of the matrices of each node along x, y, z and about them; -1 without",
+        '{ "seat A" = [0, 1, 2, -1, -1, -1] }',
+    )
     matrices: str | None = file_path(
         meaning="NumPy file with K, M, optional C, and names of the nodes", example='"housing.npz"'
     )
@@ -269,16 +393,22 @@ class OperationTable(Section):
     )
 
 
-class LoadCaseTable(Section):
-    """A ``[[load_cases]]`` table; its share is read apart."""
+_OF_OPERATION: dict[str, Any] = {"default": None, "basis": "[operation]"}
 
+
+class LoadCaseTable(Section):
+    """A ``[[load_cases]]`` table."""
+
+    share: Any = Option(
+        "share", "share of the time, a number up to 1 or a percentage", example='"30 %"'
+    )
     name: str | None = text(None, meaning="name of the load case", example='"cruise"')
-    speed: float = OperationTable.fields["speed"]  # type: ignore[assignment]
-    torque: float = OperationTable.fields["torque"]  # type: ignore[assignment]
+    speed: float | None = replace(OperationTable.fields["speed"], **_OF_OPERATION)  # type: ignore[assignment]
+    torque: float | None = replace(OperationTable.fields["torque"], **_OF_OPERATION)  # type: ignore[assignment]
 
 
 class MotionTable(Section):
-    """The ``[dynamics]`` table of a machine, without the keys of its meshes."""
+    """The ``[dynamics]`` table of a machine, with keys that its meshes share."""
 
     modal_damping_ratio: float = number(
         0.02,
@@ -312,6 +442,11 @@ class MotionTable(Section):
     )
 
 
+MotionTable.fields |= {
+    name: replace(option, default=None) for name, option in Dynamics.specs() if name in MESH_KEYS
+}
+
+
 class SolverTable(Section):
     """The ``[solver]`` table of a machine."""
 
@@ -333,158 +468,3 @@ class SolverTable(Section):
 
 
 SOLVER_OF_PAIRS = tuple(name for name in Solver.fields if name not in SolverTable.fields)
-
-
-#: Keys of a mesh that both meshes of a stage share.
-_OF_STAGE = (
-    "normal_module", "center_distance", "addendum_coefficient", "dedendum_coefficient",
-    "rack_tip_radius_coefficient", "composite_roughness", "normal_pressure_angle", "helix_angle",
-    "hand",
-)  # fmt: skip
-#: Stiffness of a support that is not given [N/m].
-STIFF = 1e9
-
-
-def _support(meaning: str, basis: str = "") -> Any:
-    return number(
-        STIFF, 0.0, 1e14, _GUARD, unit="N/m", example='"1e8 N/m"', meaning=meaning, basis=basis
-    )
-
-
-def _errors(meaning: str) -> Any:
-    length = {"unit": "m", "display_unit": "um", "example": '["20 um", "0 um", "0 um"]'}
-    return numbers(-1e-2, 1e-2, _GUARD, meaning=meaning, **length)
-
-
-_PLANET_TYPES = {
-    "single": "planets with one gear",
-    "stepped": "planets with two gears on one shaft, the second at the ring",
-    "meshed": "pairs of planets that mesh with each other, the second at the ring",
-}
-
-
-class PlanetsTable(Section):
-    """A ``[planets.NAME]`` table."""
-
-    fields = {  # noqa: RUF012
-        **{name: MeshTable.fields[name] for name in _OF_STAGE},
-        **{f"pin_{name}": option for name, option in BearingCatalogue.fields.items()},
-    }
-
-    sun: str = text(REQUIRED, meaning="gear in the middle", example='"s"')
-    ring: str = text(REQUIRED, meaning="gear with internal teeth", example='"r"')
-    planet: str = text(REQUIRED, meaning="gear between sun and ring", example='"p"')
-    carrier: str = text(REQUIRED, meaning="name of the carrier", example='"c"')
-    planet_type: str = choice("single", _PLANET_TYPES, meaning="kind of planets")
-    ring_planet: str | None = text(
-        None, meaning="gear at the ring of double planets; planet is that at the sun", example='"q"'
-    )
-    ring_normal_module: float | None = number(
-        None, 0.05e-3, 0.1, "ISO 54 modules run from 1 to 50 mm", of="normal_module",
-        meaning="module of the ring and its gears of stepped planets", basis="that of the sun",
-    )  # fmt: skip
-    ring_center_distance: float | None = _position(
-        "distance from the sun to the planets at the ring of pairs, from the profile shifts of the "
-        "ring mesh by default",
-        None,
-    )
-    pair_center_distance: float | None = _position(
-        "distance between the planets of a pair, from their profile shifts by default", None
-    )
-    count: int = integer(REQUIRED, 1, 24, "more do not fit", meaning="number of planets")
-    angles: tuple[float, ...] | None = numbers(
-        -_TURN, _TURN, "one turn", unit="rad", display_unit="deg",
-        example='["0 deg", "120 deg", "240 deg"]',
-        meaning="angles of the planets about the sun; equally spaced by default",
-    )  # fmt: skip
-    pin_stiffness: float = _support("radial stiffness of each planet on the carrier")
-    pin_clearance: float = _clearance(
-        "radial distance that each planet can move on its pin before it is held"
-    )
-    sun_support: float = _support("radial stiffness of the supports of the sun; 0 lets it float")
-    ring_support: float = _support("radial stiffness of the supports of the ring; 0 lets it float")
-    carrier_support: float = _support(
-        "radial stiffness of the supports of the carrier; 0 lets it float"
-    )
-    torsional_support: float = _support(
-        "stiffness of the held member against rotation, along its base circle or that of the pins"
-    )
-    carrier_position: float = _position(
-        "position of the pins on the shaft of the carrier, in a machine with shafts", 0.0
-    )
-    carrier_mass: float | None = number(
-        None, 1e-9, 1e6, _GUARD, of="mass", meaning="mass of the carrier", basis="a steel disc"
-    )
-    carrier_moment_of_inertia: float | None = number(
-        None, 1e-14, 1e7, _GUARD, of="moment_of_inertia",
-        meaning="moment of inertia of the carrier about its axis", basis="a steel disc",
-    )  # fmt: skip
-    pin_errors: tuple[float, ...] | None = _errors(
-        "distance by which each pin is ahead of its place, from x towards y"
-    )
-    thickness_errors: tuple[float, ...] | None = _errors(
-        "excess of the base tooth thickness of each planet"
-    )
-
-
-#: Tables by group of parts.
-TABLES: dict[str, type[Section]] = {
-    "shafts": ShaftTable,
-    "bearings": BearingTable,
-    "gears": GearTable,
-    "meshes": MeshTable,
-    "couplings": CouplingTable,
-    "planets": PlanetsTable,
-    "housing": HousingTable,
-    "operation": OperationTable,
-    "load_cases": LoadCaseTable,
-    "dynamics": MotionTable,
-    "solver": SolverTable,
-    "faults": PartFaultTable,
-    "rating": PartRating,
-}
-
-
-def part_table(group: str, body: Mapping[str, Any]) -> type[Section]:
-    """Table of a part by its body: of a mesh by its kind, of a coupling by its model."""
-    if group == "meshes":
-        return mesh_table_kind(body)
-    if group == "couplings":
-        return _coupling_table(str(body.get("model", "linear")))
-    return TABLES[group]
-
-
-#: Keys that are read apart from the table of their group.
-APART: dict[str, dict[str, Any]] = {
-    "shafts": {
-        "sections": text(
-            None,
-            meaning="sections along x: length, outer and inner diameter, and for a cone both "
-            "diameters of the end; a rigid shaft by default",
-            example='[["60 mm", "40 mm"], ["20 mm", "50 mm", "10 mm"]]',
-        )
-    },
-    "bearings": {
-        "type": choice(
-            None,
-            tuple(ROLLING_BEARINGS),
-            meaning="rolling bearing, which is linearized at its load; a linear support by default",
-        )
-    },
-    "meshes": {"gears": text(REQUIRED, meaning="names of both gears", example='["z1", "z2"]')},
-    "couplings": {
-        "shafts": text(REQUIRED, meaning="names of both shafts", example='["engine", "input"]')
-    },
-    "housing": {
-        "nodes": text(
-            None,
-            meaning="rows of the matrices of each node along x, y, z and about them; -1 without",
-            example='{ "seat A" = [0, 1, 2, -1, -1, -1] }',
-        )
-    },
-    "load_cases": {
-        "share": text(
-            None, meaning="share of the time, a number up to 1 or a percentage", example='"30 %"'
-        )
-    },
-}

@@ -8,8 +8,10 @@ from typing import Any
 from tribodyn.errors import Problem
 from tribodyn.study.case.rating_tables import BearingCatalogue, PartRating, ShaftStrength
 from tribodyn.study.case.values import written
-from tribodyn.study.machine.pair_cases import HEAT, MESH_KEYS, SHARED
 from tribodyn.study.machine.tables import (
+    HEAT,
+    MESH_KEYS,
+    SHARED,
     SOLVER_OF_PAIRS,
     HypoidMeshTable,
     MeshDynamics,

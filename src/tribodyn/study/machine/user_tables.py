@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any, Self
 import numpy as np
 
 from tribodyn.arguments.quantities import quantity_in, without_units
-from tribodyn.errors import InputError, Problem
+from tribodyn.errors import InputError, Problem, did_you_mean
 from tribodyn.machine.fields import display
 from tribodyn.study.case.base import BaseCase
 from tribodyn.study.case.provenance import (
@@ -25,12 +25,13 @@ from tribodyn.study.case.provenance import (
     without_records,
 )
 from tribodyn.study.case.reference import key_comment
+from tribodyn.study.case.section import named_rows, option_at, section_at, table_in
 from tribodyn.study.case.to_models import USUAL_GEARS
 from tribodyn.study.case.user_input import (
     Source,
     Stated,
     UserInput,
-    named_rows,
+    plain,
     spread_problem,
     unsound,
     without_spread,
@@ -44,10 +45,10 @@ from tribodyn.study.case.values import (
     unmarked,
 )
 from tribodyn.study.case.write import BASE_NOTE, base_lines, reason_lines, written_number
-from tribodyn.study.machine.pair_cases import SHARED, option_at, unknown_key
-from tribodyn.study.machine.read_parts import LENGTH, in_si
-from tribodyn.study.machine.tables import APART, STIFF, TABLES
+from tribodyn.study.machine.read_parts import LENGTH
+from tribodyn.study.machine.tables import GROUPS, OperationTable
 from tribodyn.study.machine.unused_keys import unused_keys
+from tribodyn.study.machine_tables import STIFF, MachineTables
 
 if TYPE_CHECKING:
     from tribodyn.model import Option
@@ -71,14 +72,14 @@ class PartsBase(BaseCase):
         self._source = source or Source()
         if unreadable := list(unsound(typed)):
             raise InputError(self._source.place(unreadable))
-        typed = deepcopy(typed) if source is not None else in_si(typed)
+        typed = deepcopy(typed) if source is not None else plain(typed)
         ready = for_each_planet(without_records(typed))
         self.data, self._spread, problems = without_spread(ready, lists=True)
         return problems
 
     def _read_records(self, typed: Mapping[str, Any]) -> None:
         """Read the values that reasons and origin were given for; drop reasons of other values."""
-        self._records, faults = read_stated(typed, self.option_of, (*TABLES, *SHARED, *_TEXTS))
+        self._records, faults = read_stated(typed, self.option_of, tuple(MachineTables.fields))
         if faults:
             raise InputError(self._source.place(faults))
         for key in self._settled[1] if self._records.marks else ():
@@ -127,7 +128,21 @@ class PartsBase(BaseCase):
         return {key: Path(str(unmarked(self._typed[key]))) for key in files}
 
     def _unknown_key(self, key: str) -> Problem:
-        return unknown_key(self, key)
+        keys = [
+            f"{group}.{part}.{name}"
+            for group in (*GROUPS, "planets")
+            for part, body in table_in(self.data, group).items()
+            for name in section_at((group, part), MachineTables).keys_for(body)  # type: ignore[union-attr]
+        ]
+        keys += [f"operation.{name}" for name in OperationTable.fields]
+        keys += [name for name, _ in self.values()]
+        what, why = f'there is no key "{key}"', "Keys name the part and its value"
+        part = next((name for name in keys if name.startswith("planets.")), "")
+        example = (
+            f"{part.rpartition('.')[0]}.pin_stiffness" if part else "bearings.A.radial_stiffness"
+        )
+        remedy = f'Write, for example, "{example}" or "operation.speed"'
+        return Problem(what, "", why, did_you_mean(key, list(dict.fromkeys(keys)), remedy))
 
     @abstractmethod
     def mesh_pairs(self) -> Iterator[tuple[str, Case, tuple[str, str]]]:
@@ -140,7 +155,7 @@ class PartsBase(BaseCase):
 
     def option_of(self, key: str) -> Option | None:
         """Unit and range of a dotted key; of the second value of a list it ends with ``.2``."""
-        return option_at(self, tuple(key.split(".")))
+        return option_at(MachineTables, self.data, key)
 
     def replace(self, changes: Mapping[str, Any], *, by: str = "") -> Self:
         """Return a case with values changed by dotted key, as that of a pair does."""
@@ -174,7 +189,7 @@ def _in_si(option: Option | None, key: str, value: Any) -> Any:
     """Value of a key in SI; a list of values, or a text in place of a number, as it is."""
     if option is not None:
         with suppress(FaultError):
-            return read_value(option, key.rpartition(".")[2], value)
+            return unmarked(read_value(option, key.rpartition(".")[2], value))
     return unmarked(value)
 
 
@@ -200,7 +215,7 @@ def changed_tables(
         table = data
         for depth, each in enumerate(names):
             if name.isdigit() and depth == len(names) - 1:
-                _set_element(table, each, int(name), value if by else in_si(value), key)
+                _set_element(table, each, int(name), value if by else plain(value), key)
                 break
             rows: dict[str, Any] = dict(named_rows(table))
             table = rows.get(each, "") if rows else table.setdefault(each, {})
@@ -212,7 +227,7 @@ def changed_tables(
             if value is None:
                 table.pop(name, None)
             else:
-                table[name] = value if by else in_si(value)
+                table[name] = value if by else plain(value)
     dropped = _drop_unused(data, changes, {key for key, _ in unused_keys(tables)})
     if isinstance(reasons := data.get("assumed"), Mapping):
         stale = (*changes, *dropped)
@@ -359,7 +374,8 @@ def _option_at(case: PartsBase, path: tuple[str, ...]) -> Option | None:
     """Option of the key at a path, of the rows of sections and of load cases too."""
     if path[-1] == "sections":
         return LENGTH  # type: ignore[no-any-return]
-    return option_at(case, path)
+    rows = named_rows(case.data.get(path[0]))
+    return case.option_of(".".join((path[0], *(name for name, _ in rows[:1]), *path[1:])))
 
 
 class _Writer:
@@ -429,7 +445,7 @@ class _Writer:
 
 def _note(case: PartsBase, path: tuple[str, ...]) -> str:
     """Meaning of a key of the file as a comment; empty where it is named by the user."""
-    option = APART.get(path[0], {}).get(path[-1]) or _option_at(case, path)
+    option = _option_at(case, path)
     return f"# {key_comment(option)}" if option is not None and option.meaning else ""
 
 

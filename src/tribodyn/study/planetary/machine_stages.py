@@ -16,15 +16,8 @@ from tribodyn.machine.planetary.centrifugal import centrifugal_loads
 from tribodyn.machine.planetary.mesh_laws import gear_lag
 from tribodyn.machine.planetary.stage_parts import mesh_kinds
 from tribodyn.study.case.values import KeyedProblems, Plain
-from tribodyn.study.machine.pair_cases import (
-    MESH_KEYS,
-    mesh_tables,
-    pair_case,
-    pinion_and_wheel,
-    with_forms,
-)
-from tribodyn.study.machine.read_parts import read_gear, table_of, tables_of
-from tribodyn.study.machine.tables import PlanetsTable
+from tribodyn.study.machine.pair_cases import pair_case, pinion_and_wheel, with_forms
+from tribodyn.study.machine.read_parts import is_faulty, read_gear
 
 if TYPE_CHECKING:
     from tribodyn.gear import CylindricalPair
@@ -256,63 +249,52 @@ def carrier_body(table: Any, density: float, radius: float, width: float) -> tup
 
 
 def read_stages(
-    data: Mapping[str, Any], gears: dict[str, Any], problems: KeyedProblems, source: Source | None
+    tables: Mapping[str, Any], gears: Mapping[str, Any], problems: KeyedProblems
 ) -> dict[str, tuple[Any, ...]]:
-    """Tables and planets of all stages; the planets are taken out of the tables of gears."""
-    stages, planets = {}, set()
-    tables = tables_of(data, "planets", problems)
-    if "planets" in data and not tables:
-        remedy = "Write [planets.NAME] with sun, ring, planet, carrier and count, or remove it"
-        problems.append(("planets", Problem("there is no stage", "", "", remedy)))
-    for name, body in tables.items():
-        key, inner = f"planets.{name}", mesh_tables(body)
-        keys = {k: v for k, v in body.items() if k not in (*inner, *MESH_KEYS)}
-        table = table_of(PlanetsTable, keys, key, problems)
-        if table is None:
+    """Tables and planets of the stages, from the tables of stages and of gears."""
+    stages: dict[str, tuple[Any, ...]] = {}
+    for name, table in tables.items():
+        if is_faulty(f"planets.{name}", problems):
             continue
-        count = len(problems)
-        roles: tuple[str, ...] = ("sun", "ring", "planet")
-        if table.planet_type == "single" or table.ring_planet is None:
-            problems += _double_problems(key, table)
-        else:
-            roles = (*roles, "ring_planet")
-        if not table.carrier:
-            problem = Problem('carrier = ""', "", "It names a shaft", "Give its name")
-            problems.append((f"{key}.carrier", problem))
-        for role in roles:
-            if (gear := getattr(table, role)) not in gears:
-                why, remedy = f"Known: {', '.join(gears)}", "Add the gear, or correct the name"
-                problem = Problem(f'there is no gear "{gear}"', "", why, remedy)
-                problems.append((f"{key}.{role}", problem))
-        ring = gears.get(table.ring, {})
-        teeth = getattr(ring.get("teeth"), "value", ring.get("teeth"))
-        if isinstance(teeth, int) and teeth > 0 and not ring.get("internal"):
-            why, remedy = "Internal teeth have a negative number", f"Write teeth = {-teeth}"
-            problem = Problem(f"teeth = {teeth} of the ring", "", why, remedy)
-            problems.append((f"gears.{table.ring}.teeth", problem))
-        for role in ("angles", "pin_errors", "thickness_errors"):
-            values = getattr(table, role)
-            if values is not None and len(values) != table.count:
-                what = f"{role} has {len(values)} values for {table.count} planets"
-                problem = Problem(what, "", "", "Give one value for each planet")
-                problems.append((f"{key}.{role}", problem))
-        if len(problems) > count:
+        wrong = _stage_problems(f"planets.{name}", table, gears)
+        problems += wrong
+        if wrong:
             continue
-        names = [getattr(table, role) for role in roles[2:]]
-        planets |= {*names}
-        parts: list[Any] = [read_gear(n, {"shaft": "planet", **gears[n]}, problems) for n in names]
+        names = [table.planet] + ([] if table.planet_type == "single" else [table.ring_planet])
+        parts: list[Any] = [read_gear(n, gears[n], problems) for n in names]
         if None in parts:
             continue
-        if table.planet_type == "stepped" and "position" not in gears[names[1]]:
+        if table.planet_type == "stepped" and gears[names[1]].position is None:
             behind = 0.5 * sum(gear.face_width for gear in parts)
             parts[1] = replace(parts[1], position=behind)
         stages[name] = table, *parts
-        if not data.get("shafts"):  # a stage by itself: its members are shafts of their own
-            for member in (table.sun, table.ring):
-                gears[member].setdefault("shaft", member)
-    for planet in planets:
-        del gears[planet]
     return stages
+
+
+def _stage_problems(key: str, table: Any, gears: Mapping[str, Any]) -> KeyedProblems:
+    """Names of no gear, lists of another length, and a ring with external teeth."""
+    problems = _double_problems(key, table)
+    roles = ("sun", "ring", "planet", "ring_planet")
+    if not table.carrier:
+        problem = Problem('carrier = ""', "", "It names a shaft", "Give its name")
+        problems.append((f"{key}.carrier", problem))
+    for role in roles[: 3 if problems or table.planet_type == "single" else 4]:
+        if (gear := getattr(table, role)) not in gears:
+            why, remedy = f"Known: {', '.join(gears)}", "Add the gear, or correct the name"
+            problem = Problem(f'there is no gear "{gear}"', "", why, remedy)
+            problems.append((f"{key}.{role}", problem))
+    ring = gears.get(table.ring)
+    if ring is not None and ring.teeth is not None and ring.teeth > 0 and not ring.internal:
+        why, remedy = "Internal teeth have a negative number", f"Write teeth = {-ring.teeth}"
+        problem = Problem(f"teeth = {ring.teeth} of the ring", "", why, remedy)
+        problems.append((f"gears.{table.ring}.teeth", problem))
+    for role in ("angles", "pin_errors", "thickness_errors"):
+        values = getattr(table, role)
+        if values is not None and len(values) != table.count:
+            what = f"{role} has {len(values)} values for {table.count} planets"
+            problem = Problem(what, "", "", "Give one value for each planet")
+            problems.append((f"{key}.{role}", problem))
+    return problems
 
 
 def stage_by_itself(data: Mapping[str, Any]) -> str | None:
