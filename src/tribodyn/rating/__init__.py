@@ -15,7 +15,7 @@
 | `pitting` | contact stress and its limit: ISO 6336-2 |
 | `root_section`, `bending`, `root_strength` | root stress and its limit: ISO 6336-3 |
 | `root_elements` | root stress by finite elements beside it |
-| `surface` | scuffing and micropitting: ISO/TS 6336-20, -21, -22 |
+| `surface` | scuffing, micropitting: ISO/TS 6336-20, -21, -22; stress below the surface |
 | `elements` | life of rolling bearings, fatigue of shafts: ISO 281, ISO/TS 16281, DIN 743 |
 | `life` | Z_NT, Y_NT and cycles to failure |
 """
@@ -50,7 +50,12 @@ from tribodyn.rating.pair_rating import GearRating, PairRating, rate_pair
 from tribodyn.rating.rated_gear import PinionShaft, RatedGear, ShaperCutter
 from tribodyn.rating.root_elements import RootStress, root_stress_by_elements
 from tribodyn.rating.spectrum import GearDamage, SpectrumLoad, SpectrumRating, rate_spectrum
-from tribodyn.rating.surface.subsurface import LineContactStress, line_contact_stress
+from tribodyn.rating.surface.subsurface import (
+    LineContactStress,
+    SubsurfaceExposure,
+    line_contact_stress,
+    subsurface_exposure,
+)
 from tribodyn.rating.tolerances import Deviations, gear_tolerances
 
 __all__ = [
@@ -76,6 +81,7 @@ __all__ = [
     "ShaperCutter",
     "SpectrumLoad",
     "SpectrumRating",
+    "SubsurfaceExposure",
     "ball_bearing_life",
     "bearing_life",
     "contamination_factor",
@@ -93,6 +99,7 @@ __all__ = [
     "reference_viscosity",
     "roller_bearing_life",
     "root_stress_by_elements",
+    "subsurface_exposure",
     "system_life",
 ]
 

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
+from itertools import pairwise
 from typing import Final
 
 from tribodyn.errors import Argument, InputError, did_you_mean, require_between, require_positive
@@ -112,6 +113,12 @@ class GearMaterial(Material):
         sigma_S (sigma_0.2 of V) and sigma_B [Pa], for the notch sensitivity of St, V, GG.
     peened : bool
         Shot-peened roots, which stand reversed bending better.
+    profile_depth : tuple of float [m]
+        Depths below the surface of both profiles, rising.
+    hardness_profile : tuple of float
+        HV at these depths, pure numbers, for the exposure below the surface.
+    residual_stress_profile : tuple of float [Pa]
+        Residual stress along the surface at these depths, compression negative; none by default.
 
     Raises
     ------
@@ -139,6 +146,9 @@ class GearMaterial(Material):
     yield_strength: float | None = None
     tensile_strength: float | None = None
     peened: bool = False
+    profile_depth: tuple[float, ...] = ()
+    hardness_profile: tuple[float, ...] = ()
+    residual_stress_profile: tuple[float, ...] = ()
 
     def __post_init__(self) -> None:
         super().__post_init__()
@@ -154,7 +164,21 @@ class GearMaterial(Material):
             require_positive("hardness", self.hardness)
         if self.kind == "Eh" and self.grade == "MQ":
             require_between("core_hardness", self.core_hardness, 25.0, 50.0, "HRC")
+        self._check_profiles()
         _ = self.sigma_Hlim, self.sigma_Flim
+
+    def _check_profiles(self) -> None:
+        depth = self.profile_depth
+        if any(low >= high for low, high in pairwise(depth)) or any(d < 0.0 for d in depth):
+            why, remedy = "Depths are counted from the surface", "Sort them, each one once"
+            raise InputError("profile_depth does not rise", Argument("profile_depth"), why, remedy)
+        stated = {"hardness_profile": True, "residual_stress_profile": False}
+        for name, needed in stated.items():
+            count = len(getattr(self, name))
+            if count != len(depth) and (needed or count):
+                what = f"{name} has {count} values and profile_depth {len(depth)}"
+                why, remedy = "Each depth has its value", "Give both lists the same length"
+                raise InputError(what, Argument(name), why, remedy)
 
     def _limit(self, column: int, name: str, stated: float | None) -> float:
         if stated is not None:

@@ -7,11 +7,13 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from tribodyn.contact import effective_modulus
 from tribodyn.errors import collected
 from tribodyn.gear import FlankModification
 from tribodyn.nomenclature import GEARS
 from tribodyn.rating.root_elements import root_stress_by_elements
 from tribodyn.rating.surface.micropitting import heated_film
+from tribodyn.rating.surface.subsurface import subsurface_exposure
 
 if TYPE_CHECKING:
     import xarray
@@ -63,6 +65,8 @@ def root_stresses(rating: MeshRating) -> dict[str, dict[str, float]]:
     return figures
 
 
+#: Depths at which the exposure below a contact is looked for.
+_DEPTHS = 60
 #: Keys of pointwise safeties by the names of their maps.
 POINTWISE = {
     "pitting_safety": "pitting_safety",
@@ -136,3 +140,53 @@ def least_safeties(maps: xarray.Dataset | None) -> dict[str, dict[str, float]]:
                 **{str(n): float(c) for n, c in value.coords.items()},
             }
     return least
+
+
+def exposures(rating: MeshRating) -> dict[str, dict[str, float]]:
+    """Greatest exposure below the flanks of gears whose material has a hardness profile, by role.
+
+    At each place of the path the greatest pressure over the face, friction as the run has it.
+    """
+    mesh, maps = rating.rated, rating.maps
+    figures: dict[str, dict[str, float]] = {}
+    if mesh is None or mesh.table is None or maps is None:
+        return figures
+    columns = [maps["pressure"], mesh.table.over_face("equivalent_radius"), 0.0 * maps["pressure"]]
+    if "friction_coefficient" in maps:
+        columns[2] = maps["friction_coefficient"]
+    row = maps["pressure"].argmax("face_position")
+    places = np.stack([maps["path"], *(each.isel(face_position=row) for each in columns)], axis=1)
+    elastic = effective_modulus(*(mesh.common[role].material for role in GEARS))
+    for role in GEARS:
+        material = mesh.common[role].material
+        if not material.hardness_profile:
+            continue
+        profiles = material.hardness_profile, material.residual_stress_profile or (0.0,)
+        greatest = []
+        for place, pressure, radius, friction in places[places[:, 1] > 0.0].tolist():
+            width = 4.0 * pressure * radius / elastic
+            depth = np.linspace(0.0, max(material.profile_depth[-1], 3.0 * width), _DEPTHS + 1)[1:]
+            hardness, residual = (
+                np.interp(depth, material.profile_depth[: len(each)], each) for each in profiles
+            )
+            exposed = subsurface_exposure(
+                depth, hardness, pressure=pressure, width=width, friction=friction,
+                residual_stress=residual, poissons_ratio=material.poissons_ratio,
+            )  # fmt: skip
+            greatest.append((*exposed.greatest, place))
+        figures[role] = dict(zip(("exposure", "depth", "path"), max(greatest), strict=True))
+    return figures
+
+
+def wear_depths(rating: MeshRating) -> dict[str, float]:
+    """Greatest depth of wear [m] after the required life, by role; empty without a coefficient."""
+    from tribodyn.study.faults.wear import wear
+
+    mesh = rating.rated
+    data = None if mesh is None else mesh.case.rating
+    if mesh is None or data is None or data.wear_coefficient is None:
+        return {}
+    life = mesh.common["required_life"]
+    turns = mesh.operation[0] / (2.0 * np.pi) * life * mesh.meshes_per_turn[0]
+    worn = wear(mesh.case, data.wear_coefficient, turns)
+    return {role: float(getattr(worn, f"depth_{role}")[-1].max()) for role in GEARS}

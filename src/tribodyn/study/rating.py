@@ -106,6 +106,28 @@ class MeshRating:
 
         return least_safeties(self.maps)
 
+    @cached_property
+    def exposure(self) -> dict[str, dict[str, float]]:
+        """Greatest exposure below the flanks with its ``depth`` and ``path`` [m], by role.
+
+        Of gears whose material has a ``hardness_profile``, by
+        :func:`tribodyn.rating.subsurface_exposure` with the pressure of :attr:`maps` and the
+        friction of the run.
+        """
+        from tribodyn.study.computed_rating import exposures
+
+        return exposures(self)
+
+    @cached_property
+    def wear_depth(self) -> dict[str, float]:
+        """Greatest depth of wear by ``rating.wear_coefficient`` after the required life [m].
+
+        By role, in steps with the load distribution of the worn flanks; of spur pairs.
+        """
+        from tribodyn.study.computed_rating import wear_depths
+
+        return wear_depths(self)
+
     plot_maps = figure_method(
         "rating_maps", "Draw pressure, temperature, film and safeties over path and face."
     )
@@ -152,6 +174,8 @@ class MeshRating:
             "computed_factors": factors,
             "root_stress": self.root_stress,
             "pointwise": self.pointwise,
+            "exposure": self.exposure,
+            "wear_depth": self.wear_depth,
             "computed": {
                 name: value
                 for name, value in self.computed.to_dict().items()

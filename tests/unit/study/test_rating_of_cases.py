@@ -6,6 +6,7 @@ import json
 import math
 from typing import Any
 
+import numpy as np
 import pytest
 
 import tribodyn as td
@@ -31,6 +32,12 @@ PAIR: dict[str, Any] = {
     "rating": {"required_life": "20000 h", "application_factor": 1.25, "scuffing_load_stage": 12,
                "micropitting_load_stage": 9},
 }  # fmt: skip
+PROFILES: dict[str, Any] = {
+    **PAIR["materials"]["steel"],
+    "profile_depth": ["0 mm", "0.4 mm", "1 mm", "3 mm"],
+    "hardness_profile": [720.0, 690.0, 550.0, 420.0],
+    "residual_stress_profile": ["-300 MPa", "-300 MPa", "-100 MPa", "0 MPa"],
+}
 MACHINE: dict[str, Any] = {
     "gears": {
         "z1": {"shaft": "in", "teeth": 24, "face_width": 20e-3, "material": "steel"},
@@ -192,6 +199,38 @@ def test_maps_of_a_rating_are_drawn(rubbed):
     assert f"{mesh.pointwise['pitting_safety']['safety']:.3g}" in drawn.layout.title.text
 
 
+def test_hardness_and_residual_stress_below_the_flank_give_its_exposure():
+    data = changed(PAIR, stiffness={"model": "analytic"}, materials={"steel": PROFILES})
+    (mesh,) = td.run(Case(**data)).rating.ratings
+    worst = mesh.exposure["pinion"]
+    assert worst == mesh.exposure["wheel"]  # one material
+    at = mesh.maps["pressure"].sel(path=worst["path"])
+    radius = float(mesh.rated.table.over_face("equivalent_radius").sel(path=worst["path"])[0])
+    (pressure,) = at.values
+    modulus = 206e9 / (1.0 - 0.3**2)
+    depths = np.linspace(0.0, 3e-3, 61)[1:]
+    exposed = td.rating.subsurface_exposure(
+        depths, np.interp(depths, [0.0, 4e-4, 1e-3, 3e-3], PROFILES["hardness_profile"]),
+        residual_stress=np.interp(depths, [0.0, 4e-4, 1e-3, 3e-3], [-3e8, -3e8, -1e8, 0.0]),
+        pressure=pressure, width=4.0 * pressure * radius / modulus,
+    )  # fmt: skip
+    assert (worst["exposure"], worst["depth"]) == pytest.approx(exposed.greatest, rel=1e-9)
+    assert pressure == pytest.approx(float(mesh.maps["pressure"].max()), rel=1e-9)
+    assert mesh.to_dict()["exposure"] == mesh.exposure
+
+
+def test_wear_of_the_required_life_is_that_of_its_turns():
+    from tribodyn.study import wear
+
+    rating = {**PAIR["rating"], "wear_coefficient": 1e-20, "required_life": "10 h"}
+    case = Case(**changed(PAIR, rating=rating, stiffness={"model": "analytic"}))
+    (mesh,) = td.run(case).rating.ratings
+    worn = wear(case, 1e-20, 1500.0 / 60.0 * 36000.0)
+    assert mesh.wear_depth["pinion"] == pytest.approx(worn.depth_pinion[-1].max(), rel=1e-9)
+    assert mesh.wear_depth["wheel"] == pytest.approx(worn.depth_wheel[-1].max(), rel=1e-9)
+    assert mesh.to_dict()["wear_depth"] == mesh.wear_depth
+
+
 def test_one_required_safety_holds_for_all_modes():
     case = Case(**changed(PAIR, rating={**PAIR["rating"], "minimum_safety": 1.7}))
     assert {v.required for v in td.run(case).rating.verdicts()} == {1.7}
@@ -241,6 +280,17 @@ def test_report_and_page_have_verdict_and_factors(result):
             "viscosity of the oil at 40 degC",
         ),
         ({"rating": {"edition": 2010}}, "2006 and 2019"),
+        ({"materials": {"steel": {**PROFILES, "hardness_profile": [700.0]}}}, "1 values and"),
+        ({"materials": {"steel": {**PROFILES, "residual_stress_profile": [0.0]}}}, "1 values and"),
+        ({"materials": {"steel": {**PROFILES, "profile_depth": [0.0, 2e-3, 1e-3, 3e-3]}}}, "rise"),
+        ({"rating": {"wear_coefficient": 1e-18}}, "required life"),
+        (
+            {
+                "gears": {**PAIR["gears"], "helix_angle": "10 deg", "center_distance": 93.5e-3},
+                "rating": {"wear_coefficient": 1e-18, "required_life": "1 h"},
+            },
+            "spur teeth",
+        ),
         ({"rating": {"required_lief": "1 h"}}, "required_life"),
     ],
 )

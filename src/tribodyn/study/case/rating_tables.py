@@ -47,6 +47,20 @@ class StrengthTable(Section):
     yield_strength: float | None = _strength("sigma_S", "yield strength of St and V")
     tensile_strength: float | None = _strength("sigma_B", "tensile strength of GG")
     peened: bool = flag(False, meaning="whether the roots are shot-peened")
+    profile_depth: tuple[float, ...] | None = numbers(
+        0.0, 0.1, "case depths are millimetres", unit="m", display_unit="mm",
+        meaning="depths below the surface of both profiles, rising",
+        example='["0 mm", "0.5 mm", "2 mm"]',
+    )  # fmt: skip
+    hardness_profile: tuple[float, ...] | None = numbers(
+        50.0, 1200.0, "hardness numbers of metals", example="[720.0, 650.0, 420.0]",
+        meaning="HV at these depths, for the exposure below the surface",
+    )  # fmt: skip
+    residual_stress_profile: tuple[float, ...] | None = numbers(
+        -3e9, 3e9, _STRENGTH, unit="Pa", display_unit="MPa",
+        meaning="residual stress along the surface at these depths, compression negative",
+        example='["-300 MPa", "-200 MPa", "0 MPa"]',
+    )  # fmt: skip
 
 
 class Materials(
@@ -96,6 +110,11 @@ class RatingTable(Section):
     micropitting_load_stage: int | None = integer(
         None, 5, 10, "stages of the test C-GF/8.3",
         meaning="failure load stage of the oil in the FZG micropitting test", example="9",
+    )  # fmt: skip
+    wear_coefficient: float | None = number(
+        None, 1e-22, 1e-10, "1e-18 to 1e-15 m2/N of lubricated steel", unit="1/Pa",
+        meaning="wear coefficient of Archard, volume over load and sliding distance: depth of "
+        "wear after the required life", example="1e-18",
     )  # fmt: skip
     lubrication: str = choice(
         "dip", ("dip", "spray", "submerged"), meaning="how the oil reaches the gears"
@@ -191,7 +210,8 @@ def gear_material(case: CaseData, role: str) -> GearMaterial:
 
     name = getattr(case.gears, role).material
     stated = {} if name is None else vars(getattr(case.materials, name))
-    values = {key: value for key, value in stated.items() if not key.startswith("_")}
+    values = {k: v for k, v in stated.items() if not k.startswith("_")}
+    values |= {k: v or () for k, v in values.items() if "profile" in k}
     elastic = case.material_properties
     return GearMaterial(
         youngs_modulus=elastic.youngs_modulus,
@@ -199,6 +219,19 @@ def gear_material(case: CaseData, role: str) -> GearMaterial:
         density=case.density(role),
         **values,
     )
+
+
+def _wear_problems(case: CaseData) -> Iterator[tuple[str, Problem]]:
+    assert case.rating is not None
+    if case.rating.wear_coefficient is None:
+        return
+    what, remedy = "wear_coefficient has no effect here", ""
+    if case.rating.required_life is None:
+        why, remedy = "Wear goes on for the required life", "Add required_life, or remove it"
+        yield "rating.wear_coefficient", Problem(what, "", why, remedy)
+    if getattr(case.gears, "helix_angle", 0.0):
+        why, remedy = "Wear is computed over the path of contact of spur teeth", "Remove it"
+        yield "rating.wear_coefficient", Problem(what, "", why, remedy)
 
 
 def rating_problems(case: CaseData) -> Iterator[tuple[str, Problem]]:
@@ -216,6 +249,7 @@ def rating_problems(case: CaseData) -> Iterator[tuple[str, Problem]]:
     if case.rating.edition not in (2006, 2019):
         what, why = f"edition = {case.rating.edition}", "ISO 6336 is computed as of 2006 and 2019"
         yield "rating.edition", Problem(what, "", why, "Choose one of these")
+    yield from _wear_problems(case)
     if case.lubricant is None:
         what, why = "the table [lubricant] is missing", "Ratings need the viscosity at 40 degC"
         yield "rating", Problem(what, "", why, "Add it with a name, or the figures of a data sheet")
