@@ -150,6 +150,7 @@ _ARGUMENTS: dict[str, Callable[[_Place, str], list[str]]] = {
     "export": lambda p, n: [p.file(n), "--rexs", "my.rexs"],
     "harris": lambda p, n: [p.file(n), _torque(n), *_mesh(n)],
     "relief": lambda p, n: [p.file(n), _torque(n), *_mesh(n)],
+    "lead": lambda p, n: [p.file(n), *_mesh(n)],
     "losses": lambda p, n: [
         p.file(n), "--torque", _torque(n), "--speed", f"{_speed(n)} rpm", *_mesh(n)
     ],

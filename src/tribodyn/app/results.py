@@ -305,7 +305,8 @@ def tools(desk: TabSession) -> list[Any]:
     elif job.state == "done" and job.kind != "overlay":
         parts.append(html.Span("The files are being written …"))
     if job.state == "done" and job.content.get("relief"):
-        text = "Take this relief into my case"
+        what = "relief" if any(".tip_relief" in key for key in job.content["relief"]) else "lead"
+        text = f"Take this {what} into my case"
         parts.append(button(text, "take-relief", number, className="main"))
     if job.kind == "run":
         parts.append(button("Edit its case", "case-of", number, className="plain"))

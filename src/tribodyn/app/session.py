@@ -37,8 +37,6 @@ if TYPE_CHECKING:
 RUNS = 6
 #: Characters that a value may have.
 _LONGEST = 10_000
-#: Amount and length of a tip relief.
-_RELIEF = ("tip_relief", "tip_relief_length")
 #: Origin of a change, in messages.
 _BY = "form"
 
@@ -159,7 +157,7 @@ class TabSession:
             self.tell(f"This is the case of {job.title}.")
 
     def take_relief(self, number: int) -> None:
-        """Apply the tip relief of a study to the case; its other values stay the same."""
+        """Apply the flanks that a study found to the case; its other values stay the same."""
         job = self.job(number)
         relief = job.content.get("relief") if job is not None else None
         if not relief:
@@ -170,10 +168,12 @@ class TabSession:
         self.edits += 1
         self.view = "pair"
         gears = list(dict.fromkeys(key.split(".")[1] for key in relief))
-        of = " over ".join(relief[f"gears.{gears[0]}.modification.{name}"] for name in _RELIEF)
-        self.tell(
-            f"The case has a tip relief of {of} now: {' and '.join(gears)}. It is not saved yet."
-        )
+        of = {key.rpartition(".")[2]: value for key, value in relief.items()}
+        if "tip_relief" in of:
+            what = f"a tip relief of {of['tip_relief']} over {of['tip_relief_length']}"
+        else:
+            what = f"a crowning of {of['crowning']} and a lead slope of {of['lead_slope']}"
+        self.tell(f"The case has {what} now: {' and '.join(gears)}. It is not saved yet.")
 
     def _switch(self, key: str, option: Option, unit: str) -> None:
         """Display a value in another unit without changing it."""

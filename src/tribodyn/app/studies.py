@@ -168,6 +168,16 @@ STUDIES: dict[str, Study] = {
             "gears": choice("both", ("both", *GEARS), meaning="gears with relief"),
         },
     ),
+    "lead": Study(
+        "Crowning and lead",
+        "The crowning and lead slope that spread the load most evenly, and the case with them.",
+        {
+            "mesh": _MESH,
+            "torque": _LIST,
+            "gear": choice("pinion", GEARS, meaning="gear that is modified"),
+            "misalignment": _text(None, "misalignment besides that of the case", "15 um"),
+        },
+    ),
     "harris": Study(
         "Harris map",
         "The static transmission error over the torque.",

@@ -229,6 +229,15 @@ def _sobol(case: Case, values: Values, progress: Progress, target: Path) -> Show
     return _of(answer, "sobol", case, target)
 
 
+def _lead(case: Case, values: Values, progress: Progress, target: Path) -> Shown:
+    from tribodyn.report.study_report_data import lead_report_data
+
+    torque = _read("torque", values["torque"], read_list) if values["torque"] else None
+    chosen = {name: values[name] for name in ("gear", "misalignment", "mesh")}
+    answer = lead_report_data(case, torque, progress, **chosen)
+    return {**_of(answer, "lead", case, target), "relief": answer.data.changes}
+
+
 #: Functions of the studies by the names of their commands.
 FUNCTIONS: Mapping[str, Callable[[Any, Values, Progress, Path], Shown]] = {
     "sweep": _sweep,
@@ -238,6 +247,7 @@ FUNCTIONS: Mapping[str, Callable[[Any, Values, Progress, Path], Shown]] = {
     "friction-from-loss": _friction_from_loss,
     "recording": _recording,
     "relief": _relief,
+    "lead": _lead,
     "harris": _harris,
     "modes": _modes,
     "run-up": _run_up,

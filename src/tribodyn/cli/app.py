@@ -115,6 +115,12 @@ COMMANDS = (
         "fzg-roughness",
     ),
     Command(
+        "lead",
+        "study_commands:lead",
+        "Find the best crowning and lead slope of a case.",
+        "helical-pair",
+    ),
+    Command(
         "run-up",
         "study_commands:run_up",
         "Integrate a case in time while its speed rises.",

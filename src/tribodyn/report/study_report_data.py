@@ -167,6 +167,30 @@ def relief_report_data(
     return StudyReportData(optimum, figures, statements, head, rows, facts, optimum.case)
 
 
+def lead_report_data(
+    case: Case | MachineCase, torque: Sequence[Any] | None, progress: Progress, **values: Any
+) -> StudyReportData:
+    """Crowning and lead slope that spread the load most evenly, and the case with them."""
+    from tribodyn.study.studies.static import optimize_lead
+
+    optimum = optimize_lead(case, torque, progress=progress, **values)
+    columns = (
+        optimum.torque, optimum.face_load_factor_before, optimum.face_load_factor_after
+    )  # fmt: skip
+    rows = [[f"{value:.4g}" for value in row] for row in zip(*columns, strict=True)]
+    head = ["Pinion torque [N*m]", "Face load factor before", "Face load factor after"]
+    statements = [
+        f"A crowning of {optimum.crowning * 1e6:.4g} um and a lead slope of "
+        f"{optimum.lead_slope * 1e6:.4g} um on the {optimum.gear}; best.toml is the case with them."
+    ]
+    figures = [figure_with_caption(plot.lead_optimum, optimum)]
+    names = ("torque", "face_load_factor_before", "face_load_factor_after")
+    facts = {"crowning": optimum.crowning, "lead_slope": optimum.lead_slope} | {
+        name: column.tolist() for name, column in zip(names, columns, strict=True)
+    }
+    return StudyReportData(optimum, figures, statements, head, rows, facts, optimum.case)
+
+
 def run_up_report_data(
     case: Case | MachineCase,
     ends: Any,

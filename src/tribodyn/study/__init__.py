@@ -46,6 +46,7 @@ if TYPE_CHECKING:
         comprehensive_stiffness,
         film_over_operation,
         harris_map,
+        optimize_lead,
         optimize_tip_relief,
     )
     from tribodyn.study.studies.sweep import sweep
@@ -112,6 +113,7 @@ __all__ = [
     "lyapunov_exponents",
     "natural_modes",
     "operating_data",
+    "optimize_lead",
     "optimize_tip_relief",
     "read_case",
     "record_set",
@@ -158,7 +160,8 @@ _NAMES = {
     "studies.nonlinear": "basins continuation lyapunov_exponents",
     "studies.run_up": "run_up speed_sweep",
     "frequencies": "KinematicFrequencies kinematic_frequencies",
-    "studies.static": "comprehensive_stiffness film_over_operation harris_map optimize_tip_relief",
+    "studies.static": "comprehensive_stiffness film_over_operation harris_map optimize_lead "
+    "optimize_tip_relief",
     "studies.case_grid": "build_system",
     "studies.sweep": "sweep",
     "studies.sweep_result": "Sweep",

@@ -20,6 +20,7 @@ _FEW = {
     "film": {"torque": "50, 90 N*m", "speed": "900 rpm"},
     "bifurcation": {"values": "800..900 rpm:2", "cycles": "4", "transient": "2"},
     "relief": {"torque": "90 N*m"},
+    "lead": {"misalignment": "10 um"},
     "harris": {"torque": "60 N*m, 90 N*m"},
     "continuation": {"ends": "1430..1440 rpm", "longest_step": "1"},
     "basins": {"points": "2"},

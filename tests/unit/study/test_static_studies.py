@@ -121,12 +121,26 @@ def test_comprehensive_stiffness_has_the_kind_of_the_case(film_case):
         ("harris_map", {"torque": [-1.0]}, "torque"),
         ("optimize_tip_relief", {"amount": ("0 um", "10 s")}, "amount"),
         ("optimize_tip_relief", {"length": ("1 mm", "25 mm")}, "used flank"),
+        ("optimize_lead", {"crowning": ("0 um", "10 s")}, "crowning"),
+        ("optimize_lead", {"misalignment": "10 N"}, "misalignment"),
         ("comprehensive_stiffness", {"speed": "fast"}, "speed"),
     ],
 )
 def test_faults_name_the_argument(case, study, options, message):
     with pytest.raises(InputError, match=message):
         getattr(td, study)(case, **options)
+
+
+@pytest.mark.parametrize("gear", ["pinion", "wheel"])
+def test_the_best_lead_compensates_the_misalignment(case, gear):
+    iso = case.replace({"stiffness.model": "iso6336", "gears.misalignment": "8 um"})
+    best = td.optimize_lead(iso, gear=gear, misalignment="4 um", slices=8)
+    assert best.lead_slope == pytest.approx(-12e-6, abs=5e-7)
+    assert best.case == iso.replace(best.changes)
+    assert set(best.changes) == {
+        f"gears.{gear}.modification.{name}" for name in ("crowning", "lead_slope")
+    }
+    np.testing.assert_allclose(best.face_load_factor_after, 1.0, atol=0.05)
 
 
 def test_a_case_without_film_has_no_comprehensive_stiffness(case):

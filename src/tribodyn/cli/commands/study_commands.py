@@ -1,4 +1,4 @@
-"""``tribodyn modes``, ``harris``, ``relief`` and ``run-up``: studies of one case."""
+"""``tribodyn modes``, ``harris``, ``relief``, ``lead`` and ``run-up``: studies of one case."""
 
 from __future__ import annotations
 
@@ -158,6 +158,41 @@ def relief(
     ready, target = prepare_study("relief", case, out, set_, force)
     answer = relief_report_data(ready, stripped(torque) or None, gears, mesh)
     finish("relief", ready, target, answer, force, json)
+
+
+def lead(
+    case: CaseName,
+    /,
+    *torque: str,
+    gear: str = "pinion",
+    mesh: Mesh = None,
+    out: Output = None,
+    set_: Words = None,
+    force: Force = False,
+    json: Flag = False,
+) -> None:
+    """Find the crowning and lead slope of a case that spread its load most evenly over the face.
+
+    Parameters
+    ----------
+    torque : str
+        Torques such as "60 N*m" "120 N*m"; by default that of the case.
+    gear : str
+        Which gear is modified: pinion or wheel.
+    out : Path
+        Directory to write; by default that of the case with "-lead". It holds best.toml.
+    set_ : list of str
+        Values to change, for example "gears.misalignment=15 um".
+    json : bool
+        Write crowning, lead slope and face load factors in SI to stdout.
+    """
+    from tribodyn.cli.progress_bar import progress_bar
+    from tribodyn.report.study_report_data import lead_report_data
+
+    ready, target = prepare_study("lead", case, out, set_, force)
+    with progress_bar() as progress:
+        answer = lead_report_data(ready, stripped(torque) or None, progress, gear=gear, mesh=mesh)
+    finish("lead", ready, target, answer, force, json)
 
 
 def run_up(

@@ -46,6 +46,7 @@ STUDIES: dict[str, Need] = {
     "lyapunov": _ANY,
     **dict.fromkeys(("harris", "losses", "film"), _TEETH),
     "relief": _PLANE._replace(why="Flanks of hypoid gears are relieved by their cutter"),
+    "lead": _PLANE._replace(why="The face of hypoid gears is crowned by their cutter"),
     "experiment": Need(_PAIR, _CYLINDRICAL, "Its claims are about spur gears on their supports"),
     "friction-from-loss": _PLANE._replace(why="Its loss factor is that of plane teeth"),
     "losses --rig": Need(_PAIR, _TOOTHED, "A rig tests the gears of one pair"),

@@ -1,8 +1,9 @@
-"""Studies of a case at rest: transmission error over torque, best tip relief, teeth and film."""
+"""Studies of a case at rest: transmission error over torque, best flanks, teeth and film."""
 
 from __future__ import annotations
 
-from dataclasses import replace
+from abc import ABC, abstractmethod
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -12,7 +13,7 @@ from tribodyn.errors import Argument, InputError, require_between, shortened
 from tribodyn.nomenclature import GEARS
 from tribodyn.progress import SILENT, Progress
 from tribodyn.record import record
-from tribodyn.stiffness import TipReliefOptimum
+from tribodyn.stiffness import LeadOptimum, TipReliefOptimum
 from tribodyn.study.case.gears import Modification
 from tribodyn.study.case.to_models import locate_errors
 from tribodyn.study.case.values import FaultError, Plain, read_value
@@ -38,34 +39,61 @@ _RANGE = (0.1, 2.0)
 _TORQUES = 20
 #: Phases of a mesh cycle of a hypoid pair, least and most.
 _PHASES = (16, 2000)
-#: Significant digits of an optimal relief: finer ones can neither be drawn nor ground.
+#: Significant digits of an optimal relief or lead: finer ones can neither be drawn nor ground.
 _DIGITS = 4
 
 
-@record
-class CaseTipReliefOptimum(TipReliefOptimum):
-    """Best tip relief of a case: ``case`` is the case with it."""
+@dataclass(frozen=True, repr=False, eq=False)
+class OptimumOfCase(ABC):
+    """Best flanks of a case: ``case`` is the case with them."""
 
     studied: Any = None
     tables: tuple[str, str] = ("gears.pinion", "gears.wheel")
 
+    def _of_gears(self, gears: str, values: dict[str, str]) -> dict[str, str]:
+        """Values of the modification of one gear or of both, by key of the case."""
+        tables = dict(zip(GEARS, self.tables, strict=True))
+        modified = tables.values() if gears == "both" else (tables[gears],)
+        return {f"{gear}.modification.{n}": v for gear in modified for n, v in values.items()}
+
+    @property
+    @abstractmethod
+    def changes(self) -> dict[str, str]:
+        """Modification by key of the case, as text in the units of the file."""
+
+    @property
+    def case(self) -> Case | MachineCase:
+        """The case that was studied, with its best flanks."""
+        changed: Case | MachineCase = self.studied.replace(self.changes)
+        return changed
+
+
+@record
+class CaseTipReliefOptimum(OptimumOfCase, TipReliefOptimum):
+    """Best tip relief of a case."""
+
     @property
     def changes(self) -> dict[str, str]:
         """Relief by key of the case, as text in the units of the file."""
-        tables = dict(zip(GEARS, self.tables, strict=True))
-        relieved = tables.values() if self.gears == "both" else (tables[self.gears],)
         values = {
             "tip_relief": format_quantity(self.amount, "m", "um"),
             "tip_relief_length": format_quantity(self.length, "m", "mm"),
             "tip_relief_shape": self.shape,
         }
-        return {f"{gear}.modification.{n}": v for gear in relieved for n, v in values.items()}
+        return self._of_gears(self.gears, values)
+
+
+@record
+class CaseLeadOptimum(OptimumOfCase, LeadOptimum):
+    """Best crowning and lead slope of a case."""
 
     @property
-    def case(self) -> Case | MachineCase:
-        """The case that was studied, with the relief that was found."""
-        changed: Case | MachineCase = self.studied.replace(self.changes)
-        return changed
+    def changes(self) -> dict[str, str]:
+        """Crowning and lead slope by key of the case, as text in the units of the file."""
+        values = {name: getattr(self, name) for name in ("crowning", "lead_slope")}
+        return self._of_gears(
+            self.gear, {name: format_quantity(value, "m", "um") for name, value in values.items()}
+        )
 
 
 def harris_map(
@@ -201,19 +229,100 @@ def optimize_tip_relief(
     return CaseTipReliefOptimum(**vars(optimum), studied=case, tables=tables)
 
 
+def optimize_lead(
+    case: Case | MachineCase,
+    torque: Any = None,
+    *,
+    crowning: Any = None,
+    lead_slope: Any = None,
+    misalignment: Any = None,
+    mesh: str | None = None,
+    progress: Progress = SILENT,
+    **options: Any,
+) -> CaseLeadOptimum:
+    """Find the crowning and the lead slope of a case that spread its load most evenly.
+
+    Parameters
+    ----------
+    case : Case or MachineCase
+        From :func:`tribodyn.load_case`.
+    torque : tuple or list, optional
+        Two ends of a range, or more torques, on the gear named by ``operation.speed_of``: floats
+        in N*m, or text with a unit. By default that of the case.
+    crowning, lead_slope : tuple, optional
+        Least and greatest value: floats in m, or text with a unit.
+    misalignment : float or str, optional
+        Misalignment at the greatest torque besides that of the case, which grows with the torque:
+        a float in m, or text with a unit.
+    mesh : str, optional
+        Mesh of a machine or a stage, whose pair of gears is studied as its shafts are deflected at
+        the operating point; torques and speeds are then those of its pinion.
+    progress : Progress
+        Receives every form of the face that is examined; silent by default.
+    **options : object
+        ``gear``, ``objective``, ``weight``, ``phases`` and ``slices`` of
+        :func:`tribodyn.stiffness.optimize_lead`.
+
+    Returns
+    -------
+    LeadOptimum
+        Torques in it are those of the pinion; ``case`` is the case with the better face, with four
+        significant digits.
+
+    Raises
+    ------
+    InputError
+        If a value is out of range.
+    ComputationError
+        If a load is beyond what the tooth contact covers.
+
+    Examples
+    --------
+    >>> import tribodyn
+    >>> case = tribodyn.load_case("fzg-roughness").replace({"stiffness.model": "iso6336"})
+    >>> best = optimize_lead(case, misalignment="10 um", slices=8)
+    >>> bool(best.face_load_factor_after.max() < best.face_load_factor_before.max())
+    True
+    """
+    from tribodyn.stiffness import optimize_lead as compute
+
+    pair, tables = mesh_pair("lead", case, mesh)
+    ranges = {"crowning": crowning, "lead_slope": lead_slope}
+    lengths = {name: _lengths(name, ends) for name, ends in ranges.items() if ends is not None}
+    lean = 0.0 if misalignment is None else _length("misalignment", "lead_slope", misalignment)
+    settings = loaded_settings(pair)
+    del settings["extended_contact"]  # the path of contact does not depend on the face
+    with locate_errors(pair):
+        optimum = compute(
+            pair.gear_pair,
+            read_torques(pair, torque),
+            misalignment=lean,
+            progress=progress,
+            **{**lengths, **settings, **options},
+        )
+    rounded = {name: float(f"{getattr(optimum, name):.{_DIGITS}g}") for name in ranges}
+    return CaseLeadOptimum(**{**vars(optimum), **rounded}, studied=case, tables=tables)
+
+
+def _length(name: str, key: str, value: Any) -> float:
+    """Read a length with the limits of a key of a modification."""
+    try:
+        return float(read_value(dict(Modification.specs())[key], name, Plain(value)))
+    except FaultError as fault:
+        raise InputError(replace(fault.problem, where=f"argument {name}")) from None
+
+
 def _lengths(name: str, ends: Any) -> tuple[float, float] | None:
     """Read the two ends of a range of lengths."""
     if ends is None:
         return None
-    spec = dict(Modification.specs())["tip_relief" if name == "amount" else "tip_relief_length"]
+    key = {"amount": "tip_relief", "length": "tip_relief_length"}.get(name, name)
     try:
-        low, high = (float(read_value(spec, name, Plain(item))) for item in ends)
+        low, high = ends
     except (TypeError, ValueError):
         what, why = f"{name} = {shortened(repr(ends))}", "It is a range of lengths"
         raise InputError(what, Argument(name), why, 'Give ("0 um", "40 um")') from None
-    except FaultError as fault:
-        raise InputError(replace(fault.problem, where=f"argument {name}")) from None
-    return low, high
+    return _length(name, key, low), _length(name, key, high)
 
 
 def comprehensive_stiffness(
