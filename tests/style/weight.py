@@ -46,18 +46,19 @@ __all__ = ["ANY", "FILES", "LINES", "import_circles", "lines_of_code", "measures
 #: exchange: REXS to 2.0.0, racks of manufacturing steps, remarks on protuberance.
 #: model, study: tables of machines are declared, one form of the page reads them
 #: model, study: tables of machines are declared, one form of the page reads them
+#: cli, study: best crowning and lead slope of a case
 LINES: dict[str, int] = {
-    "__init__": 103,
+    "__init__": 105,
     "__main__": 3,
     "aliases": 93,
     "analysis": 186,
-    "app": 2012,
+    "app": 2031,
     "arguments": 571,
     "arrays": 161,
     "cases": 1376,
     "checkpoints": 142,
     "checks": 56,
-    "cli": 3014,
+    "cli": 3037,
     "compiled": 236,
     "contact": 422,
     "cookbook": 107,
@@ -83,13 +84,13 @@ LINES: dict[str, int] = {
     "nonlinear": 2485,
     "plot": 8803,
     "progress": 72,
-    "rating": 2716,
+    "rating": 2795,
     "record": 205,
-    "report": 1792,
+    "report": 1812,
     "scope": 55,
     "signals": 1754,
     "stiffness": 5161,
-    "study": 17749,
+    "study": 17885,
     "surrogate": 777,
     "types": 7,
     "uncertainty": 290,
@@ -98,7 +99,7 @@ LINES: dict[str, int] = {
     "variants": 1048,
 }
 #: Modules of the package, and its annotations without a type.
-FILES, ANY = 757, 2654
+FILES, ANY = 757, 2662
 
 _NO_CODE = {
     tokenize.COMMENT, tokenize.NL, tokenize.NEWLINE, tokenize.INDENT, tokenize.DEDENT,
