@@ -134,12 +134,22 @@ def _factors(rating: MeshRating) -> list[tuple[str, ...]]:
         (f"{name} computed", f"{computed.factors[name]:.6g}", "", "motion and load of the run", "")
         for name in computed.overridden
     ]
-    for role, gear in zip(standard.gears, rating.gears, strict=True):
-        for name, value in rating.root_stress.get(role, {}).items():
-            unit = "Pa" if name.endswith("stress") else ""
-            label = f"{name.replace('_', ' ')} of {gear}"
-            rows.append((label, f"{value:.6g}", unit, "root by finite elements", "beside Y_F Y_S"))
+    worn = {role: {"wear_depth": depth} for role, depth in rating.wear_depth.items()}
+    for source, figures in (
+        ("root by finite elements", rating.root_stress),
+        ("stress and hardness below the flank", rating.exposure),
+        ("Archard with the load of the worn flanks", worn),
+    ):
+        for role, gear in zip(standard.gears, rating.gears, strict=True):
+            for name, value in figures.get(role, {}).items():
+                unit = next((u for ending, u in _UNITS.items() if name.endswith(ending)), "")
+                label = f"{name.replace('_', ' ')} of {gear}"
+                rows.append((label, f"{value:.6g}", unit, source, ""))
     return rows
+
+
+#: Units of computed figures by the end of their names.
+_UNITS = {"stress": "Pa", "depth": "m", "path": "m"}
 
 
 def _factor(name: str, factor: Any) -> tuple[str, ...]:
