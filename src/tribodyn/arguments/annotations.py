@@ -36,11 +36,7 @@ _ARRAYS = {
 
 
 class Wanted(NamedTuple):
-    """Check of the values that an annotation accepts.
-
-    ``fits`` accepts the common values, in a tenth of a microsecond; ``read`` accepts all valid
-    values, converts some of them, and raises TypeError for others.
-    """
+    """Check of the values that an annotation accepts; ``read`` raises TypeError for others."""
 
     description: str
     read: Callable[[Any], Any]

@@ -143,10 +143,8 @@ def least_safeties(maps: xarray.Dataset | None) -> dict[str, dict[str, float]]:
 
 
 def exposures(rating: MeshRating) -> dict[str, dict[str, float]]:
-    """Greatest exposure below the flanks of gears whose material has a hardness profile, by role.
-
-    At each place of the path the greatest pressure over the face, friction as the run has it.
-    """
+    """Greatest exposure below the flanks of gears whose material has a hardness profile, by role."""
+    # At each place of the path the greatest pressure over the face, friction as the run has it.
     mesh, maps = rating.rated, rating.maps
     figures: dict[str, dict[str, float]] = {}
     if mesh is None or mesh.table is None or maps is None:
