@@ -90,7 +90,7 @@ LINES: dict[str, int] = {
     "scope": 55,
     "signals": 1754,
     "stiffness": 5161,
-    "study": 17885,
+    "study": 17891,
     "surrogate": 777,
     "types": 7,
     "uncertainty": 290,

@@ -123,7 +123,7 @@ def points_of_parts(
 
 #: Factor by which a study takes fewer steps than a single motion (accurate to about 1e-6), and the
 #: smallest number of steps.
-_COARSER, _FEWEST = 4, 512
+COARSER, FEWEST = 4, 512
 
 
 class Moving(NamedTuple):
@@ -221,4 +221,4 @@ def build_system(case: Case | MachineCase, *, progress: Progress = SILENT) -> tu
 def study_steps(case: Case, system: System, mesh_frequency: float) -> int:
     """Steps per mesh cycle of a study of many motions: those of the case, or a coarse default."""
     accurate = steps_of(case, system, mesh_frequency)
-    return case.solver.steps_per_mesh_cycle or max(_FEWEST, accurate // _COARSER)
+    return case.solver.steps_per_mesh_cycle or max(FEWEST, accurate // COARSER)

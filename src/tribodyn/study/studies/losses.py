@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from itertools import product
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -47,7 +46,7 @@ def loss_map(
         Mesh of a machine or a stage, whose pair of gears is studied as its shafts are deflected at
         the operating point; torques and speeds are then those of its pinion.
     progress : Progress
-        Receives the number of computed points; silent by default.
+        Receives the number of finished torques; silent by default.
 
     Returns
     -------
@@ -80,18 +79,19 @@ def loss_map(
     speeds = speeds if speed is not None else list(STEPS * speeds[0])
     turns = case.speed_ratio
 
-    def lost_at(point: tuple[float, float]) -> tuple[float, dict[str, ModelWarning]]:
-        keys = {"operation.torque": point[0] * turns, "operation.speed": point[1] / turns}
-        with locate_errors(case), collected() as point_warnings:
-            mesh = mesh_of(case.replace(keys), friction_alone=True)
-        return mesh.mean_friction_power, {each.code: each for each in point_warnings}
+    def lost_under(torque: float) -> list[tuple[float, dict[str, ModelWarning]]]:
+        lost = []
+        for turning in speeds:  # one after the other: they share the teeth under their load
+            keys = {"operation.torque": torque * turns, "operation.speed": turning / turns}
+            with locate_errors(case), collected() as point_warnings:
+                mesh = mesh_of(case.replace(keys), friction_alone=True)
+            lost.append((mesh.mean_friction_power, {each.code: each for each in point_warnings}))
+        return lost
 
-    points = list(product(torques, speeds))
-    values, warned = zip(
-        *run_each(lost_at, points, task="Tooth contact", progress=progress), strict=True
-    )
-    _warn_once([each for point in warned for each in point.values()], len(points))
-    lost = np.reshape(values, (len(torques), len(speeds)))
+    rows = run_each(lost_under, torques, task="Tooth contact", progress=progress)
+    points = [point for row in rows for point in row]
+    _warn_once([each for _, warned in points for each in warned.values()], len(points))
+    lost = np.array([[value for value, _ in row] for row in rows])
     with locate_errors(case):
         return gearbox_losses_of(case, lost, pinion_torque=torques, pinion_speed=speeds)
 

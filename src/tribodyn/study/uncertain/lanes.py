@@ -16,7 +16,14 @@ from tribodyn.study.case.provenance import effective
 from tribodyn.study.case.to_models import locate_errors
 from tribodyn.study.case.user_input import spread_problem
 from tribodyn.study.pipeline.motion import steps_of
-from tribodyn.study.studies.case_grid import Member, built, contact_without_speed, varied
+from tribodyn.study.studies.case_grid import (
+    COARSER,
+    FEWEST,
+    Member,
+    built,
+    contact_without_speed,
+    varied,
+)
 from tribodyn.study.studies.sweep import points_under
 from tribodyn.types import Array, Index
 from tribodyn.uncertainty import distribution, sample
@@ -27,9 +34,6 @@ if TYPE_CHECKING:
     from tribodyn.study.machine.case import MachineCase
     from tribodyn.study.studies.sweep_result import SweepPoint
 
-#: Factor by which a lane takes fewer steps than a single motion (accurate to about 1e-6), and the
-#: smallest number of steps.
-_COARSER, _FEWEST = 4, 512
 #: Steps on which two structures are compared, and the relative difference that counts as none.
 _LOOK, _SAME = 64, 1e-12
 
@@ -203,6 +207,6 @@ def _steps(members: list[Member], frequency: Array, factors: dict[str, Array]) -
         key = id(member)
         if key not in rates:
             rates[key] = steps_of(member.case, member.system, member.mesh.mesh_frequency)
-        needed = rates[key] * member.mesh.mesh_frequency / frequency[lane] * stiff[lane] / _COARSER
-        counts[lane] = max(_FEWEST, 2 ** int(np.ceil(np.log2(needed))))
+        needed = rates[key] * member.mesh.mesh_frequency / frequency[lane] * stiff[lane] / COARSER
+        counts[lane] = max(FEWEST, 2 ** int(np.ceil(np.log2(needed))))
     return counts
