@@ -120,6 +120,7 @@ thermal_conductivity | k | W/m/K | W/m/K | thermal conductivity of the oil | "0.
 temperature | theta | K | degC | working temperature | "40 degC"
 speed | n | rad/s | rpm | rotational speed of the gear named by speed_of | "900 rpm"
 torque | T | N*m | N*m | torque on the gear named by speed_of | "90 N*m"
+rating_life | L_h | s | h | running time that bearings last by their rating
 mesh_frequency | f_m | Hz | Hz | tooth engagements per second
 mesh_phase | phi | | | fraction of the mesh cycle since a tooth pair entered contact at A
 load_per_width | w | N/m | N/mm | normal load of a tooth pair per face width

@@ -92,7 +92,7 @@ def render_report(result: Result | MachineResult) -> str:
             compared=compared_friction(summary),
             rating=_rating(result),
             blocks=blocks,
-            warnings=[str(warning) for warning in result.warnings],
+            warnings=_warnings(result),
             assumptions=result.assumptions,
             citations=_lines(result.cite()),
             provenance=provenance(result),
@@ -118,10 +118,17 @@ def result_content(result: Result | MachineResult) -> dict[str, Any]:
     return {
         "cards": [[card.label, card.value, card.unit] for card in headlines(summary)],
         "sentences": rating.get("sentences", []),
-        "warnings": [str(warning) for warning in result.warnings],
+        "warnings": _warnings(result),
         "tables": tables,
         "blocks": figure_blocks(result),
     }
+
+
+def _warnings(result: Result | MachineResult) -> list[str]:
+    """Warnings of the run and of its rating."""
+    with collected():
+        rating = result.rating
+    return [str(each) for each in (*result.warnings, *(rating.warnings if rating else ()))]
 
 
 def _rating(result: Result | MachineResult) -> dict[str, Any] | None:

@@ -53,6 +53,10 @@ if TYPE_CHECKING:
     from tribodyn.study.studies.sweep_result import Sweep
     from tribodyn.study.uncertain.data_set import DataSet, load_data
     from tribodyn.study.uncertain.ensemble import CaseEnsemble, ensemble
+    from tribodyn.study.uncertain.failure_probability import (
+        FailureProbability,
+        failure_probability,
+    )
     from tribodyn.study.uncertain.machine_ensemble import MachineEnsemble
     from tribodyn.study.uncertain.operating_data import operating_data
     from tribodyn.study.uncertain.sensitivity import CaseSensitivity, sobol_indices
@@ -66,6 +70,7 @@ __all__ = [
     "CaseRating",
     "CaseSensitivity",
     "DataSet",
+    "FailureProbability",
     "KinematicFrequencies",
     "LoadCase",
     "LoadResult",
@@ -102,6 +107,7 @@ __all__ = [
     "comprehensive_stiffness",
     "continuation",
     "ensemble",
+    "failure_probability",
     "film_over_operation",
     "friction_experiment",
     "harris_map",
@@ -143,6 +149,7 @@ _NAMES = {
     "rated_parts": "BearingRating NotchRating Verdict",
     "rating": "CaseRating MeshRating MeshSpectrum",
     "machine.result": "LoadResult MachineResult PlanetaryLoadResult PlanetaryResult",
+    "uncertain.failure_probability": "FailureProbability failure_probability",
     "uncertain.machine_ensemble": "MachineEnsemble",
     "studies.levels": "MachineLevels",
     "pipeline.result_of_case": "ResultOfCase",

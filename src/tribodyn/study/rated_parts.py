@@ -31,7 +31,7 @@ from tribodyn.rating.factor import Factor, Factors, check_range
 _USUAL_SHARE = 14.0
 _LIFE, _LOAD = "ISO 281", "computed load"
 #: Required safety of shafts.
-_SHAFT_SAFETY = 1.2
+SHAFT_SAFETY = 1.2
 ALL_CASES = "all load cases"
 
 
@@ -159,12 +159,12 @@ class BearingLoadLife(NamedTuple):
     factors: Mapping[str, Factor]
 
 
-_LIVES = "basic_life", "modified_life", "reference_life"
+LIVES = "basic_life", "modified_life", "reference_life"
 
 
 def _lives(each: Any) -> dict[str, float | None]:
     """Lives by name, as JSON has them."""
-    return {name: _finite(getattr(each, name)) for name in _LIVES}
+    return {name: _finite(getattr(each, name)) for name in LIVES}
 
 
 def _listed(factors: Mapping[str, Factor]) -> dict[str, Any]:
@@ -387,7 +387,7 @@ class PartRatings:
                 yield Verdict("bearing life", each.bearing, load, safety, required, None)
         for notch in self.notches:
             if math.isfinite(notch.safety):
-                values = notch.safety, self.minimum_safety or _SHAFT_SAFETY, None
+                values = notch.safety, self.minimum_safety or SHAFT_SAFETY, None
                 place = f"notch {notch.notch}"
                 yield Verdict("shaft fatigue", notch.shaft, notch.load, *values, place)
 

@@ -8,7 +8,7 @@ from functools import cached_property, partial
 from itertools import chain
 from typing import TYPE_CHECKING, Any
 
-from tribodyn.errors import collected
+from tribodyn.errors import ModelWarning, collected
 from tribodyn.rating import (
     GearOil,
     GearRating,
@@ -268,6 +268,12 @@ class CaseRating:
         for each in sorted(self.parts.notches, key=lambda notch: notch.safety, reverse=True):
             shafts.setdefault(each.shaft, {})[each.notch] = each
         return shafts
+
+    @property
+    def warnings(self) -> list[ModelWarning]:
+        """Warnings of all ratings, each once: factors outside of the range of their source."""
+        listed = (warning for each in self.ratings for warning in each.standard.warnings)
+        return list({str(warning): warning for warning in listed}.values())
 
     @property
     def system_life(self) -> float | None:

@@ -2,8 +2,12 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator, Mapping
+from itertools import product
 from typing import TYPE_CHECKING, Any, NamedTuple
+
+from tribodyn.study.rated_parts import LIVES
 
 if TYPE_CHECKING:
     from tribodyn.study.rated_parts import BearingRating, Verdict
@@ -40,7 +44,31 @@ _REMEDIES = {
     "steel",
 }
 _HEAD = ("factor", "value", "unit", "source", "branch")
-_LIVES = ("basic_life", "reference_life", "modified_life")
+
+
+def rating_figures(rating: CaseRating) -> dict[str, dict[str, float]]:
+    """Safeties and lives as figures of a summary by dotted key, by load."""
+    figures: dict[str, dict[str, float | None]] = {}
+    for mesh in rating.ratings:
+        is_pair = mesh.gears == tuple(mesh.standard.gears)
+        start, table = "" if is_pair else f"meshes.{mesh.mesh}.", figures.setdefault(mesh.load, {})
+        for name in ("scuffing_safety_flash", "scuffing_safety_integral", "micropitting_safety"):
+            table[f"{start}{name}"] = getattr(mesh.standard, name)
+        for origin, each in (("", mesh.standard), ("computed_", mesh.computed)):
+            parts = {f"_{n}": g for n, g in each.gears.items()} if is_pair else {"": each}
+            for mode, (end, part) in product(("pitting", "bending"), parts.items()):
+                name = f"{mode}_safety"
+                table[f"{start}{origin}{name}{end}"] = getattr(part, name)
+    for bearing, life in ((b, life) for b in rating.parts.bearings for life in b.lives):
+        lives = {f"bearings.{bearing.bearing}.{name}": getattr(life, name) for name in LIVES}
+        figures.setdefault(life.load, {}).update(lives)
+    for notch in rating.parts.notches:
+        table, key = figures.setdefault(notch.load, {}), f"shafts.{notch.shaft}.fatigue_safety"
+        table[key] = min(table.get(key) or math.inf, notch.safety)
+    return {
+        load: {k: float(v) for k, v in table.items() if v is not None and math.isfinite(v)}
+        for load, table in figures.items()
+    }
 
 
 def verdict_table(rating: CaseRating) -> RatingTable:
@@ -76,14 +104,14 @@ def damage_table(rating: CaseRating) -> RatingTable:
 
 def bearing_table(rating: CaseRating) -> RatingTable:
     """Lives of all bearings, with the load, the viscosity ratio and a_ISO under each load."""
-    head = ("bearing", "load", "basic life", "by elements", "modified life", "P", "kappa", "a_ISO")
+    head = ("bearing", "load", "basic life", "modified life", "by elements", "P", "kappa", "a_ISO")
     rows = []
     for each in rating.parts.bearings:
         if not each.lives:
             rows.append((each.bearing, each.reason, *[""] * 6))
         for life in each.lives:
             factors = [_number(life.factors, name) for name in ("P", "kappa", "a_ISO")]
-            hours = (_hours(getattr(life, name)) for name in _LIVES)
+            hours = (_hours(getattr(life, name)) for name in LIVES)
             rows.append((each.bearing, life.load, *hours, *factors))
         if len(each.lives) > 1:
             rows.append((each.bearing, "all load cases", *_lives_of(each), *[""] * 3))
@@ -91,7 +119,7 @@ def bearing_table(rating: CaseRating) -> RatingTable:
 
 
 def _lives_of(bearing: BearingRating) -> Iterator[str]:
-    return (_hours(getattr(bearing, name)) for name in _LIVES)
+    return (_hours(getattr(bearing, name)) for name in LIVES)
 
 
 def _hours(life: float | None) -> str:

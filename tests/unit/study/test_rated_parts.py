@@ -11,7 +11,7 @@ import pytest
 import tribodyn as td
 from tribodyn.errors import InputError
 from tribodyn.rating import ShaftMaterial, ShaftNotch, ShaftStress, rate_shaft
-from tribodyn.study import MachineCase
+from tribodyn.study import MachineCase, failure_probability, sobol_indices
 
 MACHINE: dict[str, Any] = {
     "shafts": {
@@ -101,6 +101,36 @@ def test_load_cases_add_up_by_their_shares():
     low, high = (each.basic_life for each in bearing.lives)
     assert low / high == pytest.approx(8.0, rel=1e-3)
     assert bearing.basic_life == pytest.approx(1.0 / (0.75 / low + 0.25 / high), rel=1e-12)
+
+
+def test_safeties_and_lives_are_figures_of_the_summary(result):
+    figures, rating = result.summary(), result.rating
+    assert figures["bearings.A.basic_life"] == rating.bearings["A"].basic_life
+    assert figures["shafts.in.fatigue_safety"] == rating.shafts["in"]["step"].safety
+    assert "bearings.C.basic_life" not in figures
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("deviations", [0.0, 2.0])
+def test_the_probability_of_failure_is_that_of_the_torque(result, deviations):
+    spread = 0.01
+    life = result.rating.bearings["A"].basic_life * (1.0 - deviations * spread) ** 3
+    # the life falls with the third power of a normally distributed torque
+    scattered = case(**{"rating.required_life": life, "operation.torque": "200 N*m +- 1 %"})
+    answer = failure_probability(scattered, size=32, seed=1)
+    place = list(answer.figure).index("bearings.A.basic_life")
+    expected = 0.5 * math.erfc(deviations / math.sqrt(2.0))
+    assert answer.probability[place] == pytest.approx(expected, abs=0.01)
+    assert answer.share[place] == pytest.approx(expected, abs=0.04)
+
+
+@pytest.mark.slow
+def test_shares_of_the_scatter_of_safeties():
+    spread = {"operation.torque": "200 N*m +- 2 %", "shafts.in.tensile_strength": "900 MPa +- 2 %"}
+    names = ["bearings.A.basic_life", "shafts.in.fatigue_safety"]
+    shares = sobol_indices(case(), names, spread, 8, seed=1).total_order
+    assert shares[0, 1] == pytest.approx(0.0, abs=1e-6)  # steel of the shaft and its bearings
+    assert shares[1].min() > 0.1
 
 
 @pytest.mark.filterwarnings("ignore")

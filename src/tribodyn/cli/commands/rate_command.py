@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import warnings
-from typing import Annotated
+from typing import Annotated, Any
 
 from cyclopts import Parameter
 
@@ -20,6 +20,8 @@ def rate(
     set_: Settings = None,
     all_: Annotated[bool, Parameter(name="--all", negative="")] = False,
     json: Flag = False,
+    variants: int = 0,
+    seed: int = 0,
 ) -> None:
     """Rate gears, bearings and shafts of a case: ISO 6336, ISO 281, ISO/TS 16281, DIN 743.
 
@@ -29,6 +31,10 @@ def rate(
         Print every factor with its value, source and the branch taken.
     json : bool
         Write safeties and factors in SI as one JSON object to stdout.
+    variants : int
+        Print the probability of failure over so many variants of the tolerances of the case.
+    seed : int
+        The same seed gives the same variants.
     """
     from tribodyn.cases.load import run as compute
     from tribodyn.cli.progress_bar import progress_bar
@@ -37,6 +43,9 @@ def rate(
     if not ready.is_rated:
         remedy = 'Add [rating] with required_life = "20000 h", and strengths in [materials.NAME]'
         raise InputError("the case has no table [rating]", case, "", remedy)
+    if variants:
+        _probabilities(ready, variants, seed, json=json)
+        return
     with progress_bar() as progress, warnings.catch_warnings():
         warnings.simplefilter("ignore", ModelWarning)
         rating = compute(ready, progress).rating
@@ -56,7 +65,35 @@ def rate(
         say(line)
     for each in factor_tables(rating) if all_ else ():
         _say(each)
-    show_warnings([warning for each in rating.ratings for warning in each.standard.warnings])
+    show_warnings(rating.warnings)
+
+
+def _probabilities(ready: Any, variants: int, seed: int, *, json: bool) -> None:
+    """Print the probability that each safety or life is too small."""
+    from tribodyn.cli.progress_bar import progress_bar
+    from tribodyn.study.pipeline.summary_figures import figure_of, in_words
+    from tribodyn.study.uncertain.failure_probability import failure_probability
+
+    with progress_bar() as progress, warnings.catch_warnings():
+        warnings.simplefilter("ignore", ModelWarning)
+        result = failure_probability(ready, size=variants, seed=seed, progress=progress)
+    columns = result.required, result.sample.mean(axis=0), result.share, result.probability
+    names = "required", "mean", "share_below", "probability"
+    table_of = {
+        str(key): dict(zip(names, map(float, row), strict=True))
+        for key, *row in zip(result.figure, *columns, strict=True)
+    }
+    if json:
+        say_json(table_of)
+        return
+    rows: list[tuple[str, ...]] = [
+        ("figure", "required", "mean", "share below", "probability of failure")
+    ]
+    for key, each in table_of.items():
+        values = (figure_of(key).show(each[name]) for name in names[:2])
+        shares = (f"{100.0 * each[name]:.3g} %" for name in names[2:])
+        rows.append((in_words(key), *values, *shares))
+    say(table(rows))
 
 
 def _say(each: RatingTable) -> None:

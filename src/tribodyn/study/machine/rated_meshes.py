@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from tribodyn.errors import collected
 from tribodyn.machine.shaft_matrices import ShaftMatrices
 from tribodyn.study.case.to_models import lubricant
 from tribodyn.study.machine.pair_cases import read_teeth, teeth_under
@@ -23,7 +24,8 @@ from tribodyn.study.rated_parts import (
     rate_bearing,
     rate_notch,
 )
-from tribodyn.study.rating import RatedMesh, computed_factors
+from tribodyn.study.rating import RatedMesh, case_rating, computed_factors
+from tribodyn.study.rating_summary import rating_figures
 from tribodyn.types import Array
 
 if TYPE_CHECKING:
@@ -32,10 +34,30 @@ if TYPE_CHECKING:
     from tribodyn.study.machine.result import LoadResult, MachineResult
 
 
-def rated_meshes(result: MachineResult) -> Iterator[RatedMesh]:
+Loads = Mapping[str, "LoadResult"]
+
+
+def rated_loads(result: MachineResult) -> Loads:
+    """Loads that the machine has to last: its load cases, else the operating point."""
+    loads = dict(result.loads) if result.case.is_rated else {}
+    if len(loads) > 1:
+        del loads["operation"]
+    return loads
+
+
+def rated_figures(case: MachineCase, load: LoadResult) -> dict[str, float]:
+    """Safeties and lives of a machine under one load, by the keys of its summary."""
+    if not case.is_rated:
+        return {}
+    loads = {"operation": load}
+    with collected():
+        rating = case_rating(rated_meshes(case, loads), rated_parts(case, loads))
+        return {} if rating is None else rating_figures(rating).get("operation", {})
+
+
+def rated_meshes(case: MachineCase, loads: Loads) -> Iterator[RatedMesh]:
     """Each group of equal meshes with computed teeth under each load, if there is ``[rating]``."""
-    case = result.case
-    for name, load in _rated_loads(result).items():
+    for name, load in loads.items():
         seen = set()
         for mesh in case.meshes_with_teeth:
             under = teeth_under(case, mesh, load.load)
@@ -44,14 +66,6 @@ def rated_meshes(result: MachineResult) -> Iterator[RatedMesh]:
                 continue
             seen.add(group)
             yield _rated_mesh(case, load, (name, mesh), pair, under.names)
-
-
-def _rated_loads(result: MachineResult) -> Mapping[str, LoadResult]:
-    """Loads that the machine has to last: its load cases, else the operating point."""
-    loads = dict(result.loads) if result.case.is_rated else {}
-    if len(loads) > 1:
-        del loads["operation"]
-    return loads
 
 
 def _rated_mesh(
@@ -110,9 +124,8 @@ def _flanks(load: LoadResult, gear: str, mesh: str) -> tuple[int, bool]:
     return same, same < len(drives)
 
 
-def rated_parts(result: MachineResult) -> PartRatings:
+def rated_parts(case: MachineCase, loads: Loads) -> PartRatings:
     """Life of all bearings and fatigue of the notches of a machine, if there is ``[rating]``."""
-    case, loads = result.case, _rated_loads(result)
     rated = case.rated_parts
     if not loads or rated.rating is None:
         return PartRatings()
@@ -135,7 +148,7 @@ def _bearings(case: MachineCase) -> Iterator[str]:
             yield name
 
 
-def _bearing(case: MachineCase, loads: Mapping[str, LoadResult], name: str) -> BearingRating:
+def _bearing(case: MachineCase, loads: Loads, name: str) -> BearingRating:
     """Life of a bearing, or of a pin, under all loads."""
     part, rated = case.machine().bearings[name], case.rated_parts
     stage = next((s for s in case.stages if part.carrier and name.startswith(f"{s}_")), "")

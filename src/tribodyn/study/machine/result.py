@@ -298,14 +298,14 @@ class MachineResult(ResultOfCase):
         return sensors_of(self.case)
 
     def _rated_meshes(self) -> Iterable[RatedMesh]:
-        from tribodyn.study.machine.rated_meshes import rated_meshes
+        from tribodyn.study.machine.rated_meshes import rated_loads, rated_meshes
 
-        return rated_meshes(self)
+        return rated_meshes(self.case, rated_loads(self))
 
     def _rated_parts(self) -> PartRatings:
-        from tribodyn.study.machine.rated_meshes import rated_parts
+        from tribodyn.study.machine.rated_meshes import rated_loads, rated_parts
 
-        return rated_parts(self)
+        return rated_parts(self.case, rated_loads(self))
 
     @property
     def loads(self) -> Mapping[str, LoadResult]:

@@ -6,11 +6,12 @@ import os
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from functools import cached_property
+from itertools import chain
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, ClassVar
 
 from tribodyn.drawing import FIGURES, bound_figure, figures_of
-from tribodyn.errors import did_you_mean
+from tribodyn.errors import collected, did_you_mean
 from tribodyn.record import Parts, default_table, html_table
 from tribodyn.study.pipeline.store import MOTIONS, write_result
 from tribodyn.study.pipeline.summary_figures import (
@@ -92,8 +93,21 @@ class ResultOfCase(ABC):
         figures = Figures()
         for number, (name, load) in enumerate(self.loads.items()):
             prefix = f"load_cases.{name.removeprefix('load_cases.')}." if number else ""
-            figures.update({f"{prefix}{key}": value for key, value in load.figures.items()})
+            rated = self._rated_figures.get(name, {})
+            values = chain(load.figures.items(), rated.items())
+            figures.update({f"{prefix}{key}": value for key, value in values})
         return figures
+
+    @cached_property
+    def _rated_figures(self) -> Mapping[str, Mapping[str, float]]:
+        """Safeties and lives by load; they belong to the summary."""
+        if not self.case.is_rated:
+            return {}
+        from tribodyn.study.rating_summary import rating_figures
+
+        with collected():  # the rating itself raises its warnings
+            rating = self.rating
+        return {} if rating is None else rating_figures(rating)
 
     def summary(self) -> dict[str, float]:
         """All figures as one flat dictionary.

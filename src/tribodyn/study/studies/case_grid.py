@@ -17,6 +17,7 @@ from tribodyn.progress import SILENT, Progress, StageProgress
 from tribodyn.study.case.to_models import locate_errors
 from tribodyn.study.first_use import compile_in_parallel
 from tribodyn.study.machine.case import MachineCase
+from tribodyn.study.machine.rated_meshes import rated_figures
 from tribodyn.study.machine.result import LoadResult
 from tribodyn.study.machine.result import steps_of as steps_of_machine
 from tribodyn.study.machine.run import MeshWarning, balanced_machine, run_load, structure_of
@@ -97,6 +98,7 @@ def results_under(
             try:
                 changed = case.replace(change)
                 result = result_under(changed, stages, of_meshes, start)
+                result.figures.update(rated_figures(changed, result))
             except (InputError, ComputationError) as error:
                 yield error, ()
                 continue
