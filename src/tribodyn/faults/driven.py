@@ -59,6 +59,36 @@ class Series:
         return np.asarray(self._spline(place % 1.0))
 
 
+class PhaseSeries:
+    """Sum of periodic functions, each of a sum of the phases."""
+
+    def __init__(self, parts: Sequence[tuple[tuple[int, ...], Series]]) -> None:
+        self.parts = [(np.array(cycles), series) for cycles, series in parts]
+        #: Highest number of each phase.
+        self.orders = np.max(
+            [np.abs(cycles) * (len(each.lines) - 1) for cycles, each in self.parts], axis=0
+        )
+
+    def values(self, points: Array) -> Array:
+        """Values at points (p, phases), (p,) or (p, n)."""
+        return np.asarray(sum(each(points @ cycles) for cycles, each in self.parts))
+
+    __call__: Callable[..., Any] = values
+
+
+class Lead(PhaseSeries):
+    """Time by which an unsteady rotation is ahead of its mean [s], and its slopes."""
+
+    def __call__(self, points: Array) -> tuple[Array, Array]:  # type: ignore[override]
+        """Time (p,) at points (p, phases), zero at the start, and its slopes (p, phases)."""
+        slopes = [
+            np.multiply.outer(each.derivative()(points @ cycles), cycles)
+            for cycles, each in self.parts
+        ]
+        ahead = self.values(points) - self.values(np.zeros((1, points.shape[1])))
+        return ahead, np.asarray(sum(slopes))
+
+
 class _Warped:
     """An entry over a clock that runs unevenly: a function of the even one."""
 
@@ -234,22 +264,15 @@ def drive(
     total = clock_cycles(cycles, excitations, teeth, mesh_frequency)
     period, mass = total / mesh_frequency, np.asarray(system.mass)
     turning = _free_rotation(system, rotation, excitations)
-    inertia = float(turning @ mass @ turning)
     lead = moving = np.zeros(1, dtype=complex)  # of the drive, and of its mesh
     force = np.zeros((1, system.size), dtype=complex)
     for each in excitations:
         at, turns = coordinates[each.gear], Fraction(total) / teeth[each.gear]
         row = np.eye(system.size)[at] if isinstance(at, int) else at
-        turned = float(turning @ row)
-        reduced = inertia / turned**2 if inertia else 0.0
-        torque = each._torque(Shaft(turns, period, reduced))
-        acceleration = torque * (turned / inertia if inertia else 0.0)
-        push = np.multiply.outer(torque, row)
-        force = _sum(force, push - np.multiply.outer(acceleration, mass @ turning))
-        rate = 2.0 * np.pi * np.maximum(np.arange(torque.size), 1) / period
-        lead = _sum(lead, -acceleration / rate**2)
+        push, ahead_by = _lines_of(each, (turns, period), row, turning, mass)
+        force, lead = _sum(force, push), _sum(lead, ahead_by)
         if isinstance(each, SpeedFluctuation) or not fixed_phase:
-            moving = _sum(moving, -acceleration / rate**2)
+            moving = _sum(moving, ahead_by)
     ahead = Series(lead)
     _refuse_large(Series(moving), total)
     steady = system.force
@@ -263,6 +286,49 @@ def drive(
             driven, _UnevenClock(Series(np.asarray(moving / total, dtype=complex)))
         )
     return DrivenSystem(driven, total, ahead, turning)
+
+
+def drive_over_phases(
+    system: System,
+    driven: Sequence[tuple[ShaftExcitation, tuple[int, ...], float, Array]],
+    rotation: Array,
+) -> tuple[System, Lead | None]:
+    """Let torques and speeds vary over phases of their own; the time by which they lead it."""
+    # For each excitation: cycles over each phase, turns of its shaft per second, and the force on
+    # the coordinates per torque; the rotation is the speed of the coordinates [rad/s].
+    turning = _free_rotation(system, rotation, [each for each, *_ in driven])
+    mass, forces, leads, change = np.asarray(system.mass), [], [], 0.0
+    for each, cycles, speed, row in driven:
+        turns, period = repeats_after(each, speed)
+        push, ahead = _lines_of(each, (turns, period), row, turning, mass)
+        forces.append((cycles, Series(push)))
+        leads.append((cycles, Series(ahead)))
+        at = np.arange(4 * len(ahead)) / (4 * len(ahead))
+        change += float(np.abs(leads[-1][1].derivative()(at)).max()) / period
+    _refuse_fluctuation(change)
+    none = (0,) * len(driven[0][1])
+    steady = Series(np.asarray(system.force, dtype=float)[None].astype(complex))
+    lead = Lead(leads) if change > 1e-13 else None
+    return replace(system, force=PhaseSeries([*forces, (none, steady)]), lead=lead), lead
+
+
+def repeats_after(each: ShaftExcitation, speed: float) -> tuple[Fraction, float]:
+    """Turns of a shaft with these turns per second, and time, after which it varies anew [s]."""
+    turns = each._turns or Fraction(each._duration * speed)
+    return turns, float(turns) / speed if each._turns else each._duration
+
+
+def _lines_of(
+    each: ShaftExcitation, clock: tuple[Fraction, float], row: Array, turning: Array, mass: Array
+) -> tuple[ComplexArray, ComplexArray]:
+    """Force (k, n), and rotations by which the drive is ahead (k,), over turns and a period."""
+    turned, inertia = float(turning @ row), float(turning @ mass @ turning)
+    torque = each._torque(Shaft(*clock, inertia / turned**2 if inertia else 0.0))
+    acceleration = torque * (turned / inertia if inertia else 0.0)
+    push = np.multiply.outer(torque, row)
+    rate = 2.0 * np.pi * np.maximum(np.arange(torque.size), 1) / clock[1]
+    force = push - np.multiply.outer(acceleration, mass @ turning)
+    return np.asarray(force, dtype=complex), np.asarray(-acceleration / rate**2, dtype=complex)
 
 
 def _free_rotation(
@@ -293,7 +359,10 @@ def _sum(first: ComplexArray, second: Array | ComplexArray) -> ComplexArray:
 def _refuse_large(lead: Series, cycles: int) -> None:
     """Refuse excitations under which the mean speed says little."""
     change = lead.derivative()(np.arange(4 * len(lead.lines)) / (4 * len(lead.lines))) / cycles
-    largest = float(np.abs(change).max())
+    _refuse_fluctuation(float(np.abs(change).max()))
+
+
+def _refuse_fluctuation(largest: float) -> None:
     if largest > _FLUCTUATION:
         raise InputError(
             f"the speed of the drive fluctuates by {100.0 * largest:.3g} % of its mean",

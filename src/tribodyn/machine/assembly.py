@@ -12,7 +12,9 @@ import numpy as np
 from tribodyn.dynamics.equations.entry import Entry
 from tribodyn.dynamics.equations.system import Contact, LoadFriction, System
 from tribodyn.errors import InputError
+from tribodyn.machine.graph.clock import Phases
 from tribodyn.machine.machine import Machine
+from tribodyn.machine.mesh import Turn
 from tribodyn.machine.plane_law import (
     SPATIAL,
     coordinate_count,
@@ -27,15 +29,15 @@ from tribodyn.machine.structure import MachineStructure
 from tribodyn.types import Array
 
 
-def system(machine: Machine | MachineStructure, *, phases: bool = False) -> System:
+def system(machine: Machine | MachineStructure, *, phases: bool | Phases = False) -> System:
     """Assemble the equations of motion of a machine.
 
     Parameters
     ----------
     machine : Machine or MachineStructure
         The machine, whose matrices :func:`machine_structure` computes, or its matrices.
-    phases : bool
-        Give the contacts their cycles over ``machine.phases``, so that
+    phases : bool or Phases
+        Give the contacts their cycles over these phases, or ``machine.phases``, so that
         ``harmonic_balance(system, machine.phases.frequency)`` needs no common period.
 
     Returns
@@ -66,15 +68,16 @@ def system(machine: Machine | MachineStructure, *, phases: bool = False) -> Syst
     structure = machine_structure(machine) if isinstance(machine, Machine) else machine
     machine = structure.machine
     gyroscopic = structure.gyroscopic()
+    over = machine.phases if phases is True else phases or None
     contacts: list[Contact] = []
     frictions: list[LoadFriction] = []
     for name, mesh in machine.meshes.items():
         if mesh.contacts:
-            law = _in_space(structure, name, len(contacts), phases)
+            law = _in_space(structure, name, len(contacts), over)
             contacts += law[0]
             frictions += law[1]
         else:
-            contacts.append(_contact(structure, name, phases))
+            contacts.append(_contact(structure, name, over))
     equations = System(
         mass=structure.mass,
         damping=structure.damping,
@@ -99,7 +102,7 @@ def _without_drift(structure: MachineStructure, equations: System) -> System:
     return replace(equations, gyroscopic=plain.gyroscopic)
 
 
-def _contact(structure: MachineStructure, name: str, phases: bool) -> Contact:
+def _contact(structure: MachineStructure, name: str, phases: Phases | None) -> Contact:
     mesh = structure.machine.meshes[name]
     return Contact(
         direction=structure.mesh(name),
@@ -113,12 +116,28 @@ def _contact(structure: MachineStructure, name: str, phases: bool) -> Contact:
     )
 
 
-def _clock(machine: Machine, name: str, phases: bool) -> dict[str, Any]:
+def _clock(machine: Machine, name: str, phases: Phases | None) -> dict[str, Any]:
     """Periods of a mesh in one of the clock or of each phase, and where its first begins."""
-    mesh = machine.meshes[name]
-    single = machine.clock.cycles[name] // mesh.period
-    cycles = machine.phases.cycles[name] if phases else single
-    return {"cycles": cycles, "offset": mesh.offset / mesh.period, "name": f"mesh {name}"}
+    mesh, cycles = machine.meshes[name], machine.clock.cycles[name]
+    common = {"offset": mesh.offset / mesh.period, "period": mesh.period, "name": f"mesh {name}"}
+    if phases is None:
+        if mesh.turning:
+            what, why = "errors turn with a gear", "They have phases of their own"
+            remedy = "Use phases=True, or put them into the error of a mesh with a period"
+            raise InputError(what, f"meshes.{name}.turning", why, remedy)
+        return {"cycles": cycles // mesh.period, **common}
+    return {
+        "cycles": phases.cycles[name],
+        "turning_error": [_turned(turn, mesh.offset) for turn in mesh.turning],
+        "turning_cycles": [phases.turns[cycles * turn.waves] for turn in mesh.turning],
+        **common,
+    }
+
+
+def _turned(turn: Turn, offset: float) -> Any:
+    """Error over a phase that is zero where the clock is, not where tooth 1 comes into contact."""
+    start = float(turn.waves) * offset
+    return (lambda phase: turn.error((phase + start) % 1.0)) if start else turn.error
 
 
 def mesh_contacts(structure: MachineStructure, system: System) -> list[tuple[Contact, ...]]:
@@ -129,7 +148,7 @@ def mesh_contacts(structure: MachineStructure, system: System) -> list[tuple[Con
 
 
 def _in_space(
-    structure: MachineStructure, name: str, first: int, phases: bool
+    structure: MachineStructure, name: str, first: int, phases: Phases | None
 ) -> tuple[list[Contact], list[LoadFriction]]:
     """Force law of computed teeth over the coordinates; its contacts are numbered from first."""
     machine, mesh = structure.machine, structure.machine.meshes[name]

@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from copy import copy
 from dataclasses import dataclass, field, replace
+from fractions import Fraction
 from functools import cached_property
 from types import MappingProxyType
 from typing import Any
@@ -234,7 +235,25 @@ class Machine:
     @cached_property
     def phases(self) -> Phases:
         """Independent phases of the meshes, for a motion that needs no common period."""
-        return phases_of(self.clock, {name: mesh.period for name, mesh in self.meshes.items()})
+        return self.phases_with()
+
+    def phases_with(self, driven: Sequence[Fraction] = ()) -> Phases:
+        """Phases of the meshes, of what turns with them, and of what drives shafts.
+
+        Parameters
+        ----------
+        driven : sequence of Fraction
+            Rates of what drives shafts: its cycles in a period of the clock.
+
+        Returns
+        -------
+        Phases
+        """
+        clock, meshes = self.clock, self.meshes.items()
+        turning = [
+            clock.cycles[name] * turn.waves for name, mesh in meshes for turn in mesh.turning
+        ]
+        return phases_of(clock, {name: mesh.period for name, mesh in meshes}, turning, driven)
 
     @cached_property
     def directions(self) -> Mapping[str, MeshDirection]:

@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import cached_property
-from typing import Any, Literal
+from typing import Any, Literal, NamedTuple
 
 import numpy as np
 
@@ -19,10 +19,19 @@ from tribodyn.gear import HypoidBlank
 from tribodyn.machine.fields import check_number, quoted
 from tribodyn.machine.gear import Gear
 from tribodyn.machine.graph.crossed import CrossedAxes, CrossedGeometry
+from tribodyn.types import Array
 
 Hand = Literal["right", "left"]
 #: Phases over which an entry is averaged.
 PHASES = (np.arange(256) + 0.5) / 256
+
+
+class Turn(NamedTuple):
+    """An error of a mesh that turns with a gear."""
+
+    error: Callable[[Array], Any]  #: over the phase of the wave, 0 where tooth 1 touches [m]
+    waves: Fraction  #: in a mesh cycle: the order over the teeth of the gear
+    gear: str  #: name of the gear
 
 
 @dataclass(frozen=True, eq=False)
@@ -80,6 +89,8 @@ class Mesh:
     period : int
         Mesh cycles after which the force law repeats, more than one where teeth differ: error,
         contacts, frictions and events are then over the phase of all these cycles, in [0, 1).
+    turning : sequence of Turn
+        Errors that turn with a gear, of a motion over phases; one clock needs them in ``error``.
     carrier : str, optional
         Shaft with which the axes of both gears turn: the carrier of planets. The angle is that at
         the position of the carrier for which the machine is computed.
@@ -115,6 +126,7 @@ class Mesh:
     offset: float = 0.0
     crossed: CrossedAxes | None = None
     period: int = 1
+    turning: Sequence[Turn] = ()
     carrier: str | None = None
 
     @classmethod

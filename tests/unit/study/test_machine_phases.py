@@ -121,11 +121,6 @@ def test_a_stored_result_keeps_its_phases(tmp_path: Any) -> None:
     assert stored.operation.system.phases == 3
 
 
-def test_what_needs_a_period_says_so() -> None:
-    with pytest.raises(td.InputError, match="no common period"):
-        _ = three().turning_motion
-
-
 def test_numbers_of_a_line_are_the_smallest() -> None:
     turns = np.array([578, 20, 101])
     for numbers in ((1, 0, 0), (0, 3, 0), (2, -1, 0), (1, 0, -2), (0, 1, 4)):

@@ -73,13 +73,14 @@ def check(case: CaseName, /, *, set_: Settings = None, json: Flag = False) -> No
 def _check_machine(case: MachineCase, json: bool) -> None:
     """Show speeds, torques and power of a machine, after rehearsing its teeth."""
     from tribodyn.errors import collected
-    from tribodyn.study.machine.first_look import kinematic_figures, warn_of_motion
+    from tribodyn.study.faults.clock import check_motion
+    from tribodyn.study.machine.first_look import kinematic_figures
     from tribodyn.study.machine.run import rehearse_machine
     from tribodyn.study.pipeline.summary_figures import summary_rows
 
     with collected() as warnings:
         rehearse_machine(case)
-        cost = warn_of_motion(case.solver, case.machine())
+        costs = check_motion(case)
         values = kinematic_figures(case)
     if json:
         say_json(values)
@@ -89,8 +90,8 @@ def _check_machine(case: MachineCase, json: bool) -> None:
         text = ", ".join(filter(None, (assumption.value, assumption.reason)))
         tell(f"assumed: {assumption.key}: {text}")
     show_warnings(warnings)
-    if cost is not None:
-        tell(f"{cost}.")
+    for cost in costs:
+        tell(cost)
     tell("The case is in order.")
 
 

@@ -78,7 +78,9 @@ def on_clock(part: T, names: tuple[str, ...], cycles: int, offset: float) -> T:
         return [entry(item) for item in value] if isinstance(value, list | tuple) else value
 
     entries = {name: entry(getattr(part, name)) for name in names}
-    clock: dict[str, Any] = {} if hasattr(part, "contacts") else {"cycles": 1, "offset": 0.0}
+    clock: dict[str, Any] = {}
+    if (period := getattr(part, "period", None)) is not None:
+        clock = {"cycles": 1, "offset": 0.0, "period": cycles * period}
     return replace(part, **entries, events=events_on_clock(part.events, cycles, offset), **clock)
 
 

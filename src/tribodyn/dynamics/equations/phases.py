@@ -96,6 +96,6 @@ def read_frequencies(value: Any, phases: int) -> Array:
     return values
 
 
-def phase_sum(points: Array, cycles: Iterable[int], offset: float = 0.0) -> Array:
+def phase_sum(points: Array, cycles: Iterable[int], offset: float | Array = 0.0) -> Array:
     """Mesh phase in [0, 1) at points (p, phases)."""
     return np.asarray((points @ np.asarray(cycles, dtype=float) + offset) % 1.0 % 1.0)

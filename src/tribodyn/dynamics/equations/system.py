@@ -10,7 +10,7 @@ of each contact follows from the clock of the system, ``phi_j = (cycles_j*clock 
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Any
@@ -66,6 +66,9 @@ class Contact:
         phases, in one period of each of them.
     offset : float
         Mesh phase of this contact when the clock starts, in [0, 1).
+    period : int
+        Mesh cycles after which the entries repeat, more than one where teeth differ: they are then
+        functions of the phase of all of these, which ``cycles`` counts.
     ramp_stiffness, ramp_gap : (m,) array or function
         Ramps of a force law: stiffnesses that are added beyond further half dead zones [N/m], [m];
         functions return (p, m). Harmonic balance and the modal engine take them.
@@ -104,6 +107,7 @@ class Contact:
     damping_in_gap: bool = False
     cycles: Cycles = 1
     offset: float = 0.0
+    period: int = 1
     ramp_stiffness: Entry = ()
     ramp_gap: Entry = ()
     turning_error: Any = ()
@@ -114,6 +118,7 @@ class Contact:
         object.__setattr__(self, "events", read_events(self.events, "Contact.events"))
         require_flag("damping_in_gap", self.damping_in_gap)
         object.__setattr__(self, "cycles", read_cycles("cycles", self.cycles))
+        object.__setattr__(self, "period", require_whole("period", self.period))
         read_turning(self.turning_error, self.turning_cycles)
         require_number("offset", self.offset)
         require_between("offset", self.offset, 0.0, float(np.nextafter(1.0, 0.0)), "")
@@ -243,6 +248,10 @@ class System:
     gyroscopic : (n, n) array, optional
         Skew matrix of the gyroscopic moments at the speed of the motion, added to the damping
         matrix; it does no work [N*s/m or N*m*s].
+    lead : function, optional
+        Time by which an unsteady rotation is ahead of its mean [s], of a motion over phases: takes
+        points (p, phases), returns this time and the rates at which it grows with each phase,
+        (p,) and (p, phases). All mesh phases and all that turns with shafts follow it.
 
     Raises
     ------
@@ -267,6 +276,7 @@ class System:
     balance: ArrayLike | None = None
     frictions: Sequence[LoadFriction] = ()
     gyroscopic: ArrayLike | None = None
+    lead: Callable[[Array], tuple[Array, Array]] | None = None
     #: Largest rate of the motion by the number of steps with which it was computed.
     _rates: dict[int, float] = field(default_factory=dict, init=False, repr=False, compare=False)
     #: Matrices about the static load, by the phase at which they were computed.
@@ -306,7 +316,12 @@ class System:
         object.__setattr__(self, "names", names)
         _inverse_of(matrices["mass"], names)
         _refuse_missing_contacts(self)
-        count_phases(self.contacts)
+        if not count_phases(self.contacts) and self.lead is not None:
+            what, why = "a lead without phases", "It is a function of the phases of the contacts"
+            remedy = (
+                "Give cycles for each phase, or entries over the clock of the unsteady rotation"
+            )
+            raise InputError(what, "System.lead", why, remedy)
         for f, friction in enumerate(self.frictions):
             refuse_several_clocks(friction, self.contacts, f"System.frictions[{f}]")
         if self.gyroscopic is not None:
@@ -349,7 +364,7 @@ class System:
     @cached_property
     def cycles(self) -> int:
         """Mesh cycles of the fastest contact in one period of the clock."""
-        return max((contact.cycles for contact in on_one_clock(self)), default=1)
+        return max((each.cycles * each.period for each in on_one_clock(self)), default=1)
 
     @cached_property
     def clocked_contacts(self) -> tuple[Contact, ...]:

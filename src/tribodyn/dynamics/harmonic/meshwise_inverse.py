@@ -8,6 +8,7 @@ through the structure, so that a few Krylov vectors remain.
 
 from __future__ import annotations
 
+import math
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
@@ -104,6 +105,7 @@ class _OnePhase:
     ) -> None:
         grid = residual.grid
         self.shape, self.axis = grid.shape, axis
+        self.teeth = _teeth(residual, axis)
         self.half = (axis - 1) % len(grid.shape) if len(grid.shape) > 1 else None
         numbers = self._numbers()
         omega = 2.0 * np.pi * (numbers @ grid.frequency)
@@ -116,15 +118,16 @@ class _OnePhase:
         still = receptances @ (mean[0] + rate[..., None, None] * mean[1])
         self.base = np.linalg.inv(np.eye(still.shape[-1]) - still)
         varying = [varying[0], varying[1] * np.abs(omega).max()]
+        varying = [part.reshape(self.teeth, -1, *part.shape[1:]).mean(axis=0) for part in varying]
         push, self.along = _bases(varying)
         waves = [push.T @ part @ self.along.T for part in varying]
-        gain = self.base @ receptances @ push  # (m, n, r, a)
-        rate /= np.abs(omega).max()
-        others = np.delete(numbers[:, 0], axis, axis=1).any(axis=1)
+        gain = self._by_tooth(self.base @ receptances @ push)  # (m, n, r, a)
+        rate = self._by_tooth(rate / np.abs(omega).max())
+        others = np.delete(numbers[:, 0], axis, axis=1).any(axis=1).repeat(self.teeth)
         # Most of a motion has this phase alone: its lines are all coupled, of others the lowest.
         self.blocks = []
         for rows, most in ((np.flatnonzero(~others), _CENTRAL), (np.flatnonzero(others), _OTHERS)):
-            low = _lowest(grid.shape[axis], most / len(rows), len(self.along))
+            low = _lowest(gain.shape[1], most / len(rows), len(self.along))
             self.blocks.append(_Block.of(rows, low, gain, rate, self.along, waves))
 
     def solved(self, y: Array, *, first: bool) -> Array:
@@ -132,11 +135,18 @@ class _OnePhase:
         lines = self._lines(y)
         if first:
             lines = (self.base @ lines[..., None])[..., 0]
+        lines = self._by_tooth(lines)
         for block in self.blocks:
             place = np.ix_(block.rows, block.low)
             felt = (lines[place] @ self.along.T).reshape(len(block.rows), -1, 1)
             lines[place] += block.moved(felt)
-        return self._values(lines)
+        table = lines.reshape(-1, self.teeth, *lines.shape[1:]).swapaxes(1, 2)
+        return self._values(table.reshape(-1, self.shape[self.axis], lines.shape[-1]))
+
+    def _by_tooth(self, lines: Any) -> Any:
+        """Lines (m, n, ...) with those in a row that teeth couple which are equal on average."""
+        table = lines.reshape(len(lines), -1, self.teeth, *lines.shape[2:]).swapaxes(1, 2)
+        return table.reshape(-1, *table.shape[2:])
 
     def _axes(self) -> list[int]:
         """Phases in the order of the transform, the one of the half spectrum at the end."""
@@ -171,6 +181,13 @@ class _OnePhase:
         else:
             values = np.fft.irfftn(table, [self.shape[axis] for axis in axes], axes)
         return np.asarray(values.reshape(-1, lines.shape[-1]))
+
+
+def _teeth(residual: OnGrid, axis: int) -> int:
+    """Mesh cycles of all contacts in a phase; one where its points do not divide into them."""
+    cycles = [int(mesh.period * abs(mesh.cycles[axis])) for mesh in residual.structure.rows.meshes]
+    teeth = math.gcd(*cycles) or 1
+    return teeth if residual.grid.shape[axis] % teeth == 0 else 1
 
 
 def _bases(varying: list[Array]) -> tuple[Array, Array]:

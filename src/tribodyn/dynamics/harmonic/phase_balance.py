@@ -50,13 +50,30 @@ _ADDED, _TRIES = (0.3, 0.1, 0.03, 0.01, 0.003), 12
 _PATIENCE = 5
 
 
-def phase_cost(frequencies: int, contacts: Sequence[int]) -> tuple[int, float, float]:
-    """Unknowns, memory [byte] and time [s] of a motion by the contacts that follow each phase."""
-    others = _OTHERS if frequencies <= _FEW else _OTHERS // 2
-    unknowns = sum(count * _MESH * others ** (frequencies - 1) for count in contacts)
+class Follower(NamedTuple):
+    """Contacts of a mesh, and what they follow."""
+
+    contacts: int
+    cycles: Any  #: periods of the entries over each phase
+    period: int = 1  #: mesh cycles in them
+    turns: tuple[tuple[int, ...], ...] = ()  #: cycles of the errors that turn with shafts
+
+
+def phase_cost(followers: Sequence[Follower], orders: Any = 0) -> tuple[int, float, float]:
+    """Unknowns, memory [byte] and time [s] of a motion, whose forces have these orders."""
+    (fine, others), frequencies = _points_of(followers, orders), len(followers[0].cycles)
+    unknowns = sum(
+        each.contacts * int(np.prod(np.where(_axes(each.cycles, each.turns), fine, others)))
+        for each in followers
+    )
     unknowns = max(unknowns, min(2 * unknowns, _MOST))
     memory = 2e8 + 1.4e8 * frequencies + 1.5e3 * unknowns
     return unknowns, memory, 0.3 + 2e-4 * unknowns
+
+
+def _axes(cycles: Any, turns: Sequence[Any]) -> Mask:
+    """Phases that contacts follow."""
+    return np.asarray(np.any(np.array([cycles, *turns]) != 0, axis=0))
 
 
 #: Points over each phase of the grids of all parts.
@@ -108,7 +125,7 @@ class _Search:
         """Newton's method with damping at the contacts that is removed in steps."""
         stiffness = self.rows.means.nodes.stiffness
         critical = stiffness.reshape(-1, stiffness.shape[-1]).mean(axis=0)
-        fastest = max(abs(self.rows.rate(mesh.cycles)) for mesh in self.rows.meshes)
+        fastest = max(abs(self.rows.rate(mesh.cycles)) * mesh.period for mesh in self.rows.meshes)
         for part in (*_ADDED, 0.0):
             residual.excess = part * critical / (np.pi * fastest)
             trial = newton(residual, y, 0.01 * tolerance, _TRIES, _PATIENCE)
@@ -236,14 +253,30 @@ def _integrated(
 
 def _first_points(search: _Search) -> Points:
     """Points over each phase with which an automatic choice starts."""
-    rows = search.rows
-    cycles = np.abs([mesh.cycles for mesh in rows.meshes]).max(axis=0)
-    turns = [np.abs(term.cycles) for each in rows.system.contacts for term in each.turning]
-    shafts = np.max(turns, axis=0) if turns else np.ones_like(cycles)
-    counts = np.where(cycles > 0.0, _MESH * cycles, _SHAFT * np.maximum(shafts, 1.0))
-    others = _OTHERS if counts.size <= _FEW else _OTHERS // 2
-    shapes = np.where(search.followed(), counts, np.minimum(counts, others)).astype(int)
+    followers = [
+        Follower(1, each.cycles, each.period, tuple(term.cycles for term in each.turning))
+        for each in search.rows.system.contacts
+    ]
+    force, lead = (
+        getattr(part, "orders", 0) for part in (search.rows.system.force, search.rows.system.lead)
+    )
+    fine, others = _points_of(followers, np.maximum(force, lead))
+    shapes = np.where(search.followed(), fine, others)
     return tuple(tuple(shape) for shape in shapes.tolist())
+
+
+def _points_of(followers: Sequence[Follower], orders: Any) -> tuple[Index, Index]:
+    """First points over each phase, of those that follow it and others; orders are of forces."""
+    # A mesh whose teeth differ has all cycles of its period.
+    cycles = np.abs([each.cycles for each in followers])
+    periods = np.array([each.period for each in followers])[:, None]
+    turns = [np.abs(term) for each in followers for term in each.turns]
+    shafts = np.max([np.ones(cycles.shape[1]), *turns], axis=0)
+    meshes, driven = (cycles * periods).max(axis=0), _SHAFT * np.asarray(orders)
+    fine = np.maximum(np.where(meshes > 0, _MESH * meshes, _SHAFT * shafts), driven).astype(int)
+    others = _OTHERS if len(fine) <= _FEW else _OTHERS // 2
+    felt = np.maximum(others * np.where(cycles > 0, periods, 1).max(axis=0), driven)
+    return fine, np.minimum(fine, felt).astype(int)
 
 
 def _read_steps(steps: Any, search: _Search) -> Points:
@@ -286,9 +319,10 @@ def _not_converged(
         number = int(np.argmax(distance))
         rows, share = part.structure.rows, np.mean(state.law.side[:, number] == 0.0)
         mesh = next(mesh for mesh in rows.meshes if number in mesh.contacts)
+        rate = abs(rows.rate(mesh.cycles)) * mesh.period
         text = (
             f"{contact_label(search.rows.system, int(part.structure.members[number]))} at "
-            f"{abs(rows.rate(mesh.cycles)):.6g} Hz, {1e6 * distance[number]:.3g} um; it is open "
+            f"{rate:.6g} Hz, {1e6 * distance[number]:.3g} um; it is open "
             f"for {100.0 * share:.3g} % of the motion"
         )
         worst = max(worst, (float(distance[number]), text))

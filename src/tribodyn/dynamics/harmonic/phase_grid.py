@@ -133,7 +133,7 @@ class PhaseContacts(ContactEquations):
             axis[mesh.contacts] = _axis_of(mesh)
         at = rows.projected(grid.points, *bases)
         jumping = [mesh for mesh in rows.meshes if mesh.jumps.size]
-        jumps = [_jumps(grid, mesh) for mesh in jumping]
+        jumps = [_jumps(rows, grid, mesh) for mesh in jumping]
         sides = [
             [rows.projected(jump.points, *bases, before=mesh if before else None)
              for mesh, jump in zip(jumping, jumps, strict=True)]
@@ -180,12 +180,14 @@ def _axis_of(mesh: Mesh) -> int:
     return int(np.argmin(np.where(mesh.cycles == 0.0, np.inf, np.abs(mesh.cycles))))
 
 
-def _jumps(grid: PhaseGrid, mesh: Mesh) -> _Jumps:
+def _jumps(rows: PhaseRows, grid: PhaseGrid, mesh: Mesh) -> _Jumps:
     """Places where a mesh passes its jumps, on every line along its phase."""
     axis = _axis_of(mesh)
     lines = np.arange(grid.size).reshape(grid.shape).take(0, axis).reshape(-1)
     turns, count = mesh.cycles[axis], grid.shape[axis]
     rest = grid.points[lines] @ mesh.cycles + mesh.offset
+    if rows.system.lead is not None:  # it is a function of other phases
+        rest = rest + rows.rate(mesh.cycles) * rows.system.lead(grid.points[lines])[0]
     whole = np.arange(int(abs(turns)))
     at = (mesh.jumps[:, None, None] - rest[:, None] + whole) / turns % 1.0 % 1.0
     place = (at * count).reshape(-1)

@@ -23,8 +23,8 @@ from tribodyn.types import Array
 #: Steps in a cycle of the fastest phase, cycles in a block, and how often steps that are too long
 #: are halved.
 _STEPS, _BLOCK, _HALVINGS = 128, 16, 4
-#: Jumps nearer than this part of a block are one.
-_NEAR = 1e-9
+#: Jumps nearer than this part of a block are one; repetitions for those of an unsteady rotation.
+_NEAR, _REPEATS = 1e-9, 40
 
 
 @dataclass(frozen=True, eq=False)
@@ -39,7 +39,8 @@ class PhaseMarch:
     @property
     def duration(self) -> float:
         """Time of a block [s]."""
-        return _BLOCK / float(self.rows.frequency.max())
+        meshes = [abs(self.rows.rate(mesh.cycles)) * mesh.period for mesh in self.rows.meshes]
+        return _BLOCK / max(float(self.rows.frequency.max()), *meshes)
 
     def states(self, times: Array) -> Array:
         """Positions and velocities (s, 2 n) at times that are not negative."""
@@ -101,6 +102,14 @@ class PhaseMarch:
         nodes = Nodes(**shaped)._replace(weight=step_weights(grid))
         return replace(self.rows.means, system=self.rows.system, grid=grid, nodes=nodes)
 
+    def _led(self, on_time: Array) -> Array:
+        """Times at which a rotation that is ahead comes to places that it has at some times."""
+        lead, times = self.rows.system.lead, on_time
+        for _ in range(_REPEATS if lead is not None else 0):
+            assert lead is not None
+            times = on_time - lead(times[:, None] * self.rows.frequency % 1.0)[0]
+        return times
+
     def _jumps(self, begin: float) -> tuple[float, ...]:
         """Phases of a block at which a mesh passes a jump, from 0."""
         places = [np.zeros(1)]
@@ -109,8 +118,8 @@ class PhaseMarch:
             if mesh.jumps.size and rate:
                 first, last = np.sort((np.array([0.0, self.duration]) + begin) * rate + mesh.offset)
                 whole = np.arange(np.floor(first) - 1.0, np.ceil(last) + 1.0)
-                passed = (mesh.jumps[:, None] + whole - mesh.offset) / rate - begin
-                places.append(passed.reshape(-1) / self.duration)
+                on_time = ((mesh.jumps[:, None] + whole - mesh.offset) / rate).reshape(-1)
+                places.append((self._led(on_time) - begin) / self.duration)
         at = np.unique(np.concatenate(places))
         at = at[(at >= 0.0) & (at < 1.0 - _NEAR)]
         return tuple(at[np.diff(at, prepend=-1.0) > _NEAR].tolist())

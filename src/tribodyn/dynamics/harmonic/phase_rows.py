@@ -50,6 +50,11 @@ class Mesh:
     frictions: Index
     _nodes: dict[Any, Nodes] = field(default_factory=dict)  #: entries at few phases
 
+    @property
+    def period(self) -> int:
+        """Mesh cycles over which the entries repeat."""
+        return max(contact.period for contact in self.system.contacts)
+
     @cached_property
     def events(self) -> tuple[float, ...]:
         """Mesh phases at which an entry may jump."""
@@ -62,15 +67,22 @@ class Mesh:
         before, after = (self.nodes(at, 0.0, before=side) for side in (True, False))
         return np.asarray(at[jumping_events(before, after)])
 
-    def nodes(self, phase: Array, rate: float, before: bool = False) -> Nodes:
-        """Entries at mesh phases (p, 1, ...), slopes over time at a mesh frequency [Hz]."""
+    def nodes(self, phase: Array, rate: Any, before: bool = False) -> Nodes:
+        """Entries at mesh phases (p, 1, ...), slopes over time at mesh frequencies [Hz]."""
         nodes = evaluate_rows(self.system, PointEvaluator(phase, self.events, before=before))
-        slopes = {name: rate * getattr(nodes, name) for name in ("error_slope", "direction_slope")}
+        slopes = {
+            name: np.reshape(rate, (-1, *[1] * (getattr(nodes, name).ndim - 1)))
+            * getattr(nodes, name)
+            for name in ("error_slope", "direction_slope")
+        }
         return nodes._replace(**slopes)
 
-    def at(self, points: Array, rate: float, before: bool = False) -> tuple[Nodes, Index]:
-        """Entries at the different mesh phases of points (p, phases), and the row of each."""
-        different, rows = _different(phase_sum(points, self.cycles, self.offset))
+    def at(self, turned: tuple[Array, Any], before: bool = False) -> tuple[Nodes, Index]:
+        """Entries at the different mesh phases of points, and the row of each."""
+        phase, rate = turned
+        different, rows = _different(phase)
+        if np.ndim(rate):  # phases of different rates are all different
+            return self.nodes(different[rows], rate, before), np.arange(len(rows))
         key = different.tobytes(), rate, before
         nodes = self._nodes.get(key) or self.nodes(different, rate, before)
         if different.size <= _CACHED:
@@ -96,7 +108,7 @@ class PhaseRows:
         clock: dict[str, Any] = {"cycles": 1, "offset": 0.0}
         clock |= {"turning_error": (), "turning_cycles": ()}
         contacts = [replace(contact, **clock) for contact in system.contacts]
-        still = replace(system, force=np.zeros(system.size), contacts=contacts)
+        still = replace(system, force=np.zeros(system.size), contacts=contacts, lead=None)
         meshes = tuple(
             _mesh(still, cycles, offset, numbers) for (cycles, offset), numbers in groups.items()
         )
@@ -125,9 +137,18 @@ class PhaseRows:
         """Frequency of so many cycles over each phase [Hz]."""
         return float(np.asarray(cycles, dtype=float) @ self.frequency)
 
+    def turned(self, points: Array, cycles: Any, offset: float = 0.0) -> tuple[Array, Any]:
+        """Phase at points (p, phases) of what turns so often over each, and its rate [Hz]."""
+        rate = self.rate(cycles)
+        if self.system.lead is None:
+            return phase_sum(points, cycles, offset), rate
+        ahead, slopes = self.system.lead(points)
+        phase = phase_sum(points, cycles, offset + rate * ahead)
+        return phase, rate * (1.0 + slopes @ self.frequency)
+
     def nodes(self, points: Array) -> Nodes:
         """Entries at points (p, phases), (p or 1, 1, ...); slopes are those over time."""
-        parts = [mesh.at(points, self.rate(mesh.cycles)) for mesh in self.meshes]
+        parts = [mesh.at(self.turned(points, mesh.cycles, mesh.offset)) for mesh in self.meshes]
         fields = self._joined([(vars_of(nodes), rows) for nodes, rows in parts], axis=2)
         error, slope = self._turned(points, fields["error"][:, 0], fields["error_slope"][:, 0])
         fields |= {"error": error[:, None], "error_slope": slope[:, None]}
@@ -141,7 +162,8 @@ class PhaseRows:
         """Rows at points along two bases; those of the mesh ``before`` just before its phase."""
         parts = []
         for mesh in self.meshes:
-            nodes, rows = mesh.at(points, self.rate(mesh.cycles), before is mesh)
+            turned = self.turned(points, mesh.cycles, mesh.offset)
+            nodes, rows = mesh.at(turned, before is mesh)
             part = project_rows(nodes, along, push)
             columns = vars_of(part.nodes) | {
                 "along": part.along, "along_slope": part.along_slope, "push": part.push,
@@ -183,9 +205,10 @@ class PhaseRows:
             for term in terms:
                 wide = (len(points), error.shape[1])
                 error, slope = (np.array(np.broadcast_to(part, wide)) for part in (error, slope))
-                values, rates = _turning_values(term, phase_sum(points, term.cycles))
+                phase, rate = self.turned(points, term.cycles)
+                values, slopes = _turning_values(term, phase)
                 error[:, contact] += values
-                slope[:, contact] += self.rate(term.cycles) * rates
+                slope[:, contact] += rate * slopes
         return error, slope
 
 

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, field
 from fractions import Fraction
 
 from tribodyn.errors import InputError, did_you_mean
@@ -79,14 +79,18 @@ class Clock:
 
 @dataclass(frozen=True)
 class Phases:
-    """Independent phases of the meshes of a machine; a common period is not needed.
+    """Independent phases of a machine, of its meshes and of what turns with its shafts.
 
     Parameters
     ----------
     cycles : mapping of str to tuple of int
-        Mesh cycles of each mesh over each phase; of teeth that differ, the periods of them.
+        Periods of each mesh over each phase: its mesh cycles, or of teeth that differ the periods
+        after which they repeat.
     frequency : tuple of float
         Frequency of each phase [Hz].
+    turns, driven : mapping of Fraction to tuple of int
+        Cycles over each phase of what turns with the meshes, and of what drives them, by their
+        rates: cycles in a period of the clock.
 
     Examples
     --------
@@ -97,24 +101,45 @@ class Phases:
 
     cycles: Mapping[str, tuple[int, ...]]
     frequency: tuple[float, ...]
+    turns: Mapping[Fraction, tuple[int, ...]] = field(default_factory=dict)
+    driven: Mapping[Fraction, tuple[int, ...]] = field(default_factory=dict)
 
 
-def phases_of(clock: Clock, periods: Mapping[str, int]) -> Phases:
-    """Phases of meshes, whose teeth repeat after these periods."""
+def phases_of(
+    clock: Clock,
+    periods: Mapping[str, int],
+    turning: Sequence[Fraction] = (),
+    driven: Sequence[Fraction] = (),
+) -> Phases:
+    """Phases of meshes with these periods, of what turns with them, and of what drives them."""
     rates = {mesh: Fraction(cycles, periods[mesh]) for mesh, cycles in clock.cycles.items()}
+    # Meshes follow a rotation that is ahead, but not what drives it: that has phases of its own.
+    locked, free = _groups([*rates.values(), *turning]), _groups([*driven])
+    bases = [_common(group) for group in (*locked, *free)]
+
+    def over(rate: Fraction, groups: list[list[Fraction]], first: int) -> tuple[int, ...]:
+        counts = [0] * len(bases)
+        axis = next(first + at for at, group in enumerate(groups) if rate in group)
+        counts[axis] = int(rate / bases[axis])
+        return tuple(counts)
+
+    return Phases(
+        {mesh: over(rate, locked, 0) for mesh, rate in rates.items()},
+        tuple(clock.frequency * float(base) for base in bases),
+        {rate: over(rate, locked, 0) for rate in turning},
+        {rate: over(rate, free, len(locked)) for rate in driven},
+    )
+
+
+def _groups(rates: Iterable[Fraction]) -> list[list[Fraction]]:
+    """Rates that share a phase."""
     groups: list[list[Fraction]] = []
-    for rate in dict.fromkeys(rates.values()):
+    for rate in dict.fromkeys(rates):
         group = next((each for each in groups if _most_cycles([*each, rate]) <= _SHARED), None)
         if group is None:
             groups.append(group := [])
         group.append(rate)
-    bases = [_common(group) for group in groups]
-    pairs = list(zip(groups, bases, strict=True))
-    cycles = {
-        mesh: tuple(int(rate / base) if rate in group else 0 for group, base in pairs)
-        for mesh, rate in rates.items()
-    }
-    return Phases(cycles, tuple(clock.frequency * float(base) for base in bases))
+    return groups
 
 
 def _common(rates: Sequence[Fraction]) -> Fraction:

@@ -9,11 +9,14 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from tribodyn.faults import DrivenSystem, drive
+from tribodyn.faults.driven import drive_over_phases
 from tribodyn.study.faults.machine_section import shaft_excitation
 from tribodyn.types import Array
 
 if TYPE_CHECKING:
     from tribodyn.dynamics import System
+    from tribodyn.faults import ShaftExcitation
+    from tribodyn.faults.driven import Lead
     from tribodyn.machine import MachineStructure
 
 #: Eigenvalues below this share of the largest are those of free motions.
@@ -47,16 +50,38 @@ def free_rotation(system: System, torques: Sequence[Array], turned: Sequence[flo
     return np.asarray(free @ shares if fits else np.zeros(system.size))
 
 
+def shaft_torques(structure: MachineStructure) -> dict[str, Array]:
+    """Forces on the coordinates per torque on each shaft in its running sense (n,)."""
+    machine = structure.machine
+    loads, run, torques = machine.kinematics.shafts, machine.operation, {}
+    for name, shaft in machine.shafts.items():
+        place = shaft.length if name == run.output else 0.0
+        torques[name] = np.asarray(np.sign(loads[name].speed) * structure.at(name, place)[3])
+    return torques
+
+
+def drive_machine_over_phases(
+    structure: MachineStructure,
+    system: System,
+    excited: Sequence[tuple[ShaftExcitation, tuple[int, ...]]],
+) -> tuple[System, Lead | None]:
+    """A machine with excitations of its shafts, each with its cycles over the phases."""
+    if not excited:
+        return system, None
+    torques, clock = shaft_torques(structure), structure.machine.clock
+    speeds = {shaft: float(clock.turns[shaft]) * clock.frequency for shaft in torques}
+    rotation = free_rotation(
+        system, list(torques.values()), [2.0 * np.pi * speeds[shaft] for shaft in torques]
+    )
+    driven = [(each, cycles, speeds[each.gear], torques[each.gear]) for each, cycles in excited]
+    return drive_over_phases(system, driven, rotation)
+
+
 def drive_machine(
     structure: MachineStructure, system: System, faults: Mapping[str, Any]
 ) -> DrivenSystem:
     """A machine with the excitation of its shafts."""
-    machine = structure.machine
-    clock, loads, run = machine.clock, machine.kinematics.shafts, machine.operation
-    torques = {}
-    for name, shaft in machine.shafts.items():
-        place = shaft.length if name == run.output else 0.0
-        torques[name] = np.sign(loads[name].speed) * structure.at(name, place)[3]
+    clock, torques = structure.machine.clock, shaft_torques(structure)
     cycles = max(clock.cycles.values())
     return _drive(
         system, cycles, faults, mesh_frequency=cycles * clock.frequency,

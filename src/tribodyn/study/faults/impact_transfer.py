@@ -14,7 +14,7 @@ from tribodyn.types import Array, ComplexArray, Index
 
 if TYPE_CHECKING:
     from tribodyn.dynamics import System
-    from tribodyn.study.faults.machine_motion import MachineTurningMotion
+    from tribodyn.study.faults.machine_signals import MachineTurningMotion
     from tribodyn.study.faults.sensors import SensorPlace
 
 #: Eigenvalues below this share of the largest are those of free motions.

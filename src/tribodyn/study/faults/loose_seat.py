@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
@@ -56,10 +56,11 @@ def with_loose_seats(system: System, seats: dict[str, LooseSeat]) -> System:
     """The system whose seats are softer, with springs that act while they are pressed."""
     stiffness, force = np.array(system.stiffness), np.array(system.force, dtype=float)
     contacts = list(system.contacts)
+    clock: dict[str, Any] = {"cycles": contacts[0].cycles} if system.phases else {}
     for seat in seats.values():
         stiffness -= seat.lost * np.outer(seat.row, seat.row)
         force -= seat.lost * seat.lifted * seat.row
-        contacts.append(Contact(seat.row, seat.lost, error=seat.lifted - _FAR, gap=_FAR))
+        contacts.append(Contact(seat.row, seat.lost, error=seat.lifted - _FAR, gap=_FAR, **clock))
     return replace(system, stiffness=stiffness, force=force, contacts=contacts) if seats else system
 
 

@@ -3,42 +3,39 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
-from dataclasses import dataclass, replace
-from functools import cached_property
-from typing import TYPE_CHECKING, Any, NamedTuple
+from dataclasses import replace
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from tribodyn.errors import InputError
-from tribodyn.faults import BearingForce, BearingImpacts, Fault, Waviness
+from tribodyn.faults import Fault, Waviness
 from tribodyn.interrupt import single_blas_thread
-from tribodyn.machine.planetary.ring_sensor import passing_weights
 from tribodyn.progress import SILENT, Progress
-from tribodyn.study.faults.clock import MOST_CYCLES
+from tribodyn.study.faults.clock import (
+    MOST_CYCLES,
+    FaultyTeeth,
+    fault_cost,
+    teeth_of,
+)
 from tribodyn.study.faults.driven_shafts import drive_machine
-from tribodyn.study.faults.impact_transfer import FreeStructure, ImpactResponse, impact_response
 from tribodyn.study.faults.loose_seat import (
     loose_seats,
     with_lifted_forces,
     with_loose_seats,
 )
-from tribodyn.study.faults.machine_section import faults_of_mesh
+from tribodyn.study.faults.machine_signals import MachineTurningMotion, RingPlace
 from tribodyn.study.faults.motion import contacts_over_turns, turning_mesh_of
-from tribodyn.study.faults.sensors import MachineSensors, SensorPlace, seat_accelerance
+from tribodyn.study.faults.phase_motion import phase_motion
+from tribodyn.study.faults.sensors import MachineSensors, seat_accelerance
 from tribodyn.study.faults.turning import (
-    SAMPLES,
     Accuracy,
-    PeriodicMotion,
-    even_samples,
     refuse_long_period,
     repeated,
     steady_over_turns,
 )
-from tribodyn.study.machine.first_look import warn_of_orders, warn_of_period
+from tribodyn.study.machine.first_look import warn_of_orders
 from tribodyn.study.mesh_inputs import mesh_inputs
 from tribodyn.study.planetary.common import only_stage
-from tribodyn.study.planetary.stage_result import planetary_angles
 from tribodyn.types import Array
 
 if TYPE_CHECKING:
@@ -51,105 +48,24 @@ _ACCURACY = Accuracy((128, 256), 1e-4)
 #: Most mesh cycles of a signal of a ring.
 _MOST_OF_RING = 20_000
 _SHORTER = (
-    "Give faults of one gear only, numbers of teeth with common factors, or orders that repeat "
-    "after fewer turns"
+    'Set solver.phases = "auto", which needs no period unless bearings have a clearance, or give '
+    "faults of one gear of the mesh only"
 )
 
 
-class RingPlace(NamedTuple):
-    """Where a sensor is on a ring, and how it feels a passing planet."""
-
-    angle: float = 0.0  #: from y towards z [rad]
-    window: float | Callable[[Array], Array] | None = None  #: as of ``ring_sensor_signal``
-
-
-@dataclass(frozen=True, eq=False)
-class MachineTurningMotion(PeriodicMotion):
-    """Motion of a machine over whole turns of its shafts, and what its sensors receive."""
-
-    sound: LoadResult  #: with equal teeth under the same load
-    structure: MachineStructure  #: with the force laws of all teeth over the turns
-    motion: MachineMotion
-    ring: RingPlace
-
-    @property
-    def machine(self) -> Machine:
-        """The machine with the force laws over the turns."""
-        return self.structure.machine
-
-    def series(self, place: SensorPlace) -> Array:
-        """Acceleration, force or transmission error."""
-        motion = self.motion
-        if place.quantity == "force":
-            values = motion.bearing_force[:, motion.bearing.index(place.part), :3] @ place.direction
-        elif place.quantity == "acceleration":
-            values = motion.acceleration[:, motion.node.index(place.part)] @ place.direction
-        elif place.quantity == "passing_force":
-            names = self.machine.planets[place.part].mesh_names(place.part)["ring"]
-            values = motion.mesh_force[:, [motion.mesh.index(name) for name in names]]
-        else:
-            values = getattr(motion, place.quantity)[:, motion.mesh.index(place.part)]
-        fastest = int(motion.cycles.max())
-        even = even_samples(motion.clock, SAMPLES * fastest)(values)
-        even = np.tile(even, (self.cycles // fastest, *[1] * (even.ndim - 1)))
-        if place.quantity == "passing_force":
-            even = (even * self._passing(place.part, fastest, len(even))).sum(axis=1)
-        return np.asarray(even)
-
-    def _passing(self, stage: str, fastest: int, count: int) -> Array:
-        """Weight of each planet at the sensor on the ring, on even samples (count, N)."""
-        machine, parts = self.machine, self.machine.planets[stage]
-        flow, ring = machine.kinematics.shafts, machine.gears[parts.ring]
-        mesh = self.motion.mesh.index(parts.mesh_names(stage)["ring"][0])
-        share = float(self.motion.cycles[mesh]) / fastest
-        at = np.arange(count) / SAMPLES
-        turns = share * (at + self.lead(at / fastest % 1.0)) / abs(ring.teeth)
-        relative = np.sign(flow[parts.carrier].speed - flow[ring.shaft].speed)
-        return passing_weights(planetary_angles(parts), relative * turns, *self.ring)
-
-    def sensed_from(self, tacho: str | None, angle: float, window: Any) -> MachineTurningMotion:
-        """The motion with its tacho on another shaft, and its sensor at an angle of the ring."""
-        if only_stage(self.machine) is None:
-            return PeriodicMotion.sensed_from(self, tacho, angle, window)  # type: ignore[no-any-return]
-        place = RingPlace(angle, window)
-        return replace(self, ring=place, tacho=self.tacho if tacho is None else tacho)
-
-    @cached_property
-    def free_structure(self) -> FreeStructure:
-        """The machine with closed meshes, through which impacts of bearings reach the sensors."""
-        return FreeStructure(self.sound.system)
-
-    def impacts(
-        self, sensor: str, defect: tuple[str, BearingImpacts], time: Array, seed: int
-    ) -> Array:
-        """What a sensor receives of the defect of a bearing, which is named, in its unit."""
-        bearing, impacts = defect
-        assert isinstance(impacts, BearingForce)
-        rate, half_sine = 1.0 / float(time[1] - time[0]), (impacts.force, impacts.duration)
-        key = sensor, bearing, rate, half_sine
-        if key not in self.splines:
-            place = self.places.place(sensor)
-            self.splines[key] = impact_response(self, bearing, place, half_sine, rate)
-        shaft = self.rotation_frequency(self.machine.bearings[bearing].shaft)
-        response: ImpactResponse = self.splines[key]
-        return impacts.superposed(response.at, response.duration, shaft, time, seed)
-
-    def __repr__(self) -> str:
-        """One line."""
-        turns = ", ".join(f"{shaft} {turns}" for shaft, turns in self.turns.items())
-        return f"MachineTurningMotion({self.period:.5g} s, turns of the shafts: {turns})"
-
-
-def turning_machine(case: MachineCase, sound: LoadResult) -> Machine:
-    """The machine whose meshes with differing teeth have a force law over whole turns."""
+def turning_machine(case: MachineCase, sound: LoadResult, *, phases: bool = False) -> Machine:
+    """The machine with force laws over whole turns; over phases, waves turn with their gears."""
     machine = sound.machine
     changed = {}
     for name in machine.meshes:
-        faults = faults_of_mesh(case, machine, name)
-        fields = _mesh_over_turns(case, sound, name, faults)
+        faulty = FaultyTeeth.of(case, machine, name, phases=phases)
+        fields = _mesh_over_turns(case, sound, name, faulty.others)
+        mesh = machine.meshes[name]
         if fields:
-            entries = {"stiffness": machine.meshes[name].stiffness, **fields}
-            changed[name] = case.machine(sound.load, **{name: entries}).meshes[name]
+            entries = {"stiffness": mesh.stiffness, **fields}
+            mesh = case.machine(sound.load, **{name: entries}).meshes[name]
+        if fields or faulty.turns:
+            changed[name] = replace(mesh, turning=tuple(faulty.turns))
     return machine._with(meshes=changed)
 
 
@@ -182,8 +98,7 @@ def _error_over_turns(
 ) -> dict[str, Any]:
     """Error of a mesh with a constant stiffness, whose teeth all share a wave."""
     sound = machine.meshes[name].error
-    names = dict(zip(("pinion", "wheel"), case._pinion_and_wheel(name), strict=True))
-    teeth = {role: abs(machine.gears[gear].teeth) for role, gear in names.items()}
+    teeth = teeth_of(case, machine, name)
     waves = [fault for fault in faults if isinstance(fault, Waviness)]
     period = math.lcm(*(teeth[wave.gear] for wave in waves))
 
@@ -199,16 +114,12 @@ def machine_turning_motion(
     case: MachineCase, sound: LoadResult, progress: Progress = SILENT
 ) -> MachineTurningMotion:
     """Compute the steady motion over whole turns; with equal teeth it is that of the result."""
-    if sound.motion.phase_turns is not None:
-        what, why = "the motion has no common period", "A recording repeats the period of a motion"
-        remedy = (
-            "Use result.operation.response.at(time), or compute the stage by itself or with "
-            'solver.phases = "off"'
-        )
-        raise InputError(what, "solver.phases", why, remedy)
     with single_blas_thread():
         progress.start("Teeth over whole turns")
-        machine = turning_machine(case, sound)
+        over_phases = fault_cost(case, sound.machine) is not None
+        machine = turning_machine(case, sound, phases=over_phases)
+        if over_phases:
+            return phase_motion(case, sound, replace(sound.structure, machine=machine), progress)
         structure, motion, lead = sound.structure, sound.motion, np.zeros_like
         kinds = case.faults.values()
         of_teeth = all(fault.gear or fault.kind == "bearing-defect" for fault in kinds)
@@ -254,7 +165,6 @@ def _searched(
     from tribodyn.machine import system as system_of
     from tribodyn.study.machine.motion import machine_motion
 
-    warn_of_period(structure.machine)
     clock = structure.machine.clock
     fastest = int(max(clock.cycles.values()))
     refuse_long_period(fastest, 1.0 / clock.frequency, MOST_CYCLES, _SHORTER)

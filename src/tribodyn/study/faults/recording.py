@@ -2,14 +2,16 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
 from tribodyn.checks import require_number, require_whole
 from tribodyn.errors import InputError, require_between, require_positive
-from tribodyn.types import Array
+from tribodyn.signals.lines import sum_of_lines
+from tribodyn.types import Array, ComplexArray
 
 if TYPE_CHECKING:
     from tribodyn.faults import BearingImpacts
@@ -20,8 +22,9 @@ if TYPE_CHECKING:
 _MOST = 2**26
 #: Frequencies over the sampling rate between which the anti-alias filter falls from 1 to 0.
 _PASSED, _STOPPED = 0.4, 0.5
-#: Samples of the periodic signal for each period of its highest line.
-_OVERSAMPLED = 16
+#: Samples between those of a recording from which a wandering speed interpolates, those beyond its
+#: ends, and samples that are computed at once; part of the strongest line that matters.
+_OVERSAMPLED, _MARGIN, _TOGETHER, _LEAST = 8, 32, 2**18, 1e-13
 
 
 class Scatter(NamedTuple):
@@ -59,66 +62,68 @@ def recording_of(
         raise InputError(what, "argument duration", why, "Change the duration or the rate")
     rng = np.random.default_rng(scatter.seed)
     time = np.arange(count) / sample_rate
-    turned = _mesh_cycles(motion, time, scatter.speed_fluctuation, rng)
+    reached = _reached(motion, time, scatter.speed_fluctuation, rng)
     channels: dict[str, Array] = {}
     units: dict[str, str] = {}
     for sensor in sensors:
-        values, unit = motion.signal(sensor)
         key = sensor, sample_rate
         if key not in motion.splines:
-            motion.splines[key] = _band_limited(motion, values, sample_rate)
-        samples = motion.splines[key]((turned / motion.cycles) % 1.0)
+            motion.splines[key] = _passed(motion, sensor, sample_rate)
+        even = scatter.speed_fluctuation == 0.0
+        samples = _sampled(motion.splines[key], sample_rate, reached, even=even)
         for number, defect in enumerate(defects):
             draw = scatter.seed * 1009 + number
             samples = samples + motion.impacts(sensor, defect, time, draw)
         channels[sensor] = samples + scatter.noise * rng.standard_normal(count)
-        units[sensor] = unit
-    cycles_of_turn = motion.mesh_frequency / motion.rotation_frequency(motion.tacho)
-    ahead = _lead_at(motion, (turned / motion.cycles) % 1.0)
-    channels["tacho"] = _tacho((turned + ahead) / cycles_of_turn, scatter.tacho_jitter, rng)
+        units[sensor] = motion.places.place(sensor).unit
+    ahead = motion.lead_at(reached) / motion.mesh_frequency
+    turns = (reached + ahead) * motion.rotation_frequency(motion.tacho)
+    channels["tacho"] = _tacho(turns, scatter.tacho_jitter, rng)
     units["tacho"] = "V"
     return Recording(channels, sample_rate, units)
 
 
-def _mesh_cycles(
+def _reached(
     motion: PeriodicMotion, time: Array, fluctuation: float, rng: np.random.Generator
 ) -> Array:
-    """Mesh cycles at each time; the speed wanders slowly about its mean."""
-    cycles = motion.mesh_frequency * time + motion.cycles * rng.random()
+    """Times of the motion that are reached at each time; the speed wanders slowly [s]."""
+    reached = time + motion.period * rng.random()
     if fluctuation == 0.0:
-        return np.asarray(cycles)
+        return np.asarray(reached)
     # A few slow waves with random phases, shorter than ten turns of the pinion.
     slow = motion.rotation_frequency(motion.tacho) * (rng.random(4) * 0.2 + 0.05)
     phases = 2.0 * np.pi * rng.random(4)
     size = fluctuation * np.sqrt(2.0 / slow.size)  # rms of the speed over its mean
     for frequency, phase in zip(slow, phases, strict=True):
         omega = 2.0 * np.pi * frequency
-        cycles = cycles + motion.mesh_frequency * size / omega * (
-            np.sin(omega * time + phase) - np.sin(phase)
-        )
-    return np.asarray(cycles)
+        reached = reached + size / omega * (np.sin(omega * time + phase) - np.sin(phase))
+    return np.asarray(reached)
 
 
-def _lead_at(motion: PeriodicMotion, clock: Array) -> Array:
-    """Mesh cycles by which the rotation is ahead of its mean."""
-    if callable(motion.lead):
-        return np.asarray(motion.lead(clock))
-    count = len(motion.lead)
-    return np.asarray(np.interp(clock, np.arange(count) / count, motion.lead, period=1.0))
+def _passed(motion: PeriodicMotion, sensor: str, rate: float) -> tuple[Array, ComplexArray]:
+    """Lines of a signal that half the rate can hold."""
+    frequency, lines = motion.harmonics(sensor)
+    lines = lines * anti_alias(frequency / rate)
+    held = np.abs(lines) > _LEAST * np.abs(lines).max(initial=0.0)
+    return frequency[held], lines[held]
 
 
-def _band_limited(motion: PeriodicMotion, values: Array, sample_rate: float) -> Any:
-    """A periodic signal as a function of the phase, without what half the rate cannot hold."""
+def _sampled(lines: tuple[Array, ComplexArray], rate: float, time: Array, *, even: bool) -> Array:
+    """Sum of lines at rising times, evenly spaced or nearly so."""
     from scipy.interpolate import CubicSpline
 
-    lines = np.fft.rfft(values)
-    frequency = np.arange(lines.size) / motion.period
-    passed = anti_alias(frequency / sample_rate)
-    lines *= passed / np.sinc(np.arange(lines.size) / values.size)  # values are means
-    highest = int(np.flatnonzero(passed > 0.0)[-1]) + 1
-    points = max(_OVERSAMPLED * highest, 64)
-    dense = np.fft.irfft(lines[:highest], points) * (points / values.size)
-    return CubicSpline(np.arange(points + 1) / points, [*dense, dense[0]], bc_type="periodic")
+    parts = []
+    for begin in range(0, time.size, _TOGETHER):
+        at = time[begin : begin + _TOGETHER]
+        if even:
+            parts.append(sum_of_lines(*lines, float(at[0]), 1.0 / rate, at.size))
+            continue
+        step = 1.0 / (_OVERSAMPLED * rate)
+        start = float(at[0]) - _MARGIN * step
+        count = math.ceil((float(at[-1]) - start) / step) + _MARGIN
+        values = sum_of_lines(*lines, start, step, count)
+        parts.append(CubicSpline(start + step * np.arange(count), values)(at))
+    return np.concatenate(parts)
 
 
 def anti_alias(frequency: Array) -> Array:

@@ -68,6 +68,14 @@ class PeriodicMotion:
             raise InputError(what, "argument tacho", why, "Name another one")
         return turns / self.period
 
+    def lead_at(self, time: Array) -> Array:
+        """Mesh cycles by which the rotation is ahead of its mean at times [s]."""
+        clock = time / self.period % 1.0
+        if callable(self.lead):
+            return np.asarray(self.lead(clock))
+        count = len(self.lead)
+        return np.asarray(np.interp(clock, np.arange(count) / count, self.lead, period=1.0))
+
     @property
     def sensors(self) -> tuple[str, ...]:
         """Signals of :meth:`signal`."""

@@ -4,15 +4,18 @@ from __future__ import annotations
 
 import math
 import os
-from typing import TYPE_CHECKING, NamedTuple
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 from tribodyn.errors import ComputationError, Problem, warn
 from tribodyn.machine import machine_structure
+from tribodyn.study.machine.motion import phase_names
 from tribodyn.study.machine.summary import helix_figures
 from tribodyn.study.planetary.machine_stages import motion_of_stage
 
 if TYPE_CHECKING:
     from tribodyn.machine import Machine
+    from tribodyn.machine.graph.clock import Phases
     from tribodyn.study.machine.case import MachineCase
     from tribodyn.study.machine.tables import SolverTable
 
@@ -25,25 +28,32 @@ _FEWEST = 60
 
 def over_phases(solver: SolverTable, machine: Machine) -> bool:
     """Whether the motion of a machine is found over independent phases of its meshes."""
-    bearings = machine.bearings.values()
-    if solver.phases == "off" or len(machine.phases.frequency) == 1:
+    if solver.phases == "off" or len(machine.phases.frequency) == 1 or has_clearance(machine):
         return False
-    if any(bearing.unloaded is not None for bearing in bearings):
-        return False  # supports with clearance act on one clock
-    return solver.phases == "on" or max(machine.clock.cycles.values()) > _LONG_PERIOD
+    return solver.phases == "on" or repeats_late(max(machine.clock.cycles.values()))
+
+
+def has_clearance(machine: Machine) -> bool:
+    """Whether bearings have a clearance, whose forces need the period of one clock."""
+    return any(bearing.unloaded is not None for bearing in machine.bearings.values())
+
+
+def repeats_late(cycles: int) -> bool:
+    """Whether so many mesh cycles of a period take longer than independent phases."""
+    return cycles > _LONG_PERIOD
 
 
 class PhaseCost(NamedTuple):
     """What a motion over independent phases takes, before it is computed."""
 
-    phases: dict[str, float]  #: frequency of each phase by the names of its meshes [Hz]
+    phases: tuple[tuple[str, float], ...]  #: what turns with each phase, and its frequency [Hz]
     unknowns: int
     memory: float  #: [byte]
     time: float  #: of this computer's processor, once all is compiled [s]
 
     def __str__(self) -> str:
         """One line."""
-        listed = ", ".join(f"{name} {value:.6g} Hz" for name, value in self.phases.items())
+        listed = ", ".join(f"{name} {value:.6g} Hz" for name, value in self.phases)
         return (
             f"The motion is found over {len(self.phases)} phases without a common period "
             f"({listed}): about {self.unknowns} unknowns, {1e-9 * self.memory:.2g} GB and "
@@ -51,24 +61,30 @@ class PhaseCost(NamedTuple):
         )
 
 
-def phase_cost_of(solver: SolverTable, machine: Machine) -> PhaseCost:
+def phase_cost_of(
+    solver: SolverTable,
+    machine: Machine,
+    driven: tuple[Phases, Sequence[str]] | None = None,
+    orders: Any = 0,
+) -> PhaseCost:
     """Cost of the motion of a machine over phases; refuse what needs too much memory."""
-    from tribodyn.dynamics.harmonic.phase_balance import phase_cost
+    from tribodyn.dynamics.harmonic.phase_balance import Follower, phase_cost
 
-    phases, names, counts = machine.phases, {}, []
-    for axis, frequency in enumerate(phases.frequency):
-        meshes = [name for name, cycles in phases.cycles.items() if cycles[axis]]
-        more = f" and {len(meshes) - 1} others" if len(meshes) > 1 else ""
-        names[f"{meshes[0]}{more}"] = frequency
-        counts.append(sum(max(len(machine.meshes[name].contacts), 1) for name in meshes))
-    cost = PhaseCost(names, *phase_cost(len(counts), counts))
+    phases, shafts = driven or (machine.phases, ())
+    names = phase_names(machine, phases, shafts)
+    followers = [
+        Follower(
+            max(len(mesh.contacts), 1), phases.cycles[name], mesh.period,
+            tuple(phases.turns[machine.clock.cycles[name] * turn.waves] for turn in mesh.turning),
+        )
+        for name, mesh in machine.meshes.items()
+    ]  # fmt: skip
+    pairs = tuple(zip(names, phases.frequency, strict=True))
+    cost = PhaseCost(pairs, *phase_cost(followers, orders))
     if cost.memory > solver.memory:
         what = f"the motion over {len(names)} phases takes about {1e-9 * cost.memory:.3g} GB"
         why = f"At most {1e-9 * solver.memory:.3g} GB are allowed by solver.memory"
-        remedy = (
-            "Raise solver.memory, compute a part of the machine, or give two stages teeth whose "
-            "mesh frequencies are in a ratio of small whole numbers, so that they share a phase"
-        )
+        remedy = "Raise solver.memory, compute a part of the machine, or give it fewer faults"
         raise ComputationError(Problem(what, "solver.memory", why, remedy))
     return cost
 
@@ -102,7 +118,7 @@ def warn_of_period(machine: Machine, memory: float = math.inf) -> None:
     )
     if turning:
         reason = "unequal teeth repeat with whole turns of their gears"
-        remedy = "Faults of one gear only, or a case of its stage alone, shorten the period"
+        remedy = 'Set solver.phases = "auto", or compute a case of its stage alone'
     warn_of_steps(
         cycles,
         f"the meshes repeat together only after {cycles} cycles of mesh {fastest} "

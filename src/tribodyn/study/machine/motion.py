@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from fractions import Fraction
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, NamedTuple
 
@@ -15,10 +16,13 @@ from tribodyn.types import Array, ComplexArray
 if TYPE_CHECKING:
     from tribodyn.dynamics import Response
     from tribodyn.machine import Machine, MachineStructure
+    from tribodyn.machine.graph.clock import Phases
 
 #: Highest harmonic of the fastest mesh among the lines, least size of one over the largest, and
 #: highest number of a phase in a line.
 _HIGHEST, _LEAST, _NUMBERS = 20, 1e-9, (4096, 160, 24, 8)
+#: Most turns of a shaft in a phase or phases in a turn, and difference of equal rates.
+_MOST_TURNS, _EQUAL = 10_000, 1e-9
 #: Directions of forces and moments of a bearing.
 DIRECTIONS = ("x", "y", "z", "theta_x", "theta_y", "theta_z")
 
@@ -91,23 +95,83 @@ def line_numbers(turns: Array, orders: Sequence[int]) -> dict[int, tuple[int, ..
     return numbers
 
 
-def line_cause(numbers: Sequence[int], meshes: Mapping[str, Sequence[int]]) -> str:
-    """Cause of a line in words: multiples of a mesh, or of meshes of several phases."""
+class Unit(NamedTuple):
+    """What turns with a phase."""
+
+    name: str  #: shaft, or gear on its carrier; empty where meshes alone follow the phase
+    turns: Fraction  #: of it in a cycle of the phase
+
+
+def line_cause(
+    numbers: Sequence[int], meshes: Mapping[str, Sequence[int]], units: Sequence[Unit] = ()
+) -> str:
+    """Cause of a line in words: multiples of meshes, and of what turns with the phases."""
     for name, cycles in meshes.items():
         axis = int(np.argmax(np.abs(cycles)))
         count, rest = divmod(numbers[axis], cycles[axis])
         if not rest and tuple(count * each for each in cycles) == tuple(numbers):
             return f"{count} x {name}"
-    terms = []
-    for axis, number in enumerate(numbers):
+    terms: dict[str, Fraction] = {}
+    for axis, whole in enumerate(numbers):
+        number = Fraction(whole)
+        followers = [(name, cycles[axis]) for name, cycles in meshes.items() if cycles[axis]]
+        unit = units[axis] if units else Unit("", Fraction(1))
+        if followers:
+            name, each = min(followers, key=lambda pair: abs(pair[1]))
+            times = Fraction(round(number / each)) if unit.name else number
+            number -= times * each if unit.name else number
+            part = name if unit.name or abs(each) == 1 else f"{name} / {abs(each)}"
+            terms[part] = terms.get(part, Fraction(0)) + times
         if number:
-            name, cycles = min(
-                ((n, c) for n, c in meshes.items() if c[axis]), key=lambda pair: abs(pair[1][axis])
-            )
-            part = name if abs(cycles[axis]) == 1 else f"{name} / {abs(cycles[axis])}"
-            terms.append((" - " if number < 0 else " + ") + f"{abs(number)} x {part}")
-    text = "".join(terms)
+            terms[unit.name] = terms.get(unit.name, Fraction(0)) + number * unit.turns
+    listed = [
+        (" - " if count < 0 else " + ") + f"{abs(count)} x {name}"
+        for name, count in sorted(terms.items(), key=lambda term: term[1] < 0)
+        if count
+    ]
+    text = "".join(listed) or " + 0 x mean"
     return text[3:] if text.startswith(" + ") else f"-{text[3:]}"
+
+
+def phase_units(machine: Machine, phases: Phases, driven: Sequence[str] = ()) -> tuple[Unit, ...]:
+    """What turns with each phase: gears with waves or differing teeth, or driven shafts."""
+    units = []
+    for axis, frequency in enumerate(phases.frequency):
+        names: dict[str, float] = {}
+        for name, mesh in machine.meshes.items():
+            cycles = machine.clock.cycles[name]
+            gears = [turn.gear for turn in mesh.turning if phases.turns[cycles * turn.waves][axis]]
+            differ = mesh.period > 1 and phases.cycles[name][axis]
+            for gear in (*gears, *(mesh.gears if differ else ())):
+                part = machine.gears[gear]
+                turning = f"{gear} on {mesh.carrier}" if mesh.carrier else part.shaft
+                names.setdefault(turning, cycles / abs(part.teeth))
+        if any(cycles[axis] for cycles in phases.driven.values()):
+            names = {shaft: float(machine.clock.turns[shaft]) for shaft in driven}
+        matches = [
+            Unit(name, ratio)
+            for name, rate in names.items()
+            for exact in [frequency / (machine.clock.frequency * rate)]
+            for ratio in [Fraction(exact).limit_denominator(_MOST_TURNS)]
+            if abs(ratio - exact) < _EQUAL * exact
+        ]
+        none = Unit("random load" if names else "", Fraction(1))
+        sums = {unit: sum(unit.turns.as_integer_ratio()) for unit in matches}
+        units.append(min(matches, key=sums.__getitem__, default=none))
+    return tuple(units)
+
+
+def phase_names(machine: Machine, phases: Phases, driven: Sequence[str] = ()) -> tuple[str, ...]:
+    """Names of the phases: of the meshes, or of what turns."""
+    names = []
+    for axis, unit in enumerate(phase_units(machine, phases, driven)):
+        meshes = [name for name, cycles in phases.cycles.items() if cycles[axis]]
+        more = f" and {len(meshes) - 1} others" if len(meshes) > 1 else ""
+        part = unit.name if unit.turns == 1 else f"{unit.turns} x {unit.name}"
+        names.append(f"{meshes[0]}{more}" if meshes else part)
+        if meshes and unit.name:
+            names[-1] += f" over {part}"
+    return tuple(names)
 
 
 @record
@@ -153,6 +217,8 @@ class MachineMotion(PeriodicSamples):
         Cycles of each phase along the closed line.
     mesh_phases : (meshes, phases) array, optional
         Mesh cycles of each mesh over each phase.
+    units : tuple of Unit
+        What turns with each phase, of a motion with faults.
     """
 
     clock: Array = quantity("clock", unit="1", axis=True)
@@ -171,6 +237,7 @@ class MachineMotion(PeriodicSamples):
     phase_frequency: Array | None = quantity("phase", unit="Hz", default=None)
     phase_turns: Array | None = quantity("phase", unit="1", default=None)
     mesh_phases: Array | None = quantity("mesh", "phase", unit="1", default=None)
+    units: tuple[Unit, ...] = ()
 
     @property
     def mesh_frequency(self) -> Array:
@@ -231,7 +298,9 @@ class MachineMotion(PeriodicSamples):
         numbers = line_numbers(turns, [int(n) + 1 for n in chosen if sizes[n] > least])
         labels = dict(zip(self.mesh, phases.astype(int).tolist(), strict=True))
         lines = [
-            MotionLine(float(np.dot(k, frequency)), waves[order - 1], k, line_cause(k, labels))
+            MotionLine(
+                float(np.dot(k, frequency)), waves[order - 1], k, line_cause(k, labels, self.units)
+            )
             for order, k in numbers.items()
         ]
         return sorted(lines, key=lambda line: line.frequency)
@@ -335,7 +404,9 @@ def joined(series: Mapping[str, Array], samples: int, width: tuple[int, ...] = (
     return np.stack(list(series.values()), axis=1)
 
 
-def machine_motion(structure: MachineStructure, response: Response) -> MachineMotion:
+def machine_motion(
+    structure: MachineStructure, response: Response, phases: Phases | None = None
+) -> MachineMotion:
     """Forces, errors and accelerations of the parts of a machine along its motion."""
     machine, fine = structure.machine, response.fine
     samples = fine.phase.size
@@ -352,7 +423,7 @@ def machine_motion(structure: MachineStructure, response: Response) -> MachineMo
         name: structure.bearing_load(name, fine.position, fine.velocity)
         for name in machine.bearings
     }
-    over = _over_phases(machine, response)
+    over = _over_phases(machine, response, phases or machine.phases)
     nodes = machine.housing.nodes if machine.housing is not None else {}
     accelerations = {n: fine.acceleration @ structure.housing_node(n)[:3].T for n in nodes or {}}
     return MachineMotion(
@@ -390,14 +461,15 @@ def motion_from(data: Any) -> MachineMotion:
     return MachineMotion(**values)
 
 
-def _over_phases(machine: Machine, response: Response) -> dict[str, Any]:
+def _over_phases(machine: Machine, response: Response, over: Phases) -> dict[str, Any]:
     """Facts of a motion over independent phases; none on one clock."""
     from tribodyn.dynamics import PhaseResponse
 
     if not isinstance(response, PhaseResponse):
         return {}
     turns, frequency = np.array(response.turns), np.asarray(response.frequencies)
-    phases = np.array([machine.phases.cycles[name] for name in machine.meshes])
+    periods = np.array([mesh.period for mesh in machine.meshes.values()])
+    phases = np.array([over.cycles[name] for name in machine.meshes]) * periods[:, None]
     fastest = int(np.argmax(frequency))
     return {
         "cycles": phases @ turns,

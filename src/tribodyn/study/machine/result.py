@@ -37,7 +37,7 @@ if TYPE_CHECKING:
     from tribodyn.machine.structure import MachineStructure
     from tribodyn.mesh import MeshTable
     from tribodyn.study.case.provenance import Assumption
-    from tribodyn.study.faults.machine_motion import MachineTurningMotion
+    from tribodyn.study.faults.machine_signals import MachineTurningMotion
     from tribodyn.study.faults.sensors import Sensors
     from tribodyn.study.heat_balance import HeatBalance
     from tribodyn.study.machine.case import MachineCase

@@ -1,0 +1,135 @@
+"""Machines with faults whose motion has no short period: phases of meshes and shafts."""
+
+from __future__ import annotations
+
+from functools import cache
+from typing import Any
+
+import numpy as np
+import pytest
+from tests.unit.study.test_machine_phases import case
+
+import tribodyn as td
+from tribodyn.study.faults.clock import check_motion, fault_cost
+from tribodyn.study.faults.machine_motion import machine_turning_motion
+from tribodyn.study.faults.phase_motion import MachinePhaseMotion
+
+SPEED = 1000.0 / 60.0
+SHORT = {"z1": 20, "z2": 24, "z3": 15, "z4": 25}
+RIPPLE = {"kind": "torque-ripple", "shaft": "in", "orders": [0.5, 2.0], "torques": [0.3, 0.4]}
+
+
+def eccentric(*gears: str) -> dict[str, Any]:
+    """Faults of gears, each of another size."""
+    return {
+        f"of_{gear}": {
+            "kind": "eccentricity", "gear": gear, "amplitude": f"{3 + n} um",
+            "phase": f"{50 * n} deg",
+        }
+        for n, gear in enumerate(gears)
+    }  # fmt: skip
+
+
+def with_faults(base: Any, **faults: dict[str, Any]) -> Any:
+    changes = {f"faults.{n}.{key}": v for n, fault in faults.items() for key, v in fault.items()}
+    return base.replace(
+        {**changes, "dynamics.seat_mass": "10 kg", "dynamics.seat_frequency": "2 kHz"}
+    )
+
+
+@cache
+def sound(phases: str = "auto") -> Any:
+    return td.run(case(SHORT, phases=phases))
+
+
+@cache
+def hunting() -> Any:
+    """An eccentric gear on each of the shafts of two hunting stages."""
+    faulty = with_faults(
+        case({"z1": 19, "z2": 23, "z3": 17, "z4": 31}), **eccentric("z1", "z2", "z3", "z4")
+    )
+    return td.run(faulty)
+
+
+def motion_of(phases: str, **faults: dict[str, Any]) -> Any:
+    faulty = with_faults(case(SHORT, phases=phases), **faults)
+    return machine_turning_motion(faulty, sound().operation)
+
+
+def assert_same_lines(phased: Any, clocked: Any, sensor: str, part: float = 1e-4) -> None:
+    """Lines over phases are those of the period, but for a part of the largest."""
+    frequency, lines = clocked.harmonics(sensor)
+    at, values = phased.harmonics(sensor)
+    size = np.abs(lines[1:]).max()
+    spacing = frequency[1]
+    strong = np.abs(values) > part * size
+    number = np.rint(at[strong] / spacing).astype(int)
+    assert at[strong] == pytest.approx(number * spacing, abs=1e-6 * spacing)
+    total = np.zeros(number.max() + 1, dtype=complex)
+    np.add.at(total, number, values[strong])  # phases in a ratio share lines of the period
+    expected = lines[: total.size]
+    assert np.abs(total - expected).max() < 2.0 * part * size
+
+
+def test_each_shaft_has_its_phase_and_its_sidebands() -> None:
+    motion = hunting().turning_motion
+    assert isinstance(motion, MachinePhaseMotion)
+    shafts = {"in": SPEED, "shaft1": SPEED * 19 / 23, "out": SPEED * 19 / 23 * 17 / 31}
+    meshes = {"mesh1": SPEED * 19, "mesh2": SPEED * 19 / 23 * 17}
+    lines = {line.cause: line.frequency for line in motion.lines("meshes.mesh1.mesh_force")}
+    for name, frequency in {**shafts, **meshes}.items():
+        assert lines[f"1 x {name}"] == pytest.approx(frequency, rel=1e-12)
+    assert set(lines) == {f"1 x {name}" for name in (*shafts, *meshes)}  # it is linear
+
+
+def test_lines_are_those_of_the_period_where_there_is_one() -> None:
+    faults = eccentric("z1", "z2", "z3", "z4")
+    phased, clocked = (motion_of(phases, **faults) for phases in ("on", "off"))
+    assert isinstance(phased, MachinePhaseMotion)
+    assert not isinstance(clocked, MachinePhaseMotion)
+    for sensor in ("meshes.mesh1.mesh_force", "meshes.mesh2.transmission_error"):
+        assert_same_lines(phased, clocked, sensor)
+
+
+def test_a_ripple_leads_the_meshes_over_its_own_phase() -> None:
+    phased, clocked = (motion_of(phases, ripple=RIPPLE) for phases in ("on", "off"))
+    assert phased.ahead is not None
+    for sensor in ("meshes.mesh1.mesh_force", "meshes.mesh2.mesh_force"):
+        assert_same_lines(phased, clocked, sensor, 1e-3)
+    causes = {line.cause for line in phased.lines("meshes.mesh1.mesh_force", 8)}
+    assert {"1/2 x in", "2 x in", "1 x mesh1 + 1/2 x in", "1 x mesh1 - 1/2 x in"} <= causes
+    time = np.linspace(0.0, 0.3, 50)
+    ahead = clocked.lead_at(time)
+    start = clocked.lead_at(np.zeros(1))
+    scale = phased.mesh_frequency / clocked.mesh_frequency
+    assert phased.lead_at(time) == pytest.approx(scale * (ahead - start), abs=1e-3 * np.ptp(ahead))
+
+
+def test_recordings_of_any_length_are_sums_of_the_lines() -> None:
+    result = hunting()
+    sensor = "meshes.mesh2.mesh_force"
+    rate, seconds = 2000.0, 40.0  # the hunting period is 43 s
+    recording = result.recording(sensor, seconds, rate, seed=3)
+    values = np.asarray(recording[sensor])
+    assert values.size == rate * seconds
+    window = np.hanning(values.size)
+    spectrum = np.abs(np.fft.rfft(values * window)) * 4.0 / values.size
+    frequency, lines = result.turning_motion.harmonics(sensor)
+    place = np.fft.rfftfreq(values.size, 1.0 / rate)
+    passed = (frequency > 1.0) & (frequency < 0.35 * rate)
+    for hertz, size in zip(frequency[passed], np.abs(lines[passed]), strict=True):
+        if size > 1e-3 * np.abs(lines[1:]).max():
+            near = np.abs(place - hertz) < 0.1
+            assert spectrum[near].max() == pytest.approx(size, rel=0.16)  # a window between lines
+    pulses = np.asarray(recording["tacho"])
+    assert np.count_nonzero(np.diff(pulses) > 0) == pytest.approx(SPEED * seconds, abs=1.0)
+
+
+def test_costs_are_stated_and_refused_before_the_run() -> None:
+    faulty = hunting().case
+    text = " ".join(check_motion(faulty))
+    assert "With its faults" in text
+    assert "5 phases" in text
+    small = faulty.replace({"solver.memory": "100 MB"})
+    with pytest.raises(td.ComputationError, match=r"allowed by solver.memory"):
+        fault_cost(small, small.machine())
