@@ -17,7 +17,7 @@ def sum_of_lines(
 ) -> Array:
     """Sum of ``Re(amplitude_k exp(2 pi i frequency_k t))`` on even times, exact to 1e-11."""
     # Lines are spread over the grid of a fast Fourier transform by a short kernel, the transform of
-    # which is divided off: Barnett, Magland and af Klinteberg (2019), SIAM J. Sci. Comput. 41, C479.
+    # which is divided off: Barnett, Magland, af Klinteberg (2019), SIAM J. Sci. Comput. 41, C479.
     from scipy.fft import ifft, next_fast_len
 
     turns = frequency * step % 1.0
