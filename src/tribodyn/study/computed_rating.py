@@ -143,7 +143,7 @@ def least_safeties(maps: xarray.Dataset | None) -> dict[str, dict[str, float]]:
 
 
 def exposures(rating: MeshRating) -> dict[str, dict[str, float]]:
-    """Greatest exposure below the flanks of gears whose material has a hardness profile, by role."""
+    """Greatest exposure below flanks of gears whose material has a hardness profile, by role."""
     # At each place of the path the greatest pressure over the face, friction as the run has it.
     mesh, maps = rating.rated, rating.maps
     figures: dict[str, dict[str, float]] = {}
