@@ -147,7 +147,8 @@ def record_root_stress(mesh: MeshLoad, index: int, factors: Factors) -> float:
     f_eps, rule = load_distribution_factor(ratio, mesh.pair.overlap_ratio, mesh.conditions.edition)
     f_eps = record("f_eps", f_eps, PRACTICE, branch=rule)
     y_f = form_factor(lever, section, gear.normal_pressure_angle, f_eps)
-    y_f = record("Y_F", y_f, f"{PART_3}, form factor", branch=section.tool)
+    source = PRACTICE if gear.is_ring else PART_3  # the lever of rings is derived
+    y_f = record("Y_F", y_f, f"{source}, form factor", branch=section.tool)
     slender = chord / arm
     notch = record("q_s", chord / (2.0 * fillet), f"{PART_3}, notch parameter")
     check_range("q_s", notch, 1.0, 8.0, f"Y_S of {PART_3}")

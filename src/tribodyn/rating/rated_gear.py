@@ -138,7 +138,8 @@ class RatedGear:
     def grade_text(self) -> str:
         """Where the deviations come from."""
         if self.accuracy_grade is not None:
-            return f"grade {self.accuracy_grade} of ISO 1328-1:{self.tolerance_edition}"
+            memory = " from memory" if self.tolerance_edition == 2013 else ""
+            return f"grade {self.accuracy_grade} of ISO 1328-1:{self.tolerance_edition}{memory}"
         return "stated" if self._stated else f"grade {ASSUMED_GRADE} assumed"
 
     @property

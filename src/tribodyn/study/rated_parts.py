@@ -26,6 +26,7 @@ from tribodyn.rating import (
     system_life,
 )
 from tribodyn.rating.factor import Factor, Factors, check_range
+from tribodyn.rating.mesh_load import PRACTICE
 
 #: f_0 of deep groove ball bearings, which lies between 12 and 16 for usual sizes.
 _USUAL_SHARE = 14.0
@@ -191,12 +192,14 @@ def bearing_life_under(bearing: PartBearing, load: BearingLoad, application: flo
     equivalent, branch = bearing.equivalent_load(radial, axial)
     if equivalent is None:
         equivalent, branch = p_ref or 0.0, "reference load of ISO/TS 16281"
-    record("P", equivalent, f"{_LIFE}, equivalent load", unit="N", branch=branch)
+    source = PRACTICE if branch.startswith("0.") else _LIFE  # factors X and Y
+    record("P", equivalent, f"{source}, equivalent load", unit="N", branch=branch)
     if not load.speed or not (equivalent or p_ref):
         return BearingLoadLife(load.load, load.share, math.inf, math.inf, None, factors)
     check_range("P/C", equivalent / capacity, 0.0, 0.5, _LIFE)
     if p_ref is not None:
-        record("P_ref", p_ref, "ISO/TS 16281, from the loads of the elements", unit="N")
+        source = "ISO/TS 16281" if bearing.rated.kind.endswith("ball") else PRACTICE
+        record("P_ref", p_ref, f"{source}, from the loads of the elements", unit="N")
     lacks = bearing.missing
     life = bearing_life(
         bearing.rated,
@@ -206,6 +209,12 @@ def bearing_life_under(bearing: PartBearing, load: BearingLoad, application: flo
         contamination=bearing.conditions.cleanliness,
         reliability=bearing.conditions.reliability,
     )
+    cleanliness = str(bearing.conditions.cleanliness)
+    sources = {
+        "nu": "oil of the case",
+        "e_C": _LIFE if cleanliness.startswith("grease") else f"{PRACTICE}, {cleanliness}",
+        "C_u": "catalogue" if bearing.rated.fatigue_load else f"{PRACTICE}, from C_0",
+    }
     for name, value, unit in (
         ("a_1", life.reliability_factor, ""),
         ("nu", load.viscosity, "m^2/s"),
@@ -215,7 +224,7 @@ def bearing_life_under(bearing: PartBearing, load: BearingLoad, application: flo
         ("a_ISO", life.life_factor, ""),
     ):
         if value is not None:
-            record(name, value, _LIFE, unit=unit, branch=bearing.rated.kind)
+            record(name, value, sources.get(name, _LIFE), unit=unit, branch=bearing.rated.kind)
     # The life of rollers falls with another power of the load: their lives differ by design.
     longer = 1.0 if turns is None else turns / life.basic_turns
     modified = None if life.modified_life is None else longer * life.modified_life

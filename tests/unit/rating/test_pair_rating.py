@@ -27,8 +27,12 @@ from tribodyn.rating import (
     GearOil,
     PinionShaft,
     RatedGear,
+    ShaftMaterial,
+    ShaftNotch,
+    ShaftStress,
     ShaperCutter,
     rate_pair,
+    rate_shaft,
 )
 
 THROUGH = GearMaterial(kind="V", hardness=220, yield_strength=550e6)
@@ -50,6 +54,36 @@ def test_factors_carry_value_unit_source_and_branch():
     data = json.loads(json.dumps(rating.to_dict()))
     assert data["wheel"]["factors"]["Y_F"]["value"] == rating.wheel.factors["Y_F"]
     assert data["edition"] == 2019
+
+
+def test_what_is_from_memory_is_not_called_a_standard():
+    """The source of each factor that was not compared with a text says so."""
+
+    def remembered(factor) -> bool:
+        return "not compared" in factor.source
+
+    oil = replace(TEST_OIL, micropitting_load_stage=9, scuffing_load_stage=12)
+    rating = rate_spur(oil=oil)
+    assert all(remembered(rating.factors[name]) for name in ("X_mp", "W_W", "lambda_GFT"))
+    assert not remembered(rating.factors["X_W"])
+    for structure, memory in ((1.0, False), (1.5, False), (1.15, True), (0.45, True)):
+        gear = replace(SPUR_GEARS[0], structure_factor=structure)
+        factors = rate_spur(oil=oil, pinion=gear, wheel=gear).factors
+        assert remembered(factors["X_W"]) == memory
+    ring = rate_pair(ring_example(), torque=100.0, speed=100.0, oil=TEST_OIL)
+    assert remembered(ring.wheel.factors["Y_F"])
+    assert not remembered(ring.pinion.factors["Y_F"])
+    classed = RatedGear(accuracy_grade=5, tolerance_edition=2013)
+    assert classed.grade_text.endswith("from memory")
+    assert not RatedGear(accuracy_grade=5).grade_text.endswith("from memory")
+    steel = ShaftMaterial(tensile_strength=900e6, yield_strength=700e6)
+    bent = ShaftStress((0.0, 50e6, 20e6))
+    for notch, memory in (
+        (ShaftNotch(diameter=40e-3, kind="key"), True),
+        (ShaftNotch(diameter=40e-3, large_diameter=50e-3, radius=2e-3), False),
+        (ShaftNotch(diameter=40e-3, kind="given", notch_factors=(1.5, 1.5, 1.3)), False),
+    ):
+        assert remembered(rate_shaft(notch, steel, bent).factors["beta_bending"]) == memory
 
 
 def test_factors_of_the_caller_replace_computed_ones():

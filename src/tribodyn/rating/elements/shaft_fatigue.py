@@ -16,6 +16,7 @@ from typing import Final, NamedTuple
 
 from tribodyn.errors import Argument, InputError, require_between, require_one_of, require_positive
 from tribodyn.rating.factor import Factors
+from tribodyn.rating.mesh_load import PRACTICE
 
 SOURCE: Final = "DIN 743"
 #: Slope and reference diameter of K_1 of sigma_B and of sigma_S, largest diameter [mm].
@@ -254,7 +255,10 @@ def _strengths(
     fatigue, yielding = [], []
     for index, kind in enumerate(_KINDS):
         beta, alpha = _notch_factor(notch, material, index)
-        beta = record(f"beta_{kind}", beta, f"{SOURCE}, notch factor", branch=notch.kind)
+        source = f"{SOURCE}, notch factor"
+        if notch.notch_factors is None and notch.kind not in _SHAPES:
+            source += f"; K_3 from {PRACTICE}"
+        beta = record(f"beta_{kind}", beta, source, branch=notch.kind)
         k_2 = record(f"K_2_{kind}", 1.0 if index == 0 else size, f"{SOURCE}, size of the section")
         k_f = 0.575 * rough + 0.425 if index == 2 else rough
         k_f = record(f"K_F_{kind}", k_f, f"{SOURCE}, roughness")

@@ -81,7 +81,7 @@ def record_micropitting(load: ScuffingLoad) -> float | None:
         stage = oil.micropitting_load_stage
         tested = reference_film_ratio(oil, stage)
         branch = f"load stage {stage}"
-        tested = record("lambda_GFT", tested, f"{PART_22}, test gears at A", branch=branch)
+        tested = record("lambda_GFT", tested, f"{PRACTICE}, test gears at A", branch=branch)
         weight = record("W_W", material_factor(load), f"{PRACTICE}, material factor")
         limit = record("lambda_GFP", weight * tested, f"{PART_22}, permissible film ratio")
     return record("S_lambda", least / limit, f"{PART_22}, safety against micropitting, method B")

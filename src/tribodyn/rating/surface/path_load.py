@@ -25,6 +25,10 @@ from tribodyn.types import Array
 PART_20, PART_21, PART_22 = "ISO/TS 6336-20", "ISO/TS 6336-21", "ISO/TS 6336-22"
 
 
+#: X_W of normal, phosphated and of nitrided or copper-plated steel; others are from memory.
+_KNOWN_STRUCTURES = (1.0, 1.25, 1.5)
+
+
 def helical_load_factor(total_contact_ratio: float) -> float:
     """K_Bgamma: 1 up to eps_gamma = 2, then 1 + 0.2 sqrt((eps - 2)(5 - eps)), 1.3 from 3.5 on."""
     excess = min(max(total_contact_ratio, 2.0), 3.5)
@@ -187,15 +191,17 @@ class ScuffingLoad:
     @cached_property
     def structure_factor(self) -> float:
         """X_W, mean of both gears."""
-        values, branches = [], []
+        values, branches, source = [], [], PART_20
         for gear in self.mesh.rated:
             nitrided = gear.material.kind.startswith("N")
             default = 1.5 if nitrided else 1.0
             values.append(default if gear.structure_factor is None else gear.structure_factor)
             branches.append("stated" if gear.structure_factor else gear.material.kind)
+            if values[-1] not in _KNOWN_STRUCTURES or gear.material.kind.startswith("G"):
+                source = PRACTICE
         branch = " and ".join(dict.fromkeys(branches))
         value = sum(values) / 2.0
-        return self.factors.record("X_W", value, f"{PART_20}, structural factor", branch=branch)
+        return self.factors.record("X_W", value, f"{source}, structural factor", branch=branch)
 
 
 def overlap_factor(relief: float, effective: float, ratio: float) -> float:
