@@ -132,3 +132,15 @@ def walther_slope(temperature: float, points: tuple[TemperaturePoint, Temperatur
     slope = (_ordinate(thick) - _ordinate(thin)) / math.log10(warm / cold)
     shifted = viscosity + _SHIFT
     return slope * shifted * math.log(shifted) / (viscosity * temperature)
+
+
+def viscosity_from_slope(temperature: float, point: TemperaturePoint, slope: float) -> float:
+    """Kinematic viscosity [m^2/s] on the line of Walther through a point with a slope there.
+
+    The slope is the fall of ln(viscosity) per kelvin at the point [1/K].
+    """
+    there, viscosity = point[0], 1e6 * point[1]
+    shifted = viscosity + _SHIFT
+    steepness = slope * viscosity * there / (shifted * math.log(shifted))
+    ordinate = math.log10(math.log10(shifted)) - steepness * math.log10(temperature / there)
+    return 1e-6 * (10.0**10.0**ordinate - _SHIFT)

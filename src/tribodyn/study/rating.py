@@ -10,7 +10,6 @@ from typing import TYPE_CHECKING, Any
 
 from tribodyn.errors import ModelWarning, collected
 from tribodyn.rating import (
-    GearOil,
     GearRating,
     PairRating,
     RatedGear,
@@ -22,8 +21,8 @@ from tribodyn.rating import (
 )
 from tribodyn.record import figure_method
 from tribodyn.study.case.rating_tables import gear_material
-from tribodyn.study.case.to_models import lubricant
 from tribodyn.study.computed_rating import load_sharing_factor
+from tribodyn.study.rated_oil import gear_oil
 from tribodyn.study.rated_parts import (
     ALL_CASES,
     BearingRating,
@@ -42,10 +41,6 @@ if TYPE_CHECKING:
 
 #: K_gamma of planetary stages by the number of planets, without a computation.
 PLANET_FACTORS = {1: 1.0, 2: 1.0, 3: 1.10, 4: 1.25, 5: 1.35, 6: 1.44, 7: 1.47}
-#: Base oils of data sheets by their names in ratings; others count as mineral.
-_BASE_OILS = {"polyalphaolefin": "pao", "polyalkylene glycol": "polyglycol"}
-#: Where the oil of a case has no temperature, as of the viscosity that it states.
-_WITHOUT_TEMPERATURE = 353.15
 _ROLES = "pinion", "wheel"
 
 
@@ -339,24 +334,6 @@ class CaseRating:
             "spectra": {each.mesh: each.to_dict() for each in self.spectra},
             **self.parts.to_dict(),
         }
-
-
-def gear_oil(case: Case) -> GearOil:
-    """Oil of a case as ratings need it, with its viscosities at 40 and 100 degC."""
-    data, rating = case.lubricant, case.rating
-    assert data is not None
-    assert rating is not None
-    cold, warm = (lubricant(data, temperature) for temperature in (313.15, 373.15))
-    return GearOil(
-        kinematic_viscosity_at_40=cold.kinematic_viscosity,
-        kinematic_viscosity_at_100=warm.kinematic_viscosity,
-        temperature=data.temperature or _WITHOUT_TEMPERATURE,
-        base_oil=_BASE_OILS.get(data.base_oil or "", "mineral"),
-        density_at_15=data.density_at_15,
-        lubrication=rating.lubrication,
-        scuffing_load_stage=rating.scuffing_load_stage,
-        micropitting_load_stage=rating.micropitting_load_stage,
-    )
 
 
 def conditions_of(case: Case, planets: int) -> dict[str, Any]:

@@ -299,6 +299,33 @@ def test_keys_that_are_wrong_or_have_no_effect_are_refused(tables, text):
         Case(**changed(PAIR, **tables))
 
 
+def test_an_oil_with_a_slope_has_the_viscosity_of_its_line_at_40_degrees(result):
+    from tribodyn.study.rated_oil import gear_oil
+
+    case = result.case
+    oil, known = case.lubricant_properties, gear_oil(case)
+    properties = {
+        "dynamic_viscosity": oil.dynamic_viscosity, "density": oil.density,
+        "pressure_viscosity_coefficient": oil.pressure_viscosity_coefficient,
+        "temperature": oil.temperature,
+        "temperature_viscosity_coefficient": oil.temperature_viscosity_coefficient,
+    }  # fmt: skip
+    from_slope = gear_oil(Case(**changed(PAIR, lubricant=properties)))
+    for name in ("kinematic_viscosity_at_40", "kinematic_viscosity_at_100"):
+        assert getattr(from_slope, name) == pytest.approx(getattr(known, name), rel=2e-3)
+    at_40 = {**properties, "temperature": 313.15}
+    del at_40["temperature_viscosity_coefficient"]
+    stated = gear_oil(Case(**changed(PAIR, lubricant=at_40)))
+    assert stated.kinematic_viscosity_at_40 == pytest.approx(oil.kinematic_viscosity)
+    assert stated.kinematic_viscosity_at_100 is None
+
+
+@pytest.mark.parametrize("name", ["hypoid-mixed-ehl", "hypoid-axle"])
+def test_bevel_and_hypoid_gears_are_refused_with_the_reason(name):
+    with pytest.raises(InputError, match=r"not rated|others are not"):
+        td.load_case(name).replace({"rating.required_life": "20000 h"})
+
+
 def test_an_idler_of_a_machine_is_bent_both_ways_and_its_load_cases_add_up():
     from tribodyn.study import MachineCase
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator
 from typing import TYPE_CHECKING, Any
 
@@ -12,6 +13,7 @@ from tribodyn.study.case.section import NamedTables, Section, table
 if TYPE_CHECKING:
     from tribodyn.rating import GearMaterial
     from tribodyn.study.case.case_data import CaseData
+    from tribodyn.study.case.sections import LubricantData
 
 _STRENGTH = "strengths of metals in N/mm2; guards against a wrong unit"
 
@@ -234,6 +236,14 @@ def _wear_problems(case: CaseData) -> Iterator[tuple[str, Problem]]:
         yield "rating.wear_coefficient", Problem(what, "", why, remedy)
 
 
+def has_viscosity_at_40(oil: LubricantData) -> bool:
+    """Whether an oil has a viscosity at 40 degC, stated or on its line over temperature."""
+    if oil.name is not None or oil.density_at_15 is not None or oil.temperature is None:
+        return oil.name is not None or oil.density_at_15 is not None
+    at_40 = math.isclose(oil.temperature, 313.15, abs_tol=1e-6)
+    return at_40 or oil.temperature_viscosity_coefficient is not None
+
+
 def rating_problems(case: CaseData) -> Iterator[tuple[str, Problem]]:
     """Problems of materials and of the rating, by dotted key."""
     names = [] if case.materials is None else [n for n in vars(case.materials) if n[0] != "_"]
@@ -246,6 +256,10 @@ def rating_problems(case: CaseData) -> Iterator[tuple[str, Problem]]:
                 what, why = f'material = "{name}" has no effect here', "Only a rating needs it"
                 yield f"gears.{role}.material", Problem(what, "", why, "Add [rating], or remove it")
         return
+    if case.gears.kind != "spur":
+        what, why = "rating has no effect here", "Cylindrical gears are rated, others are not"
+        yield "rating", Problem(what, "", why, "Remove it")
+        return
     if case.rating.edition not in (2006, 2019):
         what, why = f"edition = {case.rating.edition}", "ISO 6336 is computed as of 2006 and 2019"
         yield "rating.edition", Problem(what, "", why, "Choose one of these")
@@ -253,10 +267,13 @@ def rating_problems(case: CaseData) -> Iterator[tuple[str, Problem]]:
     if case.lubricant is None:
         what, why = "the table [lubricant] is missing", "Ratings need the viscosity at 40 degC"
         yield "rating", Problem(what, "", why, "Add it with a name, or the figures of a data sheet")
-    elif case.lubricant.name is None and case.lubricant.density_at_15 is None:
+    elif not has_viscosity_at_40(case.lubricant):
         what = "the viscosity of the oil at 40 degC is not known"
-        why = "Ratings need it, and properties at the working temperature do not give it"
-        remedy = "Give lubricant.name, or the figures of a data sheet with density_at_15"
+        why = "Ratings need it, and properties at one other temperature do not give it"
+        remedy = (
+            "Give lubricant.name, the figures of a data sheet with density_at_15, or temperature "
+            "and temperature_viscosity_coefficient"
+        )
         yield "rating", Problem(what, "", why, remedy)
     used = [getattr(case.gears, role).material for role in ("pinion", "wheel")]
     for name in (name for name in names if name not in used):

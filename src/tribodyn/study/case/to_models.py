@@ -447,7 +447,7 @@ def gear_problems(gears: Gears) -> list[tuple[str, Problem]]:
 def case_problems(case: CaseData) -> list[tuple[str, Problem]]:
     """Find physical contradictions in a formally valid case."""
     if case.gears.kind == "table":
-        return _table_problems(case) or _fault_problems(case)
+        return _table_problems(case) or _fault_problems(case) or list(rating_problems(case))
     if case.gears.kind == "hypoid":
         problems = _faults("gears", lambda: case.hypoid_flanks)
     else:
