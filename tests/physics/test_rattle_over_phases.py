@@ -52,7 +52,7 @@ def test_statistics_are_those_of_the_march(rattle):
     motion, _ = rattle
     fine = motion.fine
     assert np.ptp(fine.time) * FREQUENCIES == pytest.approx(motion.turns, rel=1e-2)
-    assert 0.1 < np.mean(fine.contact_force == 0.0) < 0.9
+    assert 0.1 < np.mean(fine.contact_force <= 0.0) < 0.9
     # Bodies that stay together are pushed by the load on average.
     assert fine.mean(fine.contact_force) == pytest.approx([LOAD, LOAD], rel=5e-3)
     lines = motion.lines()

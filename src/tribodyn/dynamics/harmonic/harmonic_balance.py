@@ -185,7 +185,7 @@ def harmonic_balance(
     >>> contacts = [replace(first, cycles=(1, 0)), replace(second, cycles=(0, 1))]
     >>> apart = replace(machine, contacts=contacts)
     >>> harmonic_balance(apart, (0.3, 0.9 / np.sqrt(2.0))).points
-    (16, 16)
+    (24, 24)
     """
     require_number("tolerance", tolerance)
     require_positive("tolerance", tolerance, "")

@@ -34,9 +34,9 @@ from tribodyn.types import Array, Index, Mask
 
 #: Points over a phase of meshes, and over one that only turns shafts, with which an automatic
 #: choice starts, and those with which it tries at last to find a motion.
-_MESH, _SHAFT, _LAST = 16, 8, 64
-#: Points of the first grids over phases that a part does not follow, fewer of more than so many.
-_OTHERS, _FEW = 8, 4
+_MESH, _SHAFT, _LAST = 24, 8, 96
+#: Points of the first grids over phases that a part does not follow, by the number of phases.
+_OTHERS = 12, 12, 12, 8, 4
 #: Change of the motion with twice the points at which an automatic choice stops: the first while it
 #: falls to less than this part from grid to grid, the second where forces that bend or jump make it
 #: fall slowly; and the most unknowns of both.
@@ -50,6 +50,7 @@ _ADDED, _TRIES = (0.3, 0.1, 0.03, 0.01, 0.003), 12
 _PATIENCE = 5
 
 
+<<<<<<< HEAD
 class Follower(NamedTuple):
     """Contacts of a mesh, and what they follow."""
 
@@ -66,6 +67,12 @@ def phase_cost(followers: Sequence[Follower], orders: Any = 0) -> tuple[int, flo
         each.contacts * int(np.prod(np.where(_axes(each.cycles, each.turns), fine, others)))
         for each in followers
     )
+=======
+def phase_cost(frequencies: int, contacts: Sequence[int]) -> tuple[int, float, float]:
+    """Unknowns, memory [byte] and time [s] of a motion by the contacts that follow each phase."""
+    others = _OTHERS[min(frequencies, len(_OTHERS)) - 1]
+    unknowns = sum(count * _MESH * others ** (frequencies - 1) for count in contacts)
+>>>>>>> 2d68a6aa (dynamics: finer first grids over phases, points where they pay)
     unknowns = max(unknowns, min(2 * unknowns, _MOST))
     memory = 2e8 + 1.4e8 * frequencies + 1.5e3 * unknowns
     return unknowns, memory, 0.3 + 2e-4 * unknowns
@@ -159,6 +166,14 @@ class _Search:
         phases = range(self.rows.frequency.size)
         return np.array([[axis in part.axes for axis in phases] for part in self.parts])
 
+    def affordable(self, points: Points, poor: Mask, errors: Array, most: int) -> Mask:
+        """Those of the poor grids with the largest errors whose points stay below a number."""
+        chosen = np.zeros_like(poor)
+        for place in np.argsort(-errors, axis=None)[: np.count_nonzero(poor)]:
+            chosen.flat[place] = True
+            chosen.flat[place] = self.size(doubled(points, chosen)) <= most
+        return chosen
+
     def size(self, points: Points) -> int:
         """Number of unknowns on grids with so many points over each phase."""
         widths = (part.along.shape[1] for part in self.parts)
@@ -179,12 +194,12 @@ class _Search:
     def changes(self, points: Points, residual: PhaseResidual, state: State) -> Array:
         """Change of a motion with twice the points of each part over each phase."""
         errors = residual.unfelt(state)
-        for place in np.ndindex(errors.shape):
+        for place in np.argwhere(np.ones(errors.shape, dtype=bool)):
             which = np.zeros(errors.shape, dtype=bool)
-            which[place] = True
+            which[*place] = True
             finer = self.residual(doubled(points, which), residual)
             change = float(np.abs(finer.change(residual, state, place[0])).max()) / state.size
-            errors[place] = max(errors[place], change)
+            errors[*place] = max(errors[*place], change)
         return errors
 
 
@@ -210,9 +225,10 @@ def phase_balance(
         poor = errors > (limit / errors.size if smooth else _WORST * errors.max())
         if steps is not None or step_error <= limit:
             break
-        more, before = doubled(points, poor), errors
-        if search.size(more) > most:
+        poor, before = search.affordable(points, poor, errors, most), errors
+        if not poor.any():
             break
+        more = doubled(points, poor)
         finer = search.residual(more, residual)
         start_y = residual.refined(solution.state.y, finer)
         better = newton(finer, start_y, 0.01 * tolerance, patience=_PATIENCE)
@@ -253,6 +269,7 @@ def _integrated(
 
 def _first_points(search: _Search) -> Points:
     """Points over each phase with which an automatic choice starts."""
+<<<<<<< HEAD
     followers = [
         Follower(1, each.cycles, each.period, tuple(term.cycles for term in each.turning))
         for each in search.rows.system.contacts
@@ -262,6 +279,15 @@ def _first_points(search: _Search) -> Points:
     )
     fine, others = _points_of(followers, np.maximum(force, lead))
     shapes = np.where(search.followed(), fine, others)
+=======
+    rows = search.rows
+    cycles = np.abs([mesh.cycles for mesh in rows.meshes]).max(axis=0)
+    turns = [np.abs(term.cycles) for each in rows.system.contacts for term in each.turning]
+    shafts = np.max(turns, axis=0) if turns else np.ones_like(cycles)
+    counts = np.where(cycles > 0.0, _MESH * cycles, _SHAFT * np.maximum(shafts, 1.0))
+    others = _OTHERS[min(counts.size, len(_OTHERS)) - 1]
+    shapes = np.where(search.followed(), counts, np.minimum(counts, others)).astype(int)
+>>>>>>> 2d68a6aa (dynamics: finer first grids over phases, points where they pay)
     return tuple(tuple(shape) for shape in shapes.tolist())
 
 

@@ -10,6 +10,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
+from itertools import permutations
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -146,6 +147,9 @@ class _Link(NamedTuple):
 class PhaseResidual(Residual):
     """Residual of a motion over several phases, whose parts are joined in one column."""
 
+    links: dict[tuple[int, int], _Link]
+    inverses: dict[int, MeshwiseInverse]  #: of the parts at their last states, while they serve
+
     def __init__(
         self,
         parts: Sequence[Part],
@@ -161,17 +165,14 @@ class PhaseResidual(Residual):
             for part, grid in zip(parts, grids, strict=True)
         ]
         links = {} if known is None else known.links
-        pairs = [(to, by) for to in range(len(parts)) for by in range(len(parts)) if to != by]
-        same_parts = [
-            known is not None and part is known.parts[n] for n, part in enumerate(self.parts)
-        ]
+        before = [None] * len(parts) if known is None else known.parts
+        kept = {n for n, part in enumerate(self.parts) if part is before[n]}
         self.links = {
-            (to, by): links[to, by] if same_parts[to] and same_parts[by] else self._link(to, by)
-            for to, by in pairs
+            pair: links[pair] if kept.issuperset(pair) else self._link(*pair)
+            for pair in permutations(range(len(parts)), 2)
         }
         widths = [grid.size * part.along.shape[1] for part, grid in zip(parts, grids, strict=True)]
         self.ends = np.cumsum([0, *widths])
-        #: Approximate inverses of parts at their last states, and whether they still serve.
         old = {} if known is None else known.inverses
         self.inverses = {id(part): old[id(part)] for part in self.parts if id(part) in old}
         self.excess = np.zeros(1)  #: additional damping of all contacts [N*s/m]

@@ -26,9 +26,9 @@ _RECORDED, _MOST = 64, 4096
 _SETTLED = 5.0
 #: Numbers that are held at once while lines are summed up.
 _TOGETHER = 2**22
-#: Samples per cycle of the fastest phase along the closed line, most cycles of it, and cycles over
-#: which no two phases fall into step on it.
-_SAMPLED, _LONGEST, _APART = 64, 1024, 12
+#: Samples per cycle of the fastest phase along the closed line, most cycles of it for each further
+#: phase, and cycles over which no phases fall into step on it if it can be.
+_SAMPLED, _LONGEST, _APART = 64, 512, 12
 #: What has lines, in the order of their columns.
 _QUANTITIES = ("position", "velocity", "acceleration", "deflection", "contact_force")
 
@@ -55,7 +55,7 @@ class PhaseResponse(Response):
     frequencies : (phases,) array
         Frequency of each phase [Hz].
     points : tuple of int
-        Points over each phase with which the motion was found.
+        Points over each phase of the contacts that follow it; others have fewer over it.
     turns : tuple of int
         Cycles of each phase along the closed line of ``fine``. Where harmonic balance does not
         converge, ``fine`` is a time integration over so many cycles, after it has settled, and
@@ -210,17 +210,19 @@ def sum_lines(points: Array, numbers: Index, values: ComplexArray) -> Array:
 def closed_line(frequency: Array) -> tuple[int, ...]:
     """Cycles of each phase, nearly in the ratio of the frequencies, that cover all phases."""
     slowest, fastest = float(frequency.min()), float(frequency.max())
-    reach = _APART if frequency.size < 4 else _APART // 3
-    axes = [np.arange(0 if axis == 0 else -reach, reach + 1) for axis in range(frequency.size)]
-    small = np.stack(np.meshgrid(*axes, indexing="ij"), axis=-1).reshape(-1, frequency.size)
-    small = small[small.any(axis=1)]
-    best, nearest = np.ones(frequency.size, dtype=np.int64), np.inf
-    for count in range(1, max(2, int(_LONGEST * slowest / fastest)) + 1):
-        turns = np.maximum(np.rint(count * frequency / slowest), 1.0).astype(np.int64)
-        distance = float(np.abs(turns * slowest / (count * frequency) - 1.0).max())
-        if distance < nearest and np.all(small @ turns):
-            best, nearest = turns, distance
-    return tuple(best.tolist())
+    longest = _LONGEST * max(1, frequency.size - 1)
+    counts = np.arange(1, max(2, int(longest * slowest / fastest)) + 1)[:, None]
+    lines = np.maximum(np.rint(counts * frequency / slowest), 1.0).astype(np.int64)
+    distance = np.abs(lines * slowest / (counts * frequency) - 1.0).max(axis=1)
+    order = np.argsort(distance, kind="stable")
+    for reach in range(_APART if frequency.size < 4 else _APART // 3, 0, -1):
+        axes = [np.arange(0 if axis == 0 else -reach, reach + 1) for axis in range(frequency.size)]
+        small = np.stack(np.meshgrid(*axes, indexing="ij"), axis=-1).reshape(-1, frequency.size)
+        small = small[small.any(axis=1)]
+        for turns in lines[order]:
+            if np.all(small @ turns):
+                return tuple(turns.tolist())
+    return tuple(lines[order[0]].tolist())
 
 
 def _along(line: tuple[int, ...], response: PhaseResponse) -> FineSamples:
