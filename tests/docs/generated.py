@@ -16,6 +16,7 @@ from tribodyn.scope import PROGRAMS, program_table, scope_table, statement
 from tribodyn.study import Case
 from tribodyn.study.case.reference import reference_tables, start_toml
 from tribodyn.study.case.section import Table
+from tribodyn.study.case.values import Term, find_term, listed_terms
 from tribodyn.study.faults.kinds import kind_table
 from tribodyn.study.parts_reference import machine_tables
 from tribodyn.study.pipeline.citations import bibliography
@@ -82,6 +83,29 @@ def _description(text: str) -> str:
     return re.sub(r'^description = ".*"$', lambda _: line, text, count=1, flags=re.MULTILINE)
 
 
+def _words(text: str) -> str:
+    """The page of the words of the trade."""
+    terms: dict[Term, list[str]] = {}
+    for word in listed_terms():
+        if (term := find_term(word)) is not None:
+            terms.setdefault(term, []).append(word)
+    rows = sorted(
+        f"| {', '.join(words)} | {term.meaning} | {f'`{term.key}`' if term.key else ''} | "
+        f"[{term.page.partition('.')[0]}]({term.page}) |"
+        for term, words in terms.items()
+    )
+    return "\n".join([_OF_WORDS, *rows]) + "\n"
+
+
+_OF_WORDS = """# Words of the trade
+
+After this page you know what tribodyn calls what you look for. `tribodyn explain WORDS` prints the
+same, and explains every key, model, law, symbol and warning besides.
+
+| words | what it is here | key or quantity | page |
+|---|---|---|---|"""
+
+
 def _bibliography(text: str) -> str:
     """The page of sources."""
     users: dict[str, list[str]] = {}
@@ -144,6 +168,7 @@ GENERATED = {
     "CITATION.cff": (_citation,),
     "pyproject.toml": (_description,),
     "docs/scope.md": (_scope,),
+    "docs/words.md": (_words,),
     **{f"docs/coming-from-{name}.md": (_scope,) for name in PROGRAMS.values()},
     "docs/command-line.md": (_needs,),
     "docs/case-file.md": (_start, _tables),

@@ -114,6 +114,13 @@ def test_pages_that_are_named_exist() -> None:
         (("LAMBDA",), {"quantity": "film_ratio"}),
         (("tip", "relief"), {"quantity": "tip_relief", "unit": "um"}),
         (("Ra",), {"see": "roughness_ra"}),
+        (("DTE",), {"see": "dynamic_transmission_error"}),
+        (("TE",), {"see": "static_transmission_error"}),
+        (("LTCA",), {"page": "docs/stiffness.md"}),
+        (("EHL",), {"page": "docs/film.md"}),
+        (("hunting", "tooth", "frequency"), {"page": "docs/diagnosis.md#where-to-look"}),
+        (("assembly", "phase"), {"page": "docs/diagnosis.md#where-to-look"}),
+        (("scuffing",), {"page": "docs/rating.md"}),
         (("c_gamma",), {"page": "docs/stiffness.md"}),
         (("helix",), {"page": "docs/geometry.md"}),
         (("Kv",), {"see": "dynamic_factor_peak"}),
@@ -151,3 +158,37 @@ def test_hertz_equations_are_those_of_the_package() -> None:
         text = explanations()["equations"][name].partition(" = ")[2].replace("E'", "E_")
         text = re.sub(r"(?<=\w) (?=\w)", "*", text)
         assert eval(text, dict(names)) == pytest.approx(float(value), rel=1e-12)
+
+
+def test_every_symbol_of_a_frequency_is_explained(capsys: pytest.CaptureFixture[str]) -> None:
+    symbols = set()
+    for name in ("two-stage-helical", "planetary-stage", "hypoid-axle"):
+        symbols.update(tribodyn.kinematic_frequencies(tribodyn.load_case(name)).symbol)
+    listed = {symbol for symbol in symbols if symbol.isupper() and symbol.isalpha()} - {"TF"}
+    assert listed >= {"GMF", "HTF", "APF", "BPFO", "BPFI", "BSF", "FTF", "PPF"}
+    for symbol in listed:
+        answer = _explain(capsys, symbol)[0]["answer"]
+        assert symbol in answer or symbol == "APF"
+        assert "tribodyn frequencies FILE" in answer
+
+
+@pytest.mark.parametrize("count", [9, 13])
+def test_the_explained_formulas_are_those_of_the_program(count: int) -> None:
+    """Outer and inner ring share all passes, and the elements roll between them."""
+    from tribodyn.faults import BearingImpacts
+
+    ratio, turning = 0.21, 31.0
+    frequencies = {
+        place: BearingImpacts(
+            place=place,
+            rolling_elements=count,
+            element_diameter=ratio,
+            pitch_diameter=1.0,
+            contact_angle=0.3,
+        ).frequency(turning)
+        for place in ("outer", "inner", "element")
+    }
+    part = ratio * math.cos(0.3)
+    assert frequencies["outer"] == pytest.approx(count / 2 * turning * (1 - part))
+    assert frequencies["inner"] == pytest.approx(count / 2 * turning * (1 + part))
+    assert frequencies["element"] == pytest.approx(2 * (turning / (2 * ratio) * (1 - part**2)))
