@@ -49,6 +49,7 @@ __all__ = ["ANY", "FILES", "LINES", "import_circles", "lines_of_code", "measures
 #: cli, study: best crowning and lead slope of a case
 #: cli, study: probability of failure, safeties in summaries and reports
 #: rating: sources say what is from memory
+#: dynamics: march over phases, grids of each part
 LINES: dict[str, int] = {
     "__init__": 105,
     "__main__": 3,
@@ -65,7 +66,7 @@ LINES: dict[str, int] = {
     "contact": 422,
     "cookbook": 107,
     "drawing": 195,
-    "dynamics": 15223,
+    "dynamics": 15233,
     "ehl": 9807,
     "errors": 224,
     "exchange": 1903,
@@ -75,7 +76,7 @@ LINES: dict[str, int] = {
     "gear": 3746,
     "interrupt": 215,
     "losses": 929,
-    "lubricant": 554,
+    "lubricant": 560,
     "machine": 5665,
     "measurement": 3381,
     "members": 3,
@@ -92,7 +93,7 @@ LINES: dict[str, int] = {
     "scope": 55,
     "signals": 1788,
     "stiffness": 5161,
-    "study": 18467,
+    "study": 18500,
     "surrogate": 777,
     "types": 7,
     "uncertainty": 290,
@@ -101,7 +102,7 @@ LINES: dict[str, int] = {
     "variants": 1048,
 }
 #: Modules of the package, and its annotations without a type.
-FILES, ANY = 761, 2683
+FILES, ANY = 762, 2683
 
 _NO_CODE = {
     tokenize.COMMENT, tokenize.NL, tokenize.NEWLINE, tokenize.INDENT, tokenize.DEDENT,

@@ -50,7 +50,6 @@ _ADDED, _TRIES = (0.3, 0.1, 0.03, 0.01, 0.003), 12
 _PATIENCE = 5
 
 
-<<<<<<< HEAD
 class Follower(NamedTuple):
     """Contacts of a mesh, and what they follow."""
 
@@ -67,12 +66,6 @@ def phase_cost(followers: Sequence[Follower], orders: Any = 0) -> tuple[int, flo
         each.contacts * int(np.prod(np.where(_axes(each.cycles, each.turns), fine, others)))
         for each in followers
     )
-=======
-def phase_cost(frequencies: int, contacts: Sequence[int]) -> tuple[int, float, float]:
-    """Unknowns, memory [byte] and time [s] of a motion by the contacts that follow each phase."""
-    others = _OTHERS[min(frequencies, len(_OTHERS)) - 1]
-    unknowns = sum(count * _MESH * others ** (frequencies - 1) for count in contacts)
->>>>>>> 2d68a6aa (dynamics: finer first grids over phases, points where they pay)
     unknowns = max(unknowns, min(2 * unknowns, _MOST))
     memory = 2e8 + 1.4e8 * frequencies + 1.5e3 * unknowns
     return unknowns, memory, 0.3 + 2e-4 * unknowns
@@ -269,7 +262,6 @@ def _integrated(
 
 def _first_points(search: _Search) -> Points:
     """Points over each phase with which an automatic choice starts."""
-<<<<<<< HEAD
     followers = [
         Follower(1, each.cycles, each.period, tuple(term.cycles for term in each.turning))
         for each in search.rows.system.contacts
@@ -279,15 +271,6 @@ def _first_points(search: _Search) -> Points:
     )
     fine, others = _points_of(followers, np.maximum(force, lead))
     shapes = np.where(search.followed(), fine, others)
-=======
-    rows = search.rows
-    cycles = np.abs([mesh.cycles for mesh in rows.meshes]).max(axis=0)
-    turns = [np.abs(term.cycles) for each in rows.system.contacts for term in each.turning]
-    shafts = np.max(turns, axis=0) if turns else np.ones_like(cycles)
-    counts = np.where(cycles > 0.0, _MESH * cycles, _SHAFT * np.maximum(shafts, 1.0))
-    others = _OTHERS[min(counts.size, len(_OTHERS)) - 1]
-    shapes = np.where(search.followed(), counts, np.minimum(counts, others)).astype(int)
->>>>>>> 2d68a6aa (dynamics: finer first grids over phases, points where they pay)
     return tuple(tuple(shape) for shape in shapes.tolist())
 
 
@@ -300,7 +283,7 @@ def _points_of(followers: Sequence[Follower], orders: Any) -> tuple[Index, Index
     shafts = np.max([np.ones(cycles.shape[1]), *turns], axis=0)
     meshes, driven = (cycles * periods).max(axis=0), _SHAFT * np.asarray(orders)
     fine = np.maximum(np.where(meshes > 0, _MESH * meshes, _SHAFT * shafts), driven).astype(int)
-    others = _OTHERS if len(fine) <= _FEW else _OTHERS // 2
+    others = _OTHERS[min(len(fine), len(_OTHERS)) - 1]
     felt = np.maximum(others * np.where(cycles > 0, periods, 1).max(axis=0), driven)
     return fine, np.minimum(fine, felt).astype(int)
 
