@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 import json
+from functools import partial
 from pathlib import Path
 
 import pytest
 
 from tribodyn.cli import call, progress_bar
+from tribodyn.progress import TextProgress
 
 _STUDY = """
 case = "fzg-roughness"
@@ -45,7 +47,7 @@ def test_a_study_is_computed_and_summarised(
     captured = capsys.readouterr()
     assert "2 of 4 members are done (50 %)" in captured.out
     assert "the same command continues from there" in captured.err
-    monkeypatch.setattr(progress_bar, "_INTERVAL", 0.0)
+    monkeypatch.setattr(progress_bar, "TextProgress", partial(TextProgress, interval=0.0))
     assert call(["study", "s.toml"]) == 0
     captured = capsys.readouterr()
     assert "4 of 4 members are done (100 %)\n  2 of them failed:\n         2  " in captured.out
