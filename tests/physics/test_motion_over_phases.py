@@ -253,3 +253,39 @@ def test_what_needs_one_clock_refuses_phases():
 def test_a_tuple_of_one_number_is_the_clock():
     contact = two_meshes((5, 3)).contacts[0]
     assert replace(contact, cycles=(5,)).cycles == 5
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("count", [4, 5])
+def test_many_phases_have_the_mean_forces_of_equilibrium(count):
+    """Gears in a row on one base radius each; shafts between the meshes."""
+    size, stiffness, damping = 2 * count, *np.zeros((2, 2 * count, 2 * count))
+    ratios = np.linspace(0.8, 1.3, count - 1)
+    for number, ratio in enumerate(ratios):
+        twist = np.zeros(size)
+        twist[2 * number + 1], twist[2 * number + 2] = 1.0, -ratio
+        stiffness += 4e7 * np.outer(twist, twist)
+        damping += 2e3 * np.outer(twist, twist)
+    force = np.zeros(size)
+    force[0], force[-1] = 3e3, -3e3 * np.prod(ratios)
+    means = 3e3 * np.cumprod([1.0, *ratios])
+    contacts = []
+    for number in range(count):
+        direction = np.zeros(size)
+        direction[2 * number : 2 * number + 2] = 1.0, -1.0
+        law, error = wave((0.15, number), (0.04, 1.0)), wave((2e-6, 0.7 * number))
+        cycles = tuple(int(axis == number) for axis in range(count))
+        contacts.append(
+            Contact(
+                direction, lambda x, law=law: 3e8 * (1 + law(x)), 2e3, error, 30e-6, cycles=cycles
+            )
+        )
+    mass = np.diag(np.linspace(0.8, 6.0, size))
+    system = System(mass, damping, stiffness, force, contacts)
+    frequencies = 1400.0 * 0.43 ** np.arange(count)
+    motion = harmonic_balance(system, frequencies)
+    assert motion.converged
+    assert motion.step_error < 1e-2
+    assert motion.fine.mean(motion.fine.contact_force) == pytest.approx(means, rel=1e-8)
+    lines = motion.lines()
+    assert lines.frequency == pytest.approx(lines.numbers @ frequencies, rel=1e-12, abs=1e-9)
