@@ -138,3 +138,18 @@ def test_the_load_of_one_pair_bends_as_without_the_others():
 def test_a_hypoid_pair_is_refused_by_name():
     with pytest.raises(InputError, match="hypoid"):
         root_stress_by_elements(h1043(), "pinion")
+
+
+@pytest.mark.parametrize("gear", ["pinion", "wheel"])
+def test_slices_of_hardly_inclined_teeth_are_stressed_as_straight_ones(gear):
+    """Normal section, virtual gear and slices against the transverse section of whole pairs."""
+    straight, inclined = spur_example(), spur_example(helix_angle=2e-3)
+    tables = [mesh_of(pair) for pair in (straight, inclined)]
+    assert tables[0].face_position is None
+    assert tables[1].face_position is not None
+    whole, sliced = (
+        root_stress_by_elements(pair, gear, table)
+        for pair, table in zip((straight, inclined), tables, strict=True)
+    )
+    assert sliced.ratio == pytest.approx(whole.ratio, rel=1e-3)
+    assert sliced.greatest == pytest.approx(whole.greatest, rel=0.03)

@@ -36,6 +36,7 @@ def load_sharing_factor(case: Case, table: MeshTable) -> float:
         cycle, teeth = teeth_under_load(pair, inputs.settings, table.pinion_torque, None, None)
     slices = 1 if cycle.slices is None else slice_count(table)
     ideal = by_pair(teeth.shared_load().share, slices).sum(axis=2)
+    ideal /= ideal.sum(axis=1, keepdims=True)  # without corners beyond the path of contact
     shares = by_pair(table.load_share, slice_count(table)).sum(axis=2)
     return max(float(shares.max() / ideal.max()), 1.0)
 
