@@ -7,10 +7,10 @@ from typing import Any
 import numpy as np
 
 from tribodyn.drawing import drawing
-from tribodyn.plot.theme.colors import HEAT, INK, MUTED, TOTAL, WHEEL
+from tribodyn.plot.theme.colors import HEAT, MUTED, TOTAL, WHEEL
 from tribodyn.plot.theme.labels import axis_label, display_unit, displayed, rounded
 from tribodyn.plot.theme.panels import Panel, Row, curve, from_zero, stack, stack_rows
-from tribodyn.plot.theme.style import Trace, heat, line
+from tribodyn.plot.theme.style import Trace, heat, line, over_map
 from tribodyn.types import Array
 
 #: Film over the central one up to which the map distinguishes it, and lines of equal film.
@@ -39,9 +39,7 @@ def _map(x: Array, y: Array, values: Array, unit: str, bar: tuple[float, float])
 def _levels(heat: Trace, top: float) -> Trace:
     """Lines of equal film on its map."""
     levels = {"start": 0.0, "end": top, "size": top / _LINES, "coloring": "none"}
-    lines = {"type": "contour", "contours": levels, "line": {"color": INK, "width": 0.8}}
-    plain = {"showscale": False, "showlegend": False, "hoverinfo": "skip", "name": "film"}
-    return {**{name: heat[name] for name in ("x", "y", "z")}, **lines, **plain}
+    return over_map(heat, levels, 0.8, "film")
 
 
 @drawing(

@@ -13,7 +13,7 @@ from tribodyn.plot.film.line_contact import contact_scales, window
 from tribodyn.plot.theme.colors import MUTED, PAIR_COLORS, PINION, TOTAL
 from tribodyn.plot.theme.labels import axis_label, display_unit, displayed, rounded, significant
 from tribodyn.plot.theme.panels import FROM_ZERO, Panel, curves, event_lines, from_zero, stack
-from tribodyn.plot.theme.style import Trace, heat, line
+from tribodyn.plot.theme.style import POWERS, Trace, heat, line
 from tribodyn.types import Array
 
 if TYPE_CHECKING:
@@ -94,10 +94,9 @@ def film_response(
     marks = event_lines([("transit", float(displayed("frequency", transit)))] * inside)
     for note in marks["annotations"]:
         note["x"] = float(np.log10(note["x"]))
-    logarithmic = {"type": "log", "exponentformat": "power"}
     crossing = {"zeroline": True, "zerolinecolor": MUTED, "exponentformat": "power"}
     rows: tuple[tuple[str, str, Any, Trace], ...] = (
-        ("compliance", "Compliance", compliance, logarithmic),
+        ("compliance", "Compliance", compliance, POWERS),
         ("film_stiffness", "Stiffness", stiffness, crossing),
         ("mesh_damping", "Damping", damping, crossing),
     )
@@ -106,7 +105,7 @@ def film_response(
         curves(quantity, label, x, [(label.lower(), values, TOTAL)], axis, 0.8)
         for quantity, label, values, axis in rows
     ]
-    layout = {"xaxis": logarithmic, **marks}
+    layout = {"xaxis": POWERS, **marks}
     title = _response_title(at, stiffness, static)
     return stack(title, axis_label("frequency"), panels, layout).figure()
 
@@ -197,10 +196,8 @@ def _in_film(solution: Any, inside: Array, position: Array, film_scale: float) -
 
 def _temperatures(label: str, x: Any, oil: Any, surfaces: Any, name: str) -> Panel:
     """Panel with the temperatures of the oil and of both surfaces [K]."""
-    rows = (
-        (name, oil, TOTAL),
-        *zip(("surface 1", "surface 2"), surfaces, PAIR_COLORS, strict=False),
-    )
+    names = ("surface 1", "surface 2")
+    rows = ((name, oil, TOTAL), *zip(names, surfaces, PAIR_COLORS, strict=False))
     traces = [line(x, values - _ZERO, name, color, unit=_UNIT) for name, values, color in rows]
     return Panel(axis_label("temperature", label), traces)
 

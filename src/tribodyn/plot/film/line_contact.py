@@ -52,30 +52,17 @@ class Scales:
 
 
 def _unitless(solution: Any) -> Scales:
-    return Scales(
-        1.0 / solution.half_width,
-        1.0 / solution.hertz_pressure,
-        1.0 / solution.film_unit,
-        "Position [b]",
-        "Pressure [p<sub>h</sub>]",
-        "Film [b²/R]",
-        "p<sub>h</sub>",
-        "b²/R",
-    )
+    b, p, h = solution.half_width, solution.hertz_pressure, solution.film_unit
+    labels = ("Position [b]", "Pressure [p<sub>h</sub>]", "Film [b²/R]")
+    return Scales(1.0 / b, 1.0 / p, 1.0 / h, *labels, "p<sub>h</sub>", "b²/R")
 
 
 def _metric() -> Scales:
-    position, pressure, film = "half_width", "hertz_pressure", "film_thickness"
-    return Scales(
-        float(displayed(position, 1.0)),
-        float(displayed(pressure, 1.0)),
-        float(displayed(film, 1.0)),
-        axis_label(position, "Position"),
-        axis_label(pressure, "Pressure"),
-        axis_label(film, "Film"),
-        display_unit(pressure),
-        display_unit(film),
-    )
+    names = {"half_width": "Position", "hertz_pressure": "Pressure", "film_thickness": "Film"}
+    b, p, h = (float(displayed(name, 1.0)) for name in names)
+    position, pressure, film = (axis_label(*each) for each in names.items())
+    units = (display_unit("hertz_pressure"), display_unit("film_thickness"))
+    return Scales(b, p, h, position, pressure, film, *units)
 
 
 def contact_scales(solutions: Sequence[Any], dimensionless: bool) -> list[Scales]:
@@ -121,10 +108,8 @@ def window(solution: Any) -> tuple[float, float]:
 
 def film_height(solutions: Sequence[Any], scales: Sequence[Scales]) -> float:
     """Upper end of the film axis for several contacts, in its display unit."""
-    thickest = (
-        s.film * solution.central_film for solution, s in zip(solutions, scales, strict=True)
-    )
-    return float(_FILMS * max(thickest))
+    pairs = zip(solutions, scales, strict=True)
+    return float(_FILMS * max(scale.film * solution.central_film for solution, scale in pairs))
 
 
 def thinned(solution: Any, points: int) -> NDArray[np.intp]:
@@ -132,13 +117,9 @@ def thinned(solution: Any, points: int) -> NDArray[np.intp]:
     n = len(solution.position)
     if n <= points:
         return np.arange(n)
-    curves = np.stack(
-        (
-            solution.pressure / solution.pressure.max(),
-            # the open gap outside the film is not plotted
-            np.minimum(solution.film / solution.central_film, _FILMS) / _FILMS,
-        )
-    )
+    # The open gap outside the film is not plotted.
+    film = np.minimum(solution.film / solution.central_film, _FILMS) / _FILMS
+    curves = np.stack((solution.pressure / solution.pressure.max(), film))
     bend = np.zeros(n)
     bend[1:-1] = np.max(np.abs(np.diff(curves, 2)), axis=0)
     density = np.sqrt(bend)
@@ -163,7 +144,7 @@ def point(
     x: float, y: float, name: str, color: str, *, unit: str = "", symbol: str = "circle"
 ) -> Trace:
     """Describe one marked point with a name in the legend."""
-    mark = marked([x], [y], name, color, size=9, symbol=symbol, unit=unit)
+    mark = marked([x], [y], name, color, 9, symbol, unit=unit)
     return {**mark, "marker": {**mark["marker"], "line": {"color": color, "width": 2}}}
 
 
@@ -319,12 +300,10 @@ def compare_line_contacts(
         [[scale.position * end for end in window(contact)] for contact, scale, _ in rows]
     )
     height = {"range": [0.0, film_height(contacts, scales)]}
-    return stack(
-        f"The thinnest film, {units.film_text(thinnest.minimum_film)}, is that of {name}",
-        scales[0].position_label,
-        [
-            from_zero(scales[0].pressure_label, _pressures(rows)),
-            Panel(scales[0].film_label, _films(rows), height),
-        ],
-        {"xaxis": {"range": [ends[:, 0].min(), ends[:, 1].max()]}},
-    ).figure()
+    panels = [
+        from_zero(scales[0].pressure_label, _pressures(rows)),
+        Panel(scales[0].film_label, _films(rows), height),
+    ]
+    title = f"The thinnest film, {units.film_text(thinnest.minimum_film)}, is that of {name}"
+    layout = {"xaxis": {"range": [ends[:, 0].min(), ends[:, 1].max()]}}
+    return stack(title, scales[0].position_label, panels, layout).figure()

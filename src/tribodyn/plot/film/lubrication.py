@@ -14,7 +14,7 @@ from tribodyn.plot.theme.colors import MUTED, PAIR_COLORS, PINION, TOTAL, WHEEL
 from tribodyn.plot.theme.labels import axis_label, display_unit, displayed, rounded, significant
 from tribodyn.plot.theme.panels import FROM_ZERO, ZERO, Panel, curves, event_lines, stack
 from tribodyn.plot.theme.path import roll_label
-from tribodyn.plot.theme.style import Trace, axis, line, plane_figure
+from tribodyn.plot.theme.style import Trace, axis, line, note, plane_figure
 from tribodyn.types import Array
 
 if TYPE_CHECKING:
@@ -40,11 +40,10 @@ REGIME_SENTENCE = (
 
 
 def _caption(mesh: MeshTable) -> str:
-    whose = (
-        f'that of the friction law "{mesh.friction_law}"'
-        if mesh.asperity_friction_coefficient is not None
-        else f'estimated from the film ratio: the friction law "{mesh.friction_law}" has none'
-    )
+    law = f'the friction law "{mesh.friction_law}"'
+    whose = f"estimated from the film ratio: {law} has none"
+    if mesh.asperity_friction_coefficient is not None:
+        whose = f"that of {law}"
     return (
         f"The minimum film of a tooth pair over the composite roughness. {REGIME_SENTENCE} The "
         f"load share of the film is {whose}. {sharing_under_load(mesh)}{gaps_sentence(mesh)}"
@@ -94,10 +93,8 @@ def _title(mesh: MeshTable, share: Array) -> str:
 def _friction(path: Path) -> Panel:
     """Friction force of a pair with its film and asperity parts."""
     force = path.life("normal_force") * path.life("sliding_direction")
-    total, asperities = (
-        path.under_load(name) * force
-        for name in ("friction_coefficient", "asperity_friction_coefficient")
-    )
+    total = path.under_load("friction_coefficient") * force
+    asperities = path.under_load("asperity_friction_coefficient") * force
     rows = (
         ("total", total, TOTAL),
         ("oil film", total - asperities, _OIL),
@@ -123,10 +120,10 @@ def _bands(low: float, high: float) -> list[Trace]:
 
 def _names(low: float, high: float) -> list[Trace]:
     """Label the regimes at the right end of the first panel."""
-    common = {"xref": "paper", "x": 0.995, "xanchor": "right", "yref": "y", "showarrow": False}
+    common = {"xref": "paper", "xanchor": "right", "yref": "y"}
+    style = Trace(color=MUTED, bgcolor="rgba(255, 255, 255, 0.6)", **common)
     return [
-        {**common, "y": 0.5 * float(np.log10(bottom) + np.log10(top)), "text": name}
-        | {"font": {"size": 12, "color": MUTED}, "bgcolor": "rgba(255, 255, 255, 0.6)"}
+        note(0.995, 0.5 * float(np.log10(bottom) + np.log10(top)), name, **style)
         for (bottom, top), name in zip(_edges(low, high), REGIMES, strict=True)
     ]
 

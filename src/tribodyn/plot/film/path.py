@@ -157,10 +157,7 @@ def friction(mesh: MeshTable) -> Any:
     coefficient, load = path.under_load("friction_coefficient"), path.life("normal_force")
     force = coefficient * load * path.life("sliding_direction")
     mean = rounded("friction_coefficient", mesh.mean_friction_coefficient)
-    title = (
-        f"The mean friction coefficient is {mean} over the mesh cycle, weighted with the "
-        "load shares"
-    )
+    mean = f"{mean} over the mesh cycle, weighted with the load shares"
     rows = (
         ("friction_coefficient", coefficient, PAIR_COLORS[0], FROM_ZERO, 1.0),
         ("friction_force", force, WHEEL, ZERO, 1.0),
@@ -170,7 +167,7 @@ def friction(mesh: MeshTable) -> Any:
         curves(name, None, path.angle, [(name.replace("_", " "), values, color)], axis, height)
         for name, values, color, axis, height in rows
     ]
-    return path.figure(title, panels)
+    return path.figure(f"The mean friction coefficient is {mean}", panels)
 
 
 _has_film = Need(
@@ -241,11 +238,8 @@ def film_pressure(mesh: MeshTable) -> Any:
     """Draw the greatest film pressure of one tooth pair over the roll angle."""
     path = Path(mesh)
     greatest = rounded("film_pressure", np.nanmax(path.life("film_pressure")))
-    label, curves = axis_label("film_pressure"), path.curves(_PRESSURES)
-    return path.figure(
-        f"The pressure in the oil film reaches {greatest}",
-        [Panel(label, curves, FROM_ZERO, height=1.3)],
-    )
+    panel = Panel(axis_label("film_pressure"), path.curves(_PRESSURES), FROM_ZERO, height=1.3)
+    return path.figure(f"The pressure in the oil film reaches {greatest}", [panel])
 
 
 def _in_series(mesh: MeshTable) -> bool:
@@ -257,10 +251,9 @@ def _in_series(mesh: MeshTable) -> bool:
 def _stiffness_caption(mesh: MeshTable) -> str:
     kind = mesh.film_stiffness_kind
     if not _in_series(mesh):
-        sum_of_source = "The film stiffness is the sum printed in the source. "
         return (
             "Stiffness of the oil film of a tooth pair and of its teeth, on a logarithmic scale. "
-            + (sum_of_source if kind == "seed" else "")
+            + "The film stiffness is the sum printed in the source. " * (kind == "seed")
             + "In this case the film adds no compliance: the mesh has the stiffness of the teeth "
             'alone. Choose film.stiffness = "approach" to put both in series.'
         )

@@ -12,7 +12,7 @@ from tribodyn.errors import quiet
 from tribodyn.gear import hypoid_flanks
 from tribodyn.plot.theme.colors import FILLS, INK, MUTED, PAIR_COLORS, PINION, WHEEL, translucent
 from tribodyn.plot.theme.panels import Panel, Row, stack_rows
-from tribodyn.plot.theme.style import Trace, figure, line, marked
+from tribodyn.plot.theme.style import Trace, axis, dots, figure, line, marked
 from tribodyn.types import Array
 
 if TYPE_CHECKING:
@@ -129,7 +129,16 @@ def _path(contact: ToothContact) -> list[Trace]:
     edges = leads & contact.on_edge
     if not np.any(edges):
         return [path]
-    return [path, marked(x[edges], y[edges], "edge contact", INK, size=7, symbol="x", unit="mm")]
+    return [path, marked(x[edges], y[edges], "edge contact", INK, 7, "x", unit="mm")]
+
+
+def flank_rows(flank: list[Trace], error: Panel) -> list[Row]:
+    """Rows with the flank of the wheel, to scale, and with its transmission error."""
+    across = Panel("Across, towards the tip [mm]", flank, {"scaleanchor": "x"}, height=1.4)
+    return [
+        Row("Along the pitch cone of the wheel, towards the heel [mm]", across),
+        Row("Rotation of the wheel from the calculation point [°]", error),
+    ]
 
 
 def _error(contact: ToothContact) -> Panel:
@@ -161,13 +170,7 @@ def hypoid_contact(contact: ToothContact) -> Any:
     label = f"marked at {contact.marking_thickness * 1e6:.3g} µm"
     marking = pattern(contact, label, PINION)
     flank = [outline(contact), _lines(contact), marking, *_path(contact)]
-    rows = [
-        Row(
-            "Along the pitch cone of the wheel, towards the heel [mm]",
-            Panel("Across, towards the tip [mm]", flank, {"scaleanchor": "x"}, height=1.4),
-        ),
-        Row("Rotation of the wheel from the calculation point [°]", _error(contact)),
-    ]
+    rows = flank_rows(flank, _error(contact))
     title = (
         f"Transmission error of {contact.peak_to_peak * 1e6:.3g} µrad on the "
         f"{contact.flanks.side} flank, contact ratio {contact.contact_ratio:.2f}"
@@ -315,13 +318,12 @@ def ease_off(flanks: HypoidFlanks) -> Any:
     hover = "along %{x:.4g} mm, across %{y:.4g} mm: %{z:.4g} µm<extra></extra>"
     surface: Trace = {"type": "surface", "x": x, "y": y, "z": gap, "name": "ease-off"}
     surface |= {"colorscale": colors, "hovertemplate": hover}
-    surface["colorbar"] = {"title": {"text": "Gap [µm]"}, "thickness": 14}
-    inside = flanks.active
-    dots: Trace = {"type": "scatter3d", "mode": "markers", "name": "on both flanks"}
-    dots |= {"x": x[inside], "y": y[inside], "z": gap[inside], "hoverinfo": "skip"}
-    dots["marker"] = {"size": 1.6, "color": INK}
+    surface["colorbar"] = axis("Gap [µm]", thickness=14)
+    inside, marker = flanks.active, {"size": 1.6, "color": INK}
+    points = dots(x[inside], y[inside], "on both flanks", marker, hoverinfo="skip")
+    points |= {"type": "scatter3d", "z": gap[inside]}
     most = float(np.max(gap[inside], initial=0.0))
     title = f"Ease-off of up to {most:.3g} µm on the {flanks.side} flank"
     scene = _scene((-1.65, -1.9, 1.15), x="Along [mm]", y="Across [mm]", z="Gap [µm]")
     scene |= {"aspectmode": "manual", "aspectratio": {"x": 1.5, "y": 0.9, "z": 0.6}}
-    return figure(title, [surface, dots], {"scene": scene, "height": 620, "hovermode": "closest"})
+    return figure(title, [surface, points], {"scene": scene, "height": 620, "hovermode": "closest"})

@@ -9,7 +9,7 @@ import numpy as np
 
 from tribodyn.drawing import drawing
 from tribodyn.ehl.load_share import REGIME_LIMITS
-from tribodyn.plot.gear.hypoid import outline, pattern
+from tribodyn.plot.gear.hypoid import flank_rows, outline, pattern
 from tribodyn.plot.theme.colors import (
     FILLS,
     HEAT,
@@ -23,7 +23,7 @@ from tribodyn.plot.theme.colors import (
 )
 from tribodyn.plot.theme.labels import axis_label, display_unit, displayed, significant
 from tribodyn.plot.theme.panels import Panel, Row, from_zero, stack, stack_rows
-from tribodyn.plot.theme.style import Trace, between, heat, line, marked
+from tribodyn.plot.theme.style import Trace, between, heat, line, marked, over_map
 from tribodyn.types import Array
 
 if TYPE_CHECKING:
@@ -111,19 +111,12 @@ def hypoid_misalignment(study: MisalignmentStudy) -> Any:
         flank.append(pattern(contact, label, color))
         x, y = 1e3 * study.along[number], 1e3 * study.across[number]
         more: Trace = {"unit": "mm", "showlegend": False}
-        flank.append(marked([x], [y], label, color, size=9, symbol="cross", **more))
+        flank.append(marked([x], [y], label, color, 9, "cross", **more))
         turn, error = np.degrees(contact.rotation), 1e6 * contact.angular_transmission_error
         leads = contact.leads
         more["unit"], ahead = "µrad", error[leads] - error[leads].max()
         errors.append(line(turn[leads], ahead, label, color, **more))
-    rows = [
-        Row(
-            "Along the pitch cone of the wheel, towards the heel [mm]",
-            Panel("Across, towards the tip [mm]", flank, {"scaleanchor": "x"}, height=1.4),
-        ),
-        Row("Rotation of the wheel from the calculation point [°]",
-            Panel("Wheel ahead [µrad]", errors)),
-    ]  # fmt: skip
+    rows = flank_rows(flank, Panel("Wheel ahead [µrad]", errors))
     ends = f"{1e6 * study.peak_to_peak.min():.3g}", f"{1e6 * study.peak_to_peak.max():.3g}"
     side = study.contacts[0].flanks.side
     title = f"Transmission error of {' to '.join(dict.fromkeys(ends))} µrad on the {side} flank"
@@ -141,13 +134,10 @@ _MADE_BY = "Call tribodyn.mesh.hypoid_loaded_contact."
 def _outline(loaded: HypoidLoadedContact) -> Trace:
     """Ends of all contact lines in the order of contact: the common flank of both gears."""
     touch = loaded.cells.in_contact.T
-    ends = [
-        1e3 * np.concatenate([first, last[::-1], first[:1]])
-        for first, last in (
-            (cells[touch][:, 0], cells[touch][:, -1])
-            for cells in (np.swapaxes(each, 0, 1) for each in (loaded.along, loaded.across))
-        )
-    ]
+    ends = []
+    for cells in (loaded.along, loaded.across):
+        first, last = np.swapaxes(cells, 0, 1)[touch][:, [0, -1]].swapaxes(0, 1)
+        ends.append(1e3 * np.concatenate([first, last[::-1], first[:1]]))
     quiet: Trace = {"showlegend": False, "hoverinfo": "skip", "hovertemplate": None}
     return line(ends[0], ends[1], "common flank", MUTED, dash="dash", **quiet)
 
@@ -181,20 +171,7 @@ def _regimes(heat: Trace) -> Trace:
     """Lines between the lubrication regimes on a map of the film ratio."""
     low, high = REGIME_LIMITS
     levels = {"start": low, "end": high, "size": high - low, "coloring": "none", "showlabels": True}
-    return {
-        **{name: heat[name] for name in ("x", "y", "z")},
-        "type": "contour",
-        "contours": levels,
-        "line": {"color": INK, "width": 1.5},
-        "showscale": False,
-        "showlegend": False,
-        "hoverinfo": "skip",
-        "name": "regimes",
-    }
-
-
-def _across() -> Trace:
-    return {"scaleanchor": "x", "constrain": "domain"}
+    return over_map(heat, levels, 1.5, "regimes")
 
 
 @drawing(
@@ -211,7 +188,8 @@ def hypoid_pressure(loaded: HypoidLoadedContact) -> Any:
         f"Up to {loaded.maximum_pressure * 1e-9:.3g} GPa on the {loaded.cells.flanks.side} flank "
         f"under {loaded.pinion_torque:.4g} N·m"
     )
-    panel = Panel("Across, towards the tip [mm]", traces, _across(), height=1.6)
+    to_scale = {"scaleanchor": "x", "constrain": "domain"}
+    panel = Panel("Across, towards the tip [mm]", traces, to_scale, height=1.6)
     return stack_rows(title, [Row(_ALONG, panel)], {"hovermode": "closest"})
 
 
@@ -256,14 +234,13 @@ def _friction_caption(friction: HypoidFriction) -> str:
     ratio = friction.film_ratio[friction.loaded.cell_force > 0.0]
     least, most = float(ratio.min()), float(ratio.max())
     limits = [f"{limit:g}" for limit in (low, high) if least < limit < most]
+    regime = "boundary" if most < low else "mixed" if most < high else "full film"
+    regimes = f"its values of {least:.3g} to {most:.3g} are {regime} lubrication everywhere."
     if limits:
         regimes = (
             f"lines at {' and '.join(limits)} separate lubrication regimes (boundary below "
             f"{low:g}, full film from {high:g}, mixed in between)."
         )
-    else:
-        regime = "boundary" if most < low else "mixed" if most < high else "full film"
-        regimes = f"its values of {least:.3g} to {most:.3g} are {regime} lubrication everywhere."
     return f"{flank} the film over the composite roughness; {regimes} {blank}"
 
 

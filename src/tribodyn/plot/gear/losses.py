@@ -80,11 +80,8 @@ def _loss_parts(gearbox: GearboxLosses) -> Row:
 def _bars(gearbox: GearboxLosses) -> Any:
     """Bars of the loss parts at a single operating point."""
     powers = {part: float(getattr(gearbox, part).item()) for part in PARTS}
-    rows = [
-        (label, powers[part], color)
-        for (part, label), color in zip(PARTS.items(), _COLORS, strict=True)
-        if powers[part]
-    ]
+    parts = zip(PARTS.items(), _COLORS, strict=True)
+    rows = [(label, powers[part], color) for (part, label), color in parts if powers[part]]
     names, power, colors = zip(*rows[::-1], strict=True) if rows else ((), (), ())
     bar = {"type": "bar", "orientation": "h", "y": names, "x": power, "marker": {"color": colors}}
     bar |= {"text": [_watts(value) for value in power], "hoverinfo": "skip"}
@@ -121,9 +118,8 @@ def losses(gearbox: GearboxLosses) -> Any:
     counted = [label for part, label in PARTS.items() if np.any(getattr(gearbox, part))]
     of = "teeth alone" if counted == ["teeth"] else "gearbox"
     least, most = _percent(gearbox.efficiency.min()), _percent(gearbox.efficiency.max())
-    return stack_rows(
-        f"Efficiency of the {of}: {least} to {most}", [_efficiency(gearbox), _loss_parts(gearbox)]
-    )
+    rows = [_efficiency(gearbox), _loss_parts(gearbox)]
+    return stack_rows(f"Efficiency of the {of}: {least} to {most}", rows)
 
 
 #: Sinks of the power flow: name, loss parts, colour.
@@ -145,9 +141,8 @@ _SINKS = (
 def power_flow(rig: RigPowerFlow) -> Any:
     """Draw the power of the motor as a Sankey diagram."""
     place = {part: number for number, part in enumerate(rig.part)}
-    lost = np.array(
-        [rig.loss[:, [place[part] for part in parts]].sum(axis=1) for _, parts, _ in _SINKS]
-    )
+    columns = ([place[part] for part in parts] for _, parts, _ in _SINKS)
+    lost = np.array([rig.loss[:, chosen].sum(axis=1) for chosen in columns])
     names = ["Motor", "Test gearbox", "Slave gearbox", *(name for name, _, _ in _SINKS)]
     power = [rig.motor_power, *rig.loss.sum(axis=1), *lost.sum(axis=1)]
     colors = [INK, MUTED, MUTED, *(color for _, _, color in _SINKS)]
@@ -231,10 +226,10 @@ def heat_balance(balance: HeatBalance) -> Any:
     top = max(float(celsius.max()), ambient + 1.0)
     ends = np.array([ambient, top + 0.1 * (top - ambient)])
     given_off = balance.heat_transfer * (ends - ambient)
-    loss = line(celsius[order], balance.power_loss[order], "loss of the gearbox", WHEEL, unit="W",
-                mode="lines+markers")  # fmt: skip
-    state = marked(celsius[-1:], balance.power_loss[-1:], "balance", TOTAL, size=11, unit="W",
-                   symbol="circle-open")  # fmt: skip
+    style: Trace = {"unit": "W", "mode": "lines+markers"}
+    loss = line(celsius[order], balance.power_loss[order], "loss of the gearbox", WHEEL, **style)
+    balanced = (celsius[-1:], balance.power_loss[-1:], "balance")
+    state = marked(*balanced, TOTAL, 11, "circle-open", unit="W")
     number, unit = engineering(float(balance.power_loss[-1]), "W", 4)
     settled = f"Gears and oil settle at {significant(celsius[-1], 4)} °C"
     label, gears = "Temperature of gears and oil", []

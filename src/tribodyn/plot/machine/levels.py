@@ -10,7 +10,7 @@ import numpy as np
 from tribodyn.drawing import drawing
 from tribodyn.plot.motion.sweeps import axis_text, value_text
 from tribodyn.plot.theme.colors import COLORS, MUTED
-from tribodyn.plot.theme.labels import axis_label, displayed, rounded
+from tribodyn.plot.theme.labels import axis_label, displayed, listed, rounded
 from tribodyn.plot.theme.panels import FROM_ZERO, Panel, Row, curves, event_lines, stack, stack_rows
 from tribodyn.plot.theme.style import Trace, marked
 from tribodyn.study.pipeline.summary_figures import in_words
@@ -62,8 +62,7 @@ def _of_all(*parts: Sequence[str]) -> str:
 
 
 def _listed(names: Sequence[str], parts: Sequence[Sequence[str]]) -> str:
-    texts = [name for name, part in zip(names, parts, strict=False) if len(part)]
-    return " and ".join(filter(None, (", ".join(texts[:-1]), *texts[-1:])))
+    return listed([name for name, part in zip(names, parts, strict=False) if len(part)])
 
 
 def _swept(study: Sweep) -> str:
@@ -195,7 +194,7 @@ def machine_sweep(study: Sweep) -> Any:
     panels = _panels(x, levels)
     lost = np.array([bool(text) for text in study.failed])
     if lost.any() and panels:
-        cross: Trace = marked(x[lost], np.zeros(lost.sum()), "failed", MUTED, size=8, symbol="x")
+        cross = marked(x[lost], np.zeros(lost.sum()), "failed", MUTED, 8, "x")
         first = panels[0]
         panels[0] = Panel(first.label, [*first.traces, cross], first.axis)
     marks = _marks(_met(study) if axis.key == "operation.speed" else (), x)
@@ -277,7 +276,7 @@ def machine_ensemble(study: MachineEnsemble) -> Any:
         low, high = np.quantile([columns[name][1:] for name in names], (0.025, 0.975), axis=1)
         shown = [displayed(quantity, each) for each in (middle, low, high)]
         color, name = COLORS[number % len(COLORS)], "median of all inputs"
-        marks = marked(parts, shown[0], name, color, size=9, symbol="circle")
+        marks = marked(parts, shown[0], name, color, 9)
         bars = {"array": shown[2] - shown[0], "arrayminus": shown[0] - shown[1]}
         marks["error_y"] = {"type": "data", "symmetric": False, "width": 8, **bars}
         rows.append(Row("", Panel(axis_label(quantity, label), [marks], FROM_ZERO)))

@@ -12,7 +12,15 @@ from tribodyn.plot.machine.side_view import joined_names
 from tribodyn.plot.theme.colors import COLORS, INK
 from tribodyn.plot.theme.labels import axis_label, display_unit, displayed, rounded
 from tribodyn.plot.theme.panels import ROUNDING, Panel, from_zero, stack
-from tribodyn.plot.theme.style import Trace, figure, line, marked, stems
+from tribodyn.plot.theme.style import (
+    Trace,
+    axis,
+    line,
+    marked,
+    plane_figure,
+    stems,
+    strokes,
+)
 from tribodyn.types import Array
 
 if TYPE_CHECKING:
@@ -41,13 +49,11 @@ def _lines(motion: MachineMotion, quantity: str, amplitudes: Array) -> list[Trac
             continue
         color = INK if name == "several meshes" else COLORS[number % len(COLORS)]
         x, y = hertz[places], values[places]
-        upright = {"type": "scatter", "mode": "lines", "hoverinfo": "skip", "showlegend": False}
-        ends = dict(zip("xy", stems(x, y), strict=True))
-        traces.append({**upright, **ends, "line": {"color": color, "width": 2}})
+        traces.append(strokes(*stems(x, y), color, 2, showlegend=False))
         facts = [labels[place] for place in places]
-        top = marked(x, y, name, color, size=6, symbol="circle", customdata=facts)
         hover = f"%{{y:.4g}} {unit} at %{{x:.6g}} {display_unit('frequency')}, "
-        traces.append({**top, "hovertemplate": f"{hover}%{{customdata}}<extra></extra>"})
+        style: Trace = {"hovertemplate": f"{hover}%{{customdata}}<extra></extra>"}
+        traces.append(marked(x, y, name, color, 6, customdata=facts, **style))
     return traces
 
 
@@ -153,26 +159,16 @@ def _panels(
     """Alternating force of each part to its own scale, the largest swing first."""
     unit, mean, swing = display_unit(quantity), motion.mean(force), np.ptp(force, axis=0)
     kind = "Mesh" if quantity == "mesh_force" else "Bearing"
-    panels = []
+    panels, largest = [], np.abs(mean).max(initial=0.0)
     for i in np.argsort(-swing, kind="stable")[:_PARTS]:
         values = displayed(quantity, force[:_SAMPLES, i] - mean[i])
-        level = rounded(quantity, mean[i])
-        varies = swing[i] > ROUNDING * np.abs(mean).max()
-        size = rounded(quantity, swing[i])
         trace = line(motion.clock[:_SAMPLES], values, names[i], COLORS[i % len(COLORS)], unit=unit)
-        note = f"{kind} {names[i]}: " + (
-            f"{size} peak to peak about {level}" if varies else f"constant, {level}"
-        )
-        panels.append(
-            Panel(
-                f"[{unit}]",
-                [trace],
-                {"nticks": 4, "zeroline": True},
-                _HEIGHT,
-                float(displayed(quantity, np.abs(mean).max())),
-                note,
-            )
-        )
+        varies, level = swing[i] > ROUNDING * largest, rounded(quantity, mean[i])
+        size = rounded(quantity, swing[i])
+        text = f"{size} peak to peak about {level}" if varies else f"constant, {level}"
+        note, axis = f"{kind} {names[i]}: {text}", {"nticks": 4, "zeroline": True}
+        of_mean = float(displayed(quantity, largest))
+        panels.append(Panel(f"[{unit}]", [trace], axis, _HEIGHT, of_mean, note))
     return panels
 
 
@@ -217,26 +213,15 @@ def kinematic_frequencies(lines: KinematicFrequencies) -> Any:
     traces = []
     for number, part in enumerate(rows):
         mine = [k for k, name in enumerate(lines.part) if name == part]
-        color = COLORS[number % len(COLORS)]
-        trace = marked(
-            lines.frequency[mine], [part] * len(mine), part, color, size=8, symbol="line-ns-open"
-        )
-        labels = [lines.symbol[k] for k in mine]
-        words = [f"{lines.symbol[k]}, {lines.meaning[k]}" for k in mine]
-        hover = "%{x:.6g} Hz: %{customdata}<extra></extra>"
         first = {float(lines.frequency[k]): k for k in reversed(mine)}
-        alone = [first[float(lines.frequency[k])] == k for k in mine]
-        shown = [
-            "" if "GMF " in label or not own else label
-            for label, own in zip(labels, alone, strict=True)
-        ]
-        trace |= {"mode": "markers+text", "text": shown, "textposition": "top center",
-                  "customdata": words, "hovertemplate": hover, "showlegend": False}  # fmt: skip
-        traces.append(trace)
-    layout = {
-        "height": 160 + 52 * len(rows),
-        "hovermode": "closest",
-        "xaxis": {"type": "log", "title": {"text": "Frequency [Hz]"}},
-        "yaxis": {"autorange": "reversed", "type": "category"},
-    }
-    return figure(f"{len(rows)} parts, input at {lines.input_frequency:.4g} Hz", traces, layout)
+        named = [k in first.values() and "GMF " not in lines.symbol[k] for k in mine]
+        text = [lines.symbol[k] * shown for k, shown in zip(mine, named, strict=True)]
+        words = [f"{lines.symbol[k]}, {lines.meaning[k]}" for k in mine]
+        style: Trace = {"textposition": "top center", "customdata": words, "showlegend": False}
+        style["hovertemplate"] = "%{x:.6g} Hz: %{customdata}<extra></extra>"
+        place = (lines.frequency[mine], [part] * len(mine), part, COLORS[number % len(COLORS)])
+        trace = marked(*place, 8, "line-ns-open", text=text, **style)
+        traces.append({**trace, "mode": "markers+text"})
+    title = f"{len(rows)} parts, input at {lines.input_frequency:.4g} Hz"
+    x, y = axis("Frequency [Hz]", type="log"), {"autorange": "reversed", "type": "category"}
+    return plane_figure(title, traces, x, y, height=160 + 52 * len(rows))

@@ -28,7 +28,6 @@ from tribodyn.plot.theme.style import (
     Trace,
     animated,
     choice,
-    figure,
     line,
     plane_figure,
     stems,
@@ -130,26 +129,19 @@ def planetary_stage(result: MachineResult | MachineCase) -> Any:
         ]
 
     frames = [picture(duration * k / _FRAMES) for k in range(_FRAMES)]
-    play = {"frame": {"duration": 80, "redraw": False}, "transition": {"duration": 0},
-            "fromcurrent": True}  # fmt: skip
-    buttons = [
-        {"label": "Play", "method": "animate", "args": [None, play]},
-        {"label": "Stop", "method": "animate",
-         "args": [[None], {"mode": "immediate", "frame": {"duration": 0}}]},
-    ]  # fmt: skip
+    play = {"frame": {"duration": 80, "redraw": False}, "transition": {"duration": 0}}
+    stop = {"mode": "immediate", "frame": {"duration": 0}}
+    steps = (("Play", None, {**play, "fromcurrent": True}), ("Stop", [None], stop))
+    buttons = [{"label": name, "method": "animate", "args": [*args]} for name, *args in steps]
+    place = {"x": 1.0, "xanchor": "right", "y": 1.0, "yanchor": "top"}
+    menu = {"type": "buttons", "direction": "left", "buttons": buttons, **place}
     reach = 1.05 * float(np.abs(ring).max())
     axis = {"visible": False, "range": [-reach, reach]}
-    layout = {
-        "height": 620,
-        "hovermode": "closest",
-        "updatemenus": [{"type": "buttons", "direction": "left", "buttons": buttons, "x": 1.0,
-                         "xanchor": "right", "y": 1.0, "yanchor": "top"}],
-        "xaxis": axis,
-        "yaxis": {**axis, "scaleanchor": "x"},
-    }  # fmt: skip
     turns = abs((rates["planet"] - rates["carrier"]) / rates["sun"])
     title = f"{angles.size} planets turn {turns:.3g} times about their pins in a turn of the sun"
-    return animated(figure(title, frames[0], layout), frames)
+    axes = (axis, {**axis, "scaleanchor": "x"})
+    sketch = plane_figure(title, frames[0], *axes, height=620, updatemenus=[menu])
+    return animated(sketch, frames)
 
 
 @drawing(
@@ -275,22 +267,20 @@ def _outlines(angles: Array, motion: Array) -> tuple[list[float], list[float]]:
     pins = np.stack([np.cos(angles), np.sin(angles)], axis=1)
     bodies = [(np.zeros(2), 1.0 - planet, sun), (np.zeros(2), 1.0 + planet, ring)]
     bodies += [(p, planet, m) for p, m in zip(pins, motion[9:].reshape(-1, 3), strict=True)]
-    x: list[float] = []
-    y: list[float] = []
+    lines = []
     for at, radius, (dx, dy, turn) in bodies:
         # A mark inside the rim of a gear, and outside that of the ring.
         start = 1.0 if radius > 1.0 else 0.6
         end = 1.08 if radius > 1.0 else 1.0
         mark = radius * np.exp(1j * turn / radius) * np.array([start, end])
         circle = radius * np.exp(1j * _TURN)
-        points = np.concatenate([circle, [np.nan], mark, [np.nan]]) + complex(*at) + dx + 1j * dy
-        x += points.real.tolist()
-        y += points.imag.tolist()
+        outline = np.concatenate([circle, [np.nan], mark, [np.nan]])
+        lines.append(outline + complex(*at) + dx + 1j * dy)
     turned = np.exp(1j * (angles + carrier[2])) + carrier[0] + 1j * carrier[1]
-    for pin in turned:
-        x += [carrier[0], pin.real, np.nan]
-        y += [carrier[1], pin.imag, np.nan]
-    return x, y
+    middle, gap = complex(carrier[0], carrier[1]), complex(np.nan, np.nan)
+    lines += [np.array([middle, pin, gap]) for pin in turned]
+    points = np.concatenate(lines)
+    return points.real.tolist(), points.imag.tolist()
 
 
 def _mode_trace(angles: Array, motion: Array, color: str, width: float, visible: bool) -> Trace:

@@ -83,12 +83,9 @@ class Life:
         age = np.asarray(phases[:, None] + contact.number, float).T.ravel() - half_overlap
         order = np.argsort(age, kind="stable")
         age, statistics = age[order], [part[:, order] for part in statistics]
-        if np.min(contact.number) == 0:
-            # Without tip corners the load starts at A.
-            age, statistics = (
-                np.append(-half_overlap, age),
-                [np.pad(part, ((0, 0), (1, 0))) for part in statistics],
-            )
+        if np.min(contact.number) == 0:  # Without tip corners the load starts at A.
+            age = np.append(-half_overlap, age)
+            statistics = [np.pad(part, ((0, 0), (1, 0))) for part in statistics]
         return cls(age, *statistics)
 
 
@@ -123,9 +120,8 @@ def _title(contact: LoadedContact) -> str:
     names = torque_names(contact.torque)
     swings = np.ravel(contact.peak_to_peak_transmission_error)
     if len(names) == 1:
-        mean, swing = (
-            rounded(_QUANTITY, value) for value in (np.mean(contact.transmission_error), swings[0])
-        )
+        values = (np.mean(contact.transmission_error), swings[0])
+        mean, swing = (rounded(_QUANTITY, value) for value in values)
         return f"Under {names[0]} the transmission error is {mean} on average and varies by {swing}"
     low, high = (rounded(_QUANTITY, at(swings)) for at in (np.min, np.max))
     return f"From {names[0]} to {names[-1]} the transmission error varies by {low} to {high}"
@@ -203,11 +199,8 @@ def _over_cycles_or_angle(contact: LoadedContact) -> str:
     )
     if several_cycles(contact):
         return f"{caption}. The teeth differ: the curves repeat after {contact.mesh_cycles} cycles."
-    corner = (
-        "carries with a part of its face"
-        if contact.gear_pair.overlap_ratio
-        else ("has tip-corner contact")
-    )
+    part = contact.gear_pair.overlap_ratio
+    corner = "carries with a part of its face" if part else "has tip-corner contact"
     return (
         f"{caption}, the tangent stiffness applies to small vibration about the load. A pair that "
         f"carries load before A or after E {corner}."
@@ -225,11 +218,9 @@ def loaded_contact(contact: LoadedContact) -> Any:
     hunting, pair = several_cycles(contact), contact.gear_pair
     stiffness = "Secant stiffness" if hunting else "Mesh stiffness"
     share = "Greatest load share" if hunting else "Load share of a pair"
+    errors = _curves(contact, _QUANTITY, contact.transmission_error)
     panels = [
-        Panel(
-            axis_label(_QUANTITY, "Transmission error"),
-            _curves(contact, _QUANTITY, contact.transmission_error),
-        ),
+        Panel(axis_label(_QUANTITY, "Transmission error"), errors),
         Panel(axis_label("mesh_stiffness", stiffness), _stiffness(contact)),
         Panel(share, _shares(contact), {"range": [0.0, 1.05]}, 0.8),
     ]

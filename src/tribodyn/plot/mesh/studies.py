@@ -8,8 +8,8 @@ import numpy as np
 
 from tribodyn.drawing import Need, drawing
 from tribodyn.plot.mesh.loaded_contact import in_legend, torque_colors, torque_names, whole_cycles
-from tribodyn.plot.theme.colors import MUTED, PAIR_COLORS, PINION, TOTAL, WHEEL
-from tribodyn.plot.theme.labels import axis_label, display_unit, displayed, rounded
+from tribodyn.plot.theme.colors import COLORS, MUTED, PAIR_COLORS, PINION, TOTAL, WHEEL
+from tribodyn.plot.theme.labels import axis_label, display_unit, displayed, listed, rounded
 from tribodyn.plot.theme.panels import (
     FROM_ZERO,
     Panel,
@@ -22,7 +22,7 @@ from tribodyn.plot.theme.panels import (
     stack_rows,
 )
 from tribodyn.plot.theme.path import mesh_marks, pair_letters, roll_label
-from tribodyn.plot.theme.style import Trace, contour, line, marked
+from tribodyn.plot.theme.style import POWERS, Trace, contour, line, marked
 from tribodyn.types import Array, Mask
 
 if TYPE_CHECKING:
@@ -106,12 +106,12 @@ def _harris_caption(study: HarrisMap) -> str:
         "value and mesh harmonics."
     )
     least, ends = study.quietest_torque, (study.torque.min(), study.torque.max())
-    if ends[0] < least < ends[1]:
-        return f"{caption} The variation is smallest at the torque that the modification suits."
     if study.torque.size == 1:
         return caption
-    end = "least" if least == ends[0] else "greatest"
-    return f"{caption} The variation is smallest at the {end} of these torques."
+    end = f"{'least' if least == ends[0] else 'greatest'} of these torques"
+    if ends[0] < least < ends[1]:
+        end = "torque that the modification suits"
+    return f"{caption} The variation is smallest at the {end}."
 
 
 @drawing(
@@ -212,9 +212,8 @@ def tip_relief_map(study: TipReliefOptimum) -> Any:
     """Draw the objective over amount and length, and the transmission error before and after."""
     amount = rounded("tip_relief", study.amount)
     length = rounded("tip_relief_length", study.length)
-    before, after = (
-        rounded(_QUANTITY, value) for value in (study.objective_before, study.objective)
-    )
+    values = (study.objective_before, study.objective)
+    before, after = (rounded(_QUANTITY, value) for value in values)
     effect = f"lowers the variation from {before} to {after}"
     if not study.objective < study.objective_before:
         effect = f"does not lower the variation of {before}"
@@ -328,9 +327,7 @@ _WORDS = {
 def coupling(coupled: Coupling) -> Any:
     """Draw the change of each quantity per iteration, and the converged load."""
     curves, changed = [], list[str]()
-    for (name, label), color in zip(
-        _WORDS.items(), (TOTAL, PINION, WHEEL, *PAIR_COLORS), strict=False
-    ):
+    for (name, label), color in zip(_WORDS.items(), (TOTAL, *COLORS), strict=False):
         change = getattr(coupled, name)
         if not change.any():
             continue
@@ -339,10 +336,10 @@ def coupling(coupled: Coupling) -> Any:
         curves.append({**line(coupled.iteration, positive, label, color), "mode": "lines+markers"})
     ends = [float(coupled.iteration[0]), float(coupled.iteration[-1])]
     curves.append(line(ends, [coupled.tolerance] * 2, "tolerance", MUTED, dash="dot", width=1.2))
-    powers = {"type": "log", "exponentformat": "power", "dtick": 2}
+    powers = {**POWERS, "dtick": 2}
     load = line(coupled.phase, coupled.loading, "load", PINION)
     passes, over = coupled.iteration.size, coupled.loading
-    changing = " and ".join(filter(None, (", ".join(changed[:-1]), *changed[-1:]))) or "all"
+    changing = listed(changed) or "all"
     title = (
         f"{changing[:1].upper()}{changing[1:]} converge after {passes} "
         f"iteration{'s' * (passes > 1)}; the mesh force is {over.min():.3g} to {over.max():.3g} "

@@ -34,12 +34,11 @@ from tribodyn.plot.theme.panels import (
     curve,
     event_lines,
     from_zero,
-    points,
     stack,
     stack_rows,
 )
 from tribodyn.plot.theme.path import corner_shades, pair_letters, roll_angle_of, roll_label
-from tribodyn.plot.theme.style import Trace, bars, line
+from tribodyn.plot.theme.style import Trace, bars, dots, line
 from tribodyn.types import Array
 
 if TYPE_CHECKING:
@@ -169,9 +168,8 @@ def life_with_corners(mesh: MeshTable) -> tuple[Array, Array]:
 
 
 def _caption(mesh: MeshTable) -> str:
-    caption = "Share of the load of a tooth pair from its entry to its exit. " + sharing_under_load(
-        mesh, ends=True
-    )
+    caption = "Share of the load of a tooth pair from its entry to its exit. "
+    caption += sharing_under_load(mesh, ends=True)
     if np.any(mesh.corner_share > _LOADED):
         return f"{caption} Teeth bend under load: in the grey ranges a tip corner carries load."
     return caption
@@ -201,11 +199,10 @@ def load_sharing(mesh: MeshTable) -> Any:
 
 def _transmission_error_row(mesh: MeshTable, error: Array, mean: float) -> Row:
     """Row with the transmission error over the mesh cycles and its mean."""
+    ends, style = np.array([0.0, CYCLES]), Trace(dash="dash", width=1.2)
     curves = [
         curve(_QUANTITY, *cycles(mesh.phase, error), "under load", TOTAL),
-        curve(
-            _QUANTITY, np.array([0.0, CYCLES]), [mean] * 2, "mean", MUTED, dash="dash", width=1.2
-        ),
+        curve(_QUANTITY, ends, [mean] * 2, "mean", MUTED, **style),
     ]
     panel = Panel(axis_label(_QUANTITY, "Transmission error"), curves)
     label = axis_label("mesh_phase", "Mesh cycles")
@@ -277,12 +274,9 @@ def _phases(mesh: MeshTable) -> list[tuple[str, float]]:
 
 
 def _law_caption(mesh: MeshTable) -> str:
-    straight = mesh.ramp_deflection.shape[1] == 1
-    shape = (
-        "Straight lines: the stiffness does not depend on the load."
-        if straight
-        else "The curves stiffen where flanks flatten and where a further pair makes contact."
-    )
+    shape = "The curves stiffen where flanks flatten and where a further pair makes contact."
+    if mesh.ramp_deflection.shape[1] == 1:
+        shape = "Straight lines: the stiffness does not depend on the load."
     return (
         f"Force over the approach of the gears at several mesh phases. {shape} The markers are "
         "the working load. The flanks are separated to the left of the foot of a curve."
@@ -309,12 +303,9 @@ def force_law(mesh: MeshTable) -> Any:
     level: Trace = {"dash": "dot", "width": 1}
     traces.append(curve("normal_force", x[[0, -1]], [load] * 2, "working load", MUTED, **level))
     hover = f"%{{y:.4g}} {newton} at %{{x:.4g}} {display_unit('deflection')}"
-    marks = points(
-        "normal_force", displayed("deflection", working), np.full(working.size, load),
-        "deflection under it", "", size=9, symbol="circle", showlegend=False,
-        hovertemplate=f"{hover}<extra>working load</extra>",
-    )  # fmt: skip
-    marks["marker"] = {"color": colors, "size": 9}
+    at = displayed("deflection", working), np.full(working.size, displayed("normal_force", load))
+    more: Trace = {"showlegend": False, "hovertemplate": f"{hover}<extra>working load</extra>"}
+    marks = dots(*at, "deflection under it", {"color": colors, "size": 9}, **more)
     low, high = (rounded("deflection", at(working)) for at in (np.min, np.max))
     title = f"The working load of {rounded('normal_force', load)} deflects the mesh by"
     panel = from_zero(axis_label("normal_force"), [*traces, marks], 1.6)

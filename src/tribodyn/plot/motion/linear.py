@@ -11,7 +11,7 @@ from tribodyn.drawing import drawing
 from tribodyn.plot.theme.colors import INK, MUTED, PAIR_COLORS, PINION, TOTAL, WHEEL, translucent
 from tribodyn.plot.theme.labels import axis_label, display_unit, displayed, rounded, significant
 from tribodyn.plot.theme.panels import Panel, curve, curves, event_lines, stack
-from tribodyn.plot.theme.style import Trace, bars, line, marked
+from tribodyn.plot.theme.style import POWERS, Trace, bars, line, marked
 from tribodyn.types import Array
 
 if TYPE_CHECKING:
@@ -73,24 +73,20 @@ def mode_shapes(modes: NaturalModes) -> Any:
     moving = {body: share[first:] for body, share in modes.body_share().items()}
     strained = _strained(modes)
     share = modes.contact_share[first:]
+    title = f"{len(labels)} natural frequencies"
     if share.size and modes.contacts:
         top = int(np.argmax(share))
         title = (
             f"The mesh has its largest share in mode {first + top}: {100 * share[top]:.0f} % of "
             f"the strain at {rounded('frequency', modes.frequency[first + top])}"
         )
-    else:
-        title = f"{len(labels)} natural frequencies"
     kinds = (("Kinetic", moving), ("Strain", strained))
     panels = [
         Panel(f"{kind} energy [%]", _bars(labels, shares), {"range": [0.0, 100.0]})
         for kind, shares in kinds
     ]
-    layout = {
-        "barmode": "stack",
-        "xaxis": {"type": "category", "tickangle": 0},
-        "hovermode": "closest",
-    }
+    names = {"type": "category", "tickangle": 0}
+    layout = {"barmode": "stack", "xaxis": names, "hovermode": "closest"}
     return stack(title, f"Mode: natural frequency [{unit}]", panels, layout)
 
 
@@ -128,7 +124,7 @@ def natural_lines(
 
 def crossing_dots(speed: Any, hertz: Any, share: Any, texts: Sequence[str]) -> Trace:
     """Dots where excitations meet modes, by the share of the mesh in the strain energy."""
-    dots = marked(speed, hertz, "resonance", INK, size=6, symbol="circle")
+    dots = marked(speed, hertz, "resonance", INK, 6)
     dots["marker"]["size"] = 5.0 + 9.0 * np.sqrt(share)
     hover = f"%{{customdata}}: %{{y:.5g}} {display_unit('frequency')} at %{{x:.5g}} "
     hover += f"{display_unit('speed')}<extra></extra>"
@@ -145,12 +141,8 @@ def _rising(diagram: Campbell, speed: Any, top: float) -> list[Trace]:
         if visible.size:
             texts[visible[-1]] = str(order)
         name, unit = f"harmonic {order}", display_unit("frequency")
-        style: Trace = {
-            "width": 1.5,
-            "mode": "lines+text",
-            "textposition": "top left",
-            "showlegend": False,
-        }
+        style: Trace = {"width": 1.5, "mode": "lines+text", "textposition": "top left"}
+        style["showlegend"] = False
         traces.append(line(speed, values, name, PINION, unit=unit, text=texts, **style))
     return traces
 
@@ -181,14 +173,13 @@ def campbell(diagram: Campbell) -> Any:
     modes = float(np.max(displayed("frequency", diagram.frequency), initial=0.0))
     lines = float(np.max(displayed("frequency", max(diagram.orders) * diagram.mesh_frequency)))
     top = 1.1 * (min(modes, lines) or lines)
-    axis = {"range": [0.0, top]}
     share = np.mean(diagram.contact_share, axis=0)
     strained = set(np.flatnonzero(share > _LEAST).tolist())
     traces = natural_lines(speed, diagram.frequency, diagram.first_mode, strained, top)
     traces += [*_rising(diagram, speed, top), *_met(diagram)]
     now = diagram.operating_speed
     marks = [] if now is None else [("operation", float(displayed("speed", now)))]
-    panel = Panel(axis_label("frequency"), traces, axis, height=1.8)
+    panel = Panel(axis_label("frequency"), traces, {"range": [0.0, top]}, height=1.8)
     layout = {"hovermode": "closest", **event_lines(marks)}
     return stack(_title(diagram), axis_label("speed"), [panel], layout)
 
@@ -207,7 +198,6 @@ def forced_response(response: ForcedResponse) -> Any:
     force = np.abs(response.mesh_force)
     contact = response.contact[0]
     top = int(np.argmax(force))
-    logarithmic = {"type": "log", "exponentformat": "power"}
     motions = (
         ("approach", "transmission_error", response.transmission_error, TOTAL, "solid"),
         ("compression", "deflection", response.deflection, PAIR_COLORS[0], "dash"),
@@ -217,8 +207,8 @@ def forced_response(response: ForcedResponse) -> Any:
         for label, quantity, values, color, dash in motions
     ]
     panels = [
-        curves("mesh_force", "Mesh force", x, [("mesh force", force, TOTAL)], logarithmic),
-        Panel(axis_label("transmission_error", "Amplitude"), amplitudes, logarithmic),
+        curves("mesh_force", "Mesh force", x, [("mesh force", force, TOTAL)], POWERS),
+        Panel(axis_label("transmission_error", "Amplitude"), amplitudes, POWERS),
     ]
     title = (
         f"An error of {rounded('deflection', response.error)} causes up to "

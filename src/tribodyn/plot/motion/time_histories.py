@@ -32,12 +32,9 @@ _LINE, _APART, _SEEN = 26, 2.0, 0.1
 
 def directions(result: Result) -> tuple[tuple[str, str], ...]:
     """Axes of a gear's coordinates and their descriptions, for planar and spatial models."""
-    in_space = "pinion_z" in result.response.names
-    return (
-        tuple(response_series.directions_of(result.response.names).values())
-        if in_space
-        else DIRECTIONS
-    )
+    names = result.response.names
+    in_space = "pinion_z" in names
+    return tuple(response_series.directions_of(names).values()) if in_space else DIRECTIONS
 
 
 def _along(result: Result) -> str:
@@ -64,12 +61,10 @@ def _motion_panels(result: Result, quantity: str) -> list[Panel]:
     for axis, direction in directions(result):
         means = _means(result, quantity, axis)
         label = wrapped_label(quantity, direction + ", without its mean" * bool(means))
-        traces = [
-            motion.line(
-                quantity, motion.of_gear(quantity, gear, axis) - mean, gear, color, width=1.5
-            )
-            for (gear, color), mean in zip(GEARS, means or (0.0, 0.0), strict=True)
-        ]
+        traces = []
+        for (gear, color), mean in zip(GEARS, means or (0.0, 0.0), strict=True):
+            values = motion.of_gear(quantity, gear, axis) - mean
+            traces.append(motion.line(quantity, values, gear, color, width=1.5))
         size = float(displayed(quantity, max(map(abs, means), default=0.0)))
         panels.append(Panel(axis_label(quantity, label), traces, size=size))
     return panels
@@ -92,9 +87,8 @@ def _below_zero(result: Result) -> str:
         return ""
     if result.half_backlash == 0.0:
         return "Where it is negative, the flanks would separate, but the case has no backlash."
-    if np.any(
-        response_series.compression(fine) < -response_series.first_touch(result.system, fine)
-    ):
+    touch = response_series.first_touch(result.system, fine)
+    if np.any(response_series.compression(fine) < -touch):
         return "Where it is negative, the backlash is crossed and the back flanks touch."
     return "Where it is negative, the contact damping pulls just before the flanks separate."
 
@@ -139,10 +133,8 @@ def mesh_force(result: Result) -> Any:
     low, high = (rounded("mesh_force", end) for end in ends)
     # A force that varies little is drawn to its own scale.
     panel = from_zero if ends[1] - ends[0] > _SEEN * ends[1] else Panel
-    return motion.figure(
-        f"The mesh force varies between {low} and {high}",
-        [panel(axis_label("mesh_force"), traces, height=1.3)],
-    )
+    panels = [panel(axis_label("mesh_force"), traces, height=1.3)]
+    return motion.figure(f"The mesh force varies between {low} and {high}", panels)
 
 
 def _friction_caption(result: Result) -> str:
@@ -188,23 +180,16 @@ def friction_force(result: Result) -> Any:
 
 def _error_caption(result: Result) -> str:
     motion = Motion(result)
-    sentences = [
-        "Lag of the driven gear behind its ideal position, measured on the line of action."
-    ]
+    lag = "Lag of the driven gear behind its ideal position, measured on the line of action."
+    dashed = "The dashed curve is the lag at a very low speed"
     if not motion.periodic:
-        sentences.append(motion.settling(motion.transmission_error))
-    elif np.any(result.mesh.friction_coefficient):
-        sentences.append(
-            "The dashed curve is the lag at a very low speed without friction. The variation about "
-            "it is vibration; an offset of the mean is due to friction, which carries a part of "
-            "the torque."
-        )
-    else:
-        sentences.append(
-            "The dashed curve is the lag at a very low speed; what the dynamics add to it is "
-            "vibration."
-        )
-    return " ".join(sentences)
+        return f"{lag} {motion.settling(motion.transmission_error)}"
+    if not np.any(result.mesh.friction_coefficient):
+        return f"{lag} {dashed}; what the dynamics add to it is vibration."
+    return (
+        f"{lag} {dashed} without friction. The variation about it is vibration; an offset of the "
+        "mean is due to friction, which carries a part of the torque."
+    )
 
 
 @run_drawing(heading="Transmission error", caption=_error_caption)

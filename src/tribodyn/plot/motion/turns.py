@@ -11,7 +11,7 @@ from tribodyn.plot.signals.lines import strongest_lines
 from tribodyn.plot.theme.colors import PINION, TOTAL, WHEEL, translucent
 from tribodyn.plot.theme.labels import axis_label, display_unit, displayed, rounded
 from tribodyn.plot.theme.panels import Panel, Row, curves, stack, stack_rows
-from tribodyn.plot.theme.style import line, stems
+from tribodyn.plot.theme.style import POWERS, line, stems
 
 if TYPE_CHECKING:
     from tribodyn.faults import TurningMesh
@@ -67,11 +67,7 @@ def turning_motion(motion: TurningMotion) -> Any:
     )
     top = float(size.max())
     floor = top * 10.0**-_DECADES
-    axis = {
-        "type": "log",
-        "exponentformat": "power",
-        "range": [np.log10(floor), np.log10(top) + 0.3],
-    }
+    axis = {**POWERS, "range": [np.log10(floor), np.log10(top) + 0.3]}
     x_label = "Turns of the pinion since tooth 1 came into contact"
     mesh_orders = [(f"{n} x mesh", n * teeth) for n in range(1, int(_HARMONICS) + 1)]
     error_label = axis_label("static_transmission_error", "At rest")
@@ -149,10 +145,8 @@ def _wear_caption(wear: Wear) -> str:
 def wear_depth(wear: Wear) -> Any:
     """Draw the depth of wear of both gears over the flank."""
     panels = []
-    for gear, depth, color in (
-        ("Pinion", wear.depth_pinion, PINION),
-        ("Wheel", wear.depth_wheel, WHEEL),
-    ):
+    gears = (("Pinion", wear.depth_pinion, PINION), ("Wheel", wear.depth_wheel, WHEEL))
+    for gear, depth, color in gears:
         steps = [
             (f"{wear.turns[step]:.3g} turns", depth[step],
              translucent(color, 0.25 + 0.75 * step / (len(depth) - 1)))

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from typing import Any, SupportsFloat
 
 import numpy as np
@@ -88,6 +89,11 @@ def scaled(values: Any, unit: str) -> tuple[float, str]:
 def unit_of(name: str) -> str:
     """Unit of a coordinate by its name: rad for angles (theta), m otherwise."""
     return "rad" if "theta" in name else "m"
+
+
+def listed(texts: Sequence[str]) -> str:
+    """Join texts by commas, the last one by "and"."""
+    return " and ".join(filter(None, (", ".join(texts[:-1]), *texts[-1:])))
 
 
 def capitalized(name: str) -> str:

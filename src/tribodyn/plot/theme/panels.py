@@ -12,7 +12,7 @@ import numpy as np
 from tribodyn.drawing import Sketch
 from tribodyn.plot.theme.colors import MUTED
 from tribodyn.plot.theme.labels import axis_label, display_unit, displayed
-from tribodyn.plot.theme.style import BOTTOM, TOP, Trace, figure, line, marked
+from tribodyn.plot.theme.style import BOTTOM, TOP, Trace, axis, figure, line, note
 from tribodyn.types import Array, Index
 
 #: Pixels of one panel, of the gap between panels, and of the gap with an axis and a title in it.
@@ -49,10 +49,9 @@ class Panel:
         texts = [f"{name} lies on {first}" for name, first in list(hidden.items())[:_NOTED]]
         texts += [f"{len(hidden) - _NOTED} more coincide"] * (len(hidden) > _NOTED)
         places = ((self.note, 0.0, "left", "bottom"), ("; ".join(texts), 1.0, "right", "top"))
-        common = {"xref": "paper", "yref": "paper", "y": top, "showarrow": False}
-        common["font"] = {"size": 12, "color": MUTED}
+        style = Trace(color=MUTED, xref="paper", yref="paper")
         return [
-            {**common, "text": text, "x": x, "xanchor": side, "yanchor": end}
+            note(x, top, text, xanchor=side, yanchor=end, **style)
             for text, x, side, end in places
             if text
         ]
@@ -127,49 +126,44 @@ def _suffix(number: int) -> str:
     return str(number + 1) if number else ""
 
 
-def stack(title: str, x_label: str, panels: Sequence[Panel], layout: Trace | None = None) -> Sketch:
-    """Stack panels over one common horizontal axis, each with a legend to its right."""
-    more = dict(layout or {})
-    domains, height = _domains(panels, _GAP)
-    x_axis = {"title": {"text": x_label}, "anchor": f"y{_suffix(len(panels) - 1)}"}
-    merged: Trace = {"xaxis": {**x_axis, **more.pop("xaxis", {})}, "height": height}
-    traces: list[Trace] = []
-    notes = list(more.pop("annotations", ()))
+def _placed(
+    panels: Sequence[Panel], gap: int, alone: bool
+) -> tuple[list[Trace], Trace, list[Trace]]:
+    """Traces, layout and notes of stacked panels; ``alone`` with a horizontal axis each."""
+    domains, height = _domains(panels, gap)
+    traces, layout, notes = list[Trace](), Trace(height=height), list[Trace]()
     for number, (panel, domain) in enumerate(zip(panels, domains, strict=True)):
         suffix = _suffix(number)
-        y_axis = {"title": {"text": panel.label}, "domain": domain}
-        merged[f"yaxis{suffix}"] = {**y_axis, **panel.vertical}
-        merged[f"legend{suffix}"] = {**_legend(domain[1]), "tracegroupgap": 2}
-        traces += panel.with_axes("x", suffix)
+        anchor = {"anchor": f"x{suffix}"} if alone else {}
+        layout[f"yaxis{suffix}"] = {**axis(panel.label, domain=domain, **anchor), **panel.vertical}
+        layout[f"legend{suffix}"] = {"x": 1.01, "xanchor": "left", "y": domain[1],
+                                     "yanchor": "top", "tracegroupgap": 2}  # fmt: skip
+        traces += panel.with_axes(f"x{suffix}" if alone else "x", suffix)
         notes += panel.notes(domain[1])
+    return traces, layout, notes
+
+
+def stack(title: str, x_label: str, panels: Sequence[Panel], layout: Trace | None = None) -> Sketch:
+    """Stack panels over one common horizontal axis, each with a legend to its right."""
+    more, (traces, merged, notes) = dict(layout or {}), _placed(panels, _GAP, alone=False)
+    x_axis = axis(x_label, anchor=f"y{_suffix(len(panels) - 1)}")
+    merged["xaxis"] = {**x_axis, **more.pop("xaxis", {})}
+    notes = [*more.pop("annotations", ()), *notes]
     return figure(title, traces, {**merged, **({"annotations": notes} if notes else {}), **more})
 
 
 def stack_rows(title: str, rows: Sequence[Row], layout: Trace | None = None) -> Sketch:
     """Stack panels, each over its own horizontal axis and with its own legend."""
     more = dict(layout or {})
-    domains, height = _domains([row.panel for row in rows], _WIDE_GAP)
-    merged: Trace = {"height": height, "hovermode": "x unified"}
-    shapes, notes = list(more.pop("shapes", ())), list(more.pop("annotations", ()))
-    traces: list[Trace] = []
-    for number, (row, domain) in enumerate(zip(rows, domains, strict=True)):
-        suffix = _suffix(number)
-        x_axis = {"title": {"text": row.label}, "anchor": f"y{suffix}"}
-        y_axis = {"title": {"text": row.panel.label}, "domain": domain, "anchor": f"x{suffix}"}
-        merged[f"xaxis{suffix}"] = {**x_axis, **row.axis}
-        merged[f"yaxis{suffix}"] = {**y_axis, **row.panel.vertical}
-        merged[f"legend{suffix}"] = _legend(domain[1])
-        traces += row.panel.with_axes(f"x{suffix}", suffix)
-        notes += row.panel.notes(domain[1])
-        marks = event_lines(row.marks)
+    traces, merged, notes = _placed([row.panel for row in rows], _WIDE_GAP, alone=True)
+    shapes, notes = list(more.pop("shapes", ())), [*more.pop("annotations", ()), *notes]
+    for number, row in enumerate(rows):
+        suffix, marks = _suffix(number), event_lines(row.marks)
+        merged[f"xaxis{suffix}"] = {**axis(row.label, anchor=f"y{suffix}"), **row.axis}
         place = {"xref": f"x{suffix}", "yref": f"y{suffix} domain"}
         shapes += [{**shape, **place} for shape in marks["shapes"]]
-        notes += [{**note, **place} for note in marks["annotations"]]
+        notes += [{**mark, **place} for mark in marks["annotations"]]
     return figure(title, traces, {**merged, "shapes": shapes, "annotations": notes, **more})
-
-
-def _legend(top: float) -> Trace:
-    return {"x": 1.01, "xanchor": "left", "y": top, "yanchor": "top"}
 
 
 def event_lines(places: Iterable[tuple[str, float]], share: float = 1.0) -> Trace:
@@ -182,16 +176,12 @@ def event_lines(places: Iterable[tuple[str, float]], share: float = 1.0) -> Trac
         joined.setdefault(round(float(x), 9), []).append(name)
     common = {"yref": "paper", "xref": "x"}
     line = {"color": MUTED, "width": 1, "dash": "dot"}
-    shapes = [
-        {"type": "line", "x0": x, "x1": x, "y0": 0, "y1": 1, "layer": "below", "line": line}
-        | common
-        for x in joined
-    ]
+    upright = {"type": "line", "y0": 0, "y1": 1, "layer": "below", **common}
+    shapes = [{**upright, "x0": x, "x1": x, "line": line} for x in joined]
     names = {x: ", ".join(joined[x]) for x in sorted(joined)}
-    font = {"size": 12, "color": MUTED}
+    above = Trace(yanchor="bottom", color=MUTED, **common)
     notes = [
-        {"x": x, "y": 1, "yanchor": "bottom", "yshift": _LEVEL * level, "text": names[x]}
-        | {"showarrow": False, "font": font, **common}
+        note(x, 1, names[x], yshift=_LEVEL * level, **above)
         for x, level in zip(names, _levels(names, share), strict=True)
     ]
     return {"shapes": shapes, "annotations": notes}
@@ -214,11 +204,6 @@ FROM_ZERO, ZERO = {"rangemode": "tozero"}, {"zeroline": True}
 def curve(quantity: str, x: Any, values: Any, name: str, color: str, **style: Any) -> Trace:
     """Curve of SI values of a quantity in its display unit."""
     return line(x, displayed(quantity, values), name, color, unit=display_unit(quantity), **style)
-
-
-def points(quantity: str, x: Any, values: Any, name: str, color: str, **style: Any) -> Trace:
-    """Marked SI values of a quantity in its display unit."""
-    return marked(x, displayed(quantity, values), name, color, unit=display_unit(quantity), **style)
 
 
 def curves(

@@ -11,7 +11,7 @@ from tribodyn.contact import path_of_contact
 from tribodyn.contact.path import pitch_point_age
 from tribodyn.plot.theme.colors import MUTED
 from tribodyn.plot.theme.labels import axis_label, displayed
-from tribodyn.plot.theme.style import Trace
+from tribodyn.plot.theme.style import Trace, note
 from tribodyn.types import Array
 
 if TYPE_CHECKING:
@@ -76,15 +76,14 @@ def corner_shades(pair: Gears, first: float, last: float) -> dict[str, list[Trac
         if stop <= start:
             continue
         x = displayed("roll_angle", roll_angle_of(pair, np.array([start, stop])))
-        common = {"xref": "x", "yref": "paper"}
-        rectangle = {"x0": float(x[0]), "x1": float(x[1]), "y0": 0, "y1": 1}
-        fill = {"fillcolor": _SHADE, "line": {"width": 0}, "layer": "below"}
+        common = Trace(xref="x", yref="paper")
+        rectangle = {"x0": float(x[0]), "x1": float(x[1]), "y0": 0, "y1": 1, "layer": "below"}
+        fill = {"fillcolor": _SHADE, "line": {"width": 0}}
         shapes.append({"type": "rect", **common, **rectangle, **fill})
         if stop - start < _NAMED_SHADE * (last - first):
             continue
-        label = {"text": text, "textangle": -90, "font": {"size": 11, "color": MUTED}}
-        place = {"x": float(x.mean()), "y": 0.98, "yanchor": "top", "showarrow": False}
-        notes.append({**label, **place, **common})
+        style: Trace = {"size": 11, "color": MUTED, "textangle": -90, "yanchor": "top"}
+        notes.append(note(float(x.mean()), 0.98, text, **style, **common))
     return {"shapes": shapes, "annotations": notes}
 
 

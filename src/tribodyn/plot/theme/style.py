@@ -183,6 +183,13 @@ def contour(x: Any, y: Any, z: Any, colors: Any, hover: str, unit: str, length: 
     return {**heat(x, y, z, colors, hover, colorbar=bar), "type": "contour", **style}
 
 
+def over_map(cells: Trace, levels: Trace, width: float, name: str) -> Trace:
+    """Describe lines of equal values over a map of them."""
+    lines = {"type": "contour", "contours": levels, "line": {"color": INK, "width": width}}
+    plain = {"showscale": False, "showlegend": False, "hoverinfo": "skip", "name": name}
+    return {**{key: cells[key] for key in ("x", "y", "z")}, **lines, **plain}
+
+
 def sankey(
     links: Iterable[tuple[int, int, float, str]], hover: str, node_hover: str, **node: Any
 ) -> Trace:
