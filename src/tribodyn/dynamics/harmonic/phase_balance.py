@@ -40,7 +40,7 @@ _OTHERS = 12, 12, 12, 8, 4
 #: Change of the motion with twice the points at which an automatic choice stops: the first while it
 #: falls to less than this part from grid to grid, the second where forces that bend or jump make it
 #: fall slowly; and the most unknowns of both.
-_ACCURATE, _FALLING, _ENOUGH, _MANY, _MOST = 2e-7, 0.1, 5e-3, 2**17, 3 * 2**14
+_ACCURATE, _FALLING, _ENOUGH, _MANY, _MOST = 2e-7, 0.1, 2e-3, 2**17, 3 * 2**14
 #: Step error that causes a warning; part of the largest change with which a phase is refined too.
 _LIMIT, _WORST = 1e-2, 0.2
 #: Damping added at first where Newton's method does not converge, over the critical damping at
@@ -208,7 +208,8 @@ def phase_balance(
     search = _Search.of(system, frequency)
     points = _first_points(search) if steps is None else _read_steps(steps, search)
     points, residual, solution = search.first(points, start, tolerance, steps is None)
-    step_error, smooth = float("nan"), True
+    step_error = float("nan")
+    smooth = not any(part.breaks.step.size for part in solution.state.parts)
     poor, before = np.zeros(np.shape(points), dtype=bool), np.zeros(np.shape(points))
     while solution.error <= tolerance:
         errors = search.changes(points, residual, solution.state)
