@@ -83,27 +83,10 @@ def run_groups(
     store: Callable[[int, Value], None] = lambda index, value: None,
     partly: bool = False,
 ) -> list[Value]:
-    """Compute the values of all items in groups, up to the first that is missing.
-
-    Parameters
-    ----------
-    compute : callable
-        Returns the values of a group of items.
-    items : sequence
-        All items of the study.
-    groups : Groups
-        How they are grouped; each by itself in threads by default.
-    task : str
-        Name of the study in the progress; empty if the caller has started its progress.
-    progress : Progress
-        Receives the number of finished items.
-    earlier : mapping
-        Values by index that an earlier process has finished.
-    store : callable
-        Receives index and value of each item once it is finished.
-    partly : bool
-        Return the finished values when interrupted with Ctrl-C, if the first is among them.
-    """
+    """Compute the values of all items in groups, up to the first that is missing."""
+    # task: name in the progress; empty if the caller has started it. earlier: values by index that
+    # another process has finished. store: receives index and value of each finished item. partly:
+    # return what is finished when interrupted with Ctrl-C, if the first item is among it.
     done, lock = dict(earlier), threading.Lock()
     missing = [index for index in range(len(items)) if index not in done]
     size = groups.size(len(missing))
