@@ -13,7 +13,7 @@ from tribodyn.ehl.area.finite_line_solution import FiniteLineSolution
 from tribodyn.ehl.area.multigrid import AreaProblem, solve_area
 from tribodyn.ehl.area.point_contact import STATED_LIMIT, requested_nodes
 from tribodyn.ehl.area.roller_profile import RollerProfile
-from tribodyn.ehl.steady.contact_case import ContactCase, si_case
+from tribodyn.ehl.steady.contact_case import ContactCase, require_kind, si_case
 from tribodyn.ehl.steady.grid import estimate_film
 from tribodyn.ehl.steady.line_contact import solve_line_contact
 from tribodyn.errors import (
@@ -181,13 +181,9 @@ def _warn_of_ends(outcome: Any) -> None:
 
 
 def _check_profile(profile: Any) -> None:
-    if not isinstance(profile, RollerProfile):
-        raise InputError(
-            f"profile is of the type {type(profile).__name__}",
-            "argument profile",
-            "the shape of the roller decides how its ends are loaded",
-            "Give tribodyn.ehl.RollerProfile.straight(), .crowned(...) or .logarithmic(...)",
-        )
+    why = "the shape of the roller decides how its ends are loaded"
+    remedy = "Give tribodyn.ehl.RollerProfile.straight(), .crowned(...) or .logarithmic(...)"
+    require_kind("profile", profile, isinstance(profile, RollerProfile), why, remedy)
 
 
 def _dry_gap(x: Array) -> Array:

@@ -194,15 +194,20 @@ def moes_case(
     return ContactCase(scales, 1.0, 1.0, 0.5 * math.pi, 1.0, 1.0, 4.0, None, bool(compressible))
 
 
+def require_kind(name: str, value: Any, fits: bool, why: str, remedy: str) -> None:
+    """Raise :class:`InputError` for an object of another type than wanted."""
+    if not fits:
+        what = f"{name} is of the type {type(value).__name__}"
+        raise InputError(what, f"argument {name}", why, remedy)
+
+
 def _check_lubricant(lubricant: Any) -> None:
-    if not isinstance(lubricant, Lubricant):
-        raise InputError(
-            f"lubricant is of the type {type(lubricant).__name__}",
-            where="argument lubricant",
-            why="the viscosity, its rise with pressure and the density are needed",
-            remedy="Give tribodyn.lubricant.Lubricant(dynamic_viscosity, density, "
-            "pressure_viscosity_coefficient), or one of tribodyn.lubricant.library()",
-        )
+    why = "the viscosity, its rise with pressure and the density are needed"
+    remedy = (
+        "Give tribodyn.lubricant.Lubricant(dynamic_viscosity, density, "
+        "pressure_viscosity_coefficient), or one of tribodyn.lubricant.library()"
+    )
+    require_kind("lubricant", lubricant, isinstance(lubricant, Lubricant), why, remedy)
 
 
 def _check_width(half_width: float, radius: float) -> None:

@@ -12,7 +12,7 @@ from numpy.typing import ArrayLike
 
 from tribodyn.checks import require_number, require_whole
 from tribodyn.ehl.flow_factors import FlowFactors
-from tribodyn.ehl.steady.contact_case import ContactCase, moes_case, si_case
+from tribodyn.ehl.steady.contact_case import ContactCase, moes_case, require_kind, si_case
 from tribodyn.ehl.steady.contact_problem import ContactProblem
 from tribodyn.ehl.steady.fallbacks import Verified, solve_problem
 from tribodyn.ehl.steady.grid import choose_domain, choose_nodes, cut_error, estimate_film
@@ -312,11 +312,9 @@ def _heights(profile: Any, case: ContactCase, problem: ContactProblem) -> Array:
     """Heights at the nodes of the finest grid, in b^2/R."""
     start, end = problem.domain
     position = np.linspace(start, end, problem.nodes) * case.half_width
-    if not callable(profile):
-        what = f"profile is of the type {type(profile).__name__}"
-        why = "it must give the heights over the position"
-        remedy = "Make it by tribodyn.ehl.RoughnessProfile, or give a function"
-        raise InputError(what, "argument profile", why, remedy)
+    why = "it must give the heights over the position"
+    remedy = "Make it by tribodyn.ehl.RoughnessProfile, or give a function"
+    require_kind("profile", profile, callable(profile), why, remedy)
     heights = real_numbers("argument profile", profile(position), "heights [m]")
     if heights.shape != position.shape or not np.all(np.isfinite(heights)):
         raise InputError(
@@ -330,11 +328,9 @@ def _heights(profile: Any, case: ContactCase, problem: ContactProblem) -> Array:
 
 
 def _start(start: Any) -> Any:
-    if not isinstance(start, LineContactSolution):
-        what = f"start is of the type {type(start).__name__}"
-        why = "it must be a solution of a similar contact"
-        remedy = "Give what this solver returned before, or None"
-        raise InputError(what, "argument start", why, remedy)
+    why = "it must be a solution of a similar contact"
+    remedy = "Give what this solver returned before, or None"
+    require_kind("start", start, isinstance(start, LineContactSolution), why, remedy)
     return start._grid
 
 

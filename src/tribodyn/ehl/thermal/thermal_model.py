@@ -8,11 +8,14 @@ from dataclasses import dataclass, field
 from typing import NamedTuple
 
 from tribodyn.checks import require_whole
-from tribodyn.ehl.traction.film_temperature import STEEL_THERMAL_CONTACT_COEFFICIENT
+from tribodyn.ehl.traction.film_temperature import (
+    STEEL_THERMAL_CONTACT_COEFFICIENT,
+    ThermalOil,
+    require_known,
+)
 from tribodyn.ehl.traction.shear_models import EYRING_STRESS, SHEAR_MODELS
 from tribodyn.errors import (
     InputError,
-    Problem,
     require_between,
     require_one_of,
     require_positive,
@@ -142,27 +145,10 @@ class ThermalModel:
         InputError
             If a property of the oil is not known.
         """
-        usual = {
-            "temperature": "for example 313.15 K",
-            "temperature_viscosity_coefficient": "gear oils lie between 0.02 and 0.07 1/K",
-            "thermal_conductivity": "mineral oil has about 0.13 W/(m*K)",
-        }
+        usual = list(ThermalOil._fields)
         if self.thermal_conductivity is not None:
-            del usual["thermal_conductivity"]
-        missing = [name for name in usual if getattr(lubricant, name) is None]
-        if missing:
-            raise InputError(
-                [
-                    Problem(
-                        what=f"{name} of the oil is not known",
-                        where=f"argument lubricant.{name}",
-                        why="the temperature of the film depends on it",
-                        remedy=f"Give it ({usual[name]}), take an oil of the library, or solve "
-                        "the film without thermal",
-                    )
-                    for name in missing
-                ]
-            )
+            usual.remove("thermal_conductivity")
+        require_known(lubricant, usual, "solve the film without thermal")
         temperature, density = float(lubricant.temperature or 0.0), lubricant.density
         capacity = self.specific_heat
         if capacity is None:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from typing import NamedTuple
 
 import numpy as np
@@ -100,24 +100,21 @@ def heated_log_viscosity(
 
 def thermal_oil(lubricant: Lubricant) -> ThermalOil:
     """Read the thermal properties of an oil that must have them all."""
-    values = [getattr(lubricant, name) for name in ThermalOil._fields]
-    missing = [
-        name for name, value in zip(ThermalOil._fields, values, strict=True) if value is None
-    ]
-    if missing:
-        raise InputError(
-            [
-                Problem(
-                    what=f"{name} of the oil is not known",
-                    where=f"argument lubricant.{name}",
-                    why="the temperature of the film depends on it",
-                    remedy=f"Give it ({_USUAL[name]}), take an oil of the library, or leave out "
-                    "inlet_heating and flash_temperature",
-                )
-                for name in missing
-            ]
-        )
-    return ThermalOil(*(float(value) for value in values))
+    require_known(lubricant, ThermalOil._fields, "leave out inlet_heating and flash_temperature")
+    return ThermalOil(*(float(getattr(lubricant, name)) for name in ThermalOil._fields))
+
+
+def require_known(lubricant: Lubricant, names: Iterable[str], otherwise: str) -> None:
+    """Raise :class:`InputError` unless thermal properties of an oil are known."""
+    why = "the temperature of the film depends on it"
+    problems = [
+        Problem(f"{name} of the oil is not known", f"argument lubricant.{name}", why,
+                f"Give it ({_USUAL[name]}), take an oil of the library, or {otherwise}")
+        for name in names
+        if getattr(lubricant, name) is None
+    ]  # fmt: skip
+    if problems:
+        raise InputError(problems)
 
 
 #: Root of conductivity, density and specific heat of gear steel [J/(m^2 K s^0.5)]: the mean
