@@ -261,9 +261,7 @@ def turning_mesh(
         phases = max(min(_PHASES, _MOST // cycles), _FEWEST)
     if cycles * phases > _MOST:
         what = f"all repeats after {cycles} mesh cycles, {cycles * phases} phases"
-        remedy = (
-            "Give faults of one gear only, numbers of teeth with a common factor, or fewer phases"
-        )
+        remedy = "Give faults of one gear only, or fewer phases of a mesh cycle"
         raise InputError(what, "argument faults", f"At most {_MOST} phases are solved", remedy)
     material = material or Material()
     force = torque / pair.pinion.base_radius

@@ -11,8 +11,9 @@ from tests.unit.study.test_machine_phases import case
 
 import tribodyn as td
 from tribodyn.study.faults.clock import check_motion, fault_cost
-from tribodyn.study.faults.machine_motion import machine_turning_motion
+from tribodyn.study.faults.machine_motion import machine_turning_motion, rehearse_faults
 from tribodyn.study.faults.phase_motion import MachinePhaseMotion
+from tribodyn.study.machine.run import rehearse_machine
 
 SPEED = 1000.0 / 60.0
 SHORT = {"z1": 20, "z2": 24, "z3": 15, "z4": 25}
@@ -133,3 +134,31 @@ def test_costs_are_stated_and_refused_before_the_run() -> None:
     small = faulty.replace({"solver.memory": "100 MB"})
     with pytest.raises(td.ComputationError, match=r"allowed by solver.memory"):
         fault_cost(small, small.machine())
+
+
+def test_teeth_that_would_be_clamped_name_their_mesh_before_the_run() -> None:
+    base = case({"z1": 29, "z2": 71, "z3": 23, "z4": 67})
+    computed = {
+        f"meshes.mesh{n}.{key}": None
+        for n in (1, 2)
+        for key in ("stiffness", "transmission_error_amplitude")
+    }
+    narrow = base.replace(
+        {
+            **computed, "stiffness.model": "analytic", "dynamics.backlash": "2 um",
+            "faults.pitch.kind": "pitch-deviations", "faults.pitch.gear": "z3",
+            "faults.pitch.accuracy_class": 8,
+        }
+    )  # fmt: skip
+    with pytest.raises(td.InputError, match=r"mesh mesh2: a pair touches .* um before"):
+        rehearse_faults(narrow, rehearse_machine(narrow))
+
+
+@pytest.mark.slow
+def test_a_run_up_over_phases_passes_steady_motions() -> None:
+    levels = td.run_up(case(SHORT, phases="on"), ("900 rpm", "1000 rpm"), 2.0)
+    assert levels.speed[[0, -1]] * 30.0 / np.pi == pytest.approx([900.0, 1000.0])
+    assert levels.time[-1] == pytest.approx(2.0)
+    steady = sound("on").motion
+    expected = steady.rms(steady.mesh_force)
+    assert levels.mesh_force[-1] == pytest.approx(expected, rel=1e-3)

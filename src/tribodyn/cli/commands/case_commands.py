@@ -73,14 +73,13 @@ def check(case: CaseName, /, *, set_: Settings = None, json: Flag = False) -> No
 def _check_machine(case: MachineCase, json: bool) -> None:
     """Show speeds, torques and power of a machine, after rehearsing its teeth."""
     from tribodyn.errors import collected
-    from tribodyn.study.faults.clock import check_motion
+    from tribodyn.study.faults.machine_motion import rehearse_faults
     from tribodyn.study.machine.first_look import kinematic_figures
     from tribodyn.study.machine.run import rehearse_machine
     from tribodyn.study.pipeline.summary_figures import summary_rows
 
     with collected() as warnings:
-        rehearse_machine(case)
-        costs = check_motion(case)
+        costs = rehearse_faults(case, rehearse_machine(case))
         values = kinematic_figures(case)
     if json:
         say_json(values)

@@ -14,6 +14,7 @@ from tribodyn.progress import SILENT, Progress
 from tribodyn.study.faults.clock import (
     MOST_CYCLES,
     FaultyTeeth,
+    check_motion,
     fault_cost,
     teeth_of,
 )
@@ -34,6 +35,7 @@ from tribodyn.study.faults.turning import (
     steady_over_turns,
 )
 from tribodyn.study.machine.first_look import warn_of_orders
+from tribodyn.study.machine.run import Balanced, named_mesh
 from tribodyn.study.mesh_inputs import mesh_inputs
 from tribodyn.study.planetary.common import only_stage
 from tribodyn.types import Array
@@ -53,13 +55,27 @@ _SHORTER = (
 )
 
 
-def turning_machine(case: MachineCase, sound: LoadResult, *, phases: bool = False) -> Machine:
+def rehearse_faults(case: MachineCase, rest: Balanced) -> list[str]:
+    """Costs of the motions over phases; refuse faulty teeth that cannot run, and too much."""
+    costs = check_motion(case)
+    teeth = {n: f for n, f in case.faults.items() if f.gear and f.kind != "crack"}  # elements
+    if teeth:
+        cracked = [f"faults.{name}" for name in case.faults if name not in teeth]
+        plain = case.replace(dict.fromkeys(cracked)) if cracked else case
+        turning_machine(plain, rest, phases=fault_cost(case, rest.machine) is not None)
+    return costs
+
+
+def turning_machine(
+    case: MachineCase, sound: LoadResult | Balanced, *, phases: bool = False
+) -> Machine:
     """The machine with force laws over whole turns; over phases, waves turn with their gears."""
     machine = sound.machine
     changed = {}
     for name in machine.meshes:
         faulty = FaultyTeeth.of(case, machine, name, phases=phases)
-        fields = _mesh_over_turns(case, sound, name, faulty.others)
+        with named_mesh(name):
+            fields = _mesh_over_turns(case, sound, name, faulty.others)
         mesh = machine.meshes[name]
         if fields:
             entries = {"stiffness": mesh.stiffness, **fields}
@@ -70,7 +86,7 @@ def turning_machine(case: MachineCase, sound: LoadResult, *, phases: bool = Fals
 
 
 def _mesh_over_turns(
-    case: MachineCase, sound: LoadResult, name: str, faults: list[Fault]
+    case: MachineCase, sound: LoadResult | Balanced, name: str, faults: list[Fault]
 ) -> dict[str, Any]:
     """Fields of a mesh with faults; empty where all its teeth are equal."""
     from tribodyn.study.pipeline.assembly import mesh_contacts, mesh_damping

@@ -6,7 +6,8 @@ import json
 import re
 import sys
 import warnings
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from contextlib import contextmanager
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, NamedTuple
@@ -84,6 +85,11 @@ class Balanced(NamedTuple):
     warnings: list[MeshWarning]
     heat: HeatBalance | None = None
 
+    @property
+    def machine(self) -> Machine:
+        """The machine with the force laws of its teeth."""
+        return self.static.machine
+
 
 def run_machine(
     case: MachineCase, progress: Progress = SILENT, *, stacklevel: int = 2
@@ -130,11 +136,14 @@ def run_load(
     )
 
 
-def rehearse_machine(case: MachineCase) -> None:
+def rehearse_machine(case: MachineCase) -> Balanced:
     """Raise the input errors of teeth and balance without computing films and motion."""
     with collected(), single_blas_thread():
-        for load in (case.operating_point, *case.load_cases):
+        rest, *_ = (
             balanced_machine(case, load, rehearsal=True)
+            for load in (case.operating_point, *case.load_cases)
+        )
+    return rest
 
 
 def balanced_machine(
@@ -276,20 +285,27 @@ def _teeth(
         groups.setdefault((case.tooth_group(name), shift), []).append(name)
     firsts = [names[0] for names in groups.values()]
     inputs = [inputs_under(case, name, load, misalignment[name]) for name in firsts]
-    listed = teeth_of_meshes(inputs, load, progress, rehearsal=rehearsal)
+    pairs = [*zip(firsts, inputs, strict=True)]
+    listed = teeth_of_meshes(pairs, load, progress, rehearsal=rehearsal)
     computed = zip(groups.values(), listed, strict=True)
     teeth = {name: each for names, each in computed for name in names}
     return {name: teeth[name] for name in misalignment}
 
 
 def teeth_of_meshes(
-    inputs: Sequence[MeshInputs], load: LoadCase, progress: Progress, *, rehearsal: bool = False
+    inputs: Sequence[tuple[str, MeshInputs]],
+    load: LoadCase,
+    progress: Progress,
+    *,
+    rehearsal: bool = False,
 ) -> list[tuple[MeshTable, dict[str, Any], list[ModelWarning]]]:
     """Teeth of several meshes under a load, in threads."""
     progress.start(f"Tooth contact: {load.name}", len(inputs))
 
-    def compute(of_mesh: MeshInputs) -> tuple[MeshTable, dict[str, Any], list[ModelWarning]]:
-        teeth = teeth_of(of_mesh, rehearsal=rehearsal)
+    def compute(
+        of_mesh: tuple[str, MeshInputs],
+    ) -> tuple[MeshTable, dict[str, Any], list[ModelWarning]]:
+        teeth = teeth_of(*of_mesh, rehearsal=rehearsal)
         progress.advance()
         return teeth
 
@@ -326,11 +342,24 @@ def structure_at_rest(case: MachineCase, progress: Progress = SILENT) -> Machine
     return structure_of(case, balanced.static.linearized())
 
 
+@contextmanager
+def named_mesh(name: str) -> Iterator[None]:
+    """Name a mesh in errors that do not."""
+    try:
+        yield
+    except (InputError, ComputationError) as error:
+        problems = [
+            p if name in str(p) else replace(p, what=f"mesh {name}: {p.what}")
+            for p in error.problems
+        ]
+        raise type(error)(problems) from None
+
+
 def teeth_of(
-    inputs: MeshInputs, *, rehearsal: bool = False
+    name: str, inputs: MeshInputs, *, rehearsal: bool = False
 ) -> tuple[MeshTable, dict[str, Any], list[ModelWarning]]:
     """Mesh table and force law of the teeth of a mesh, and their warnings."""
-    with inputs.located(), collected() as caught:
+    with named_mesh(name), inputs.located(), collected() as caught:
         table = mesh_table(inputs, about_load=True, rehearsal=rehearsal)
         return table, _law(inputs, table, rehearsal=rehearsal), caught
 

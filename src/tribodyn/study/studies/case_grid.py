@@ -153,7 +153,7 @@ def moving(case: Case | MachineCase, mesh: str | None = None) -> Moving:
     machine, system = structure.machine, system_of(structure)
     if system.phases:
         why = "A motion that repeats needs a clock that all meshes follow"
-        remedy = "Use run, or numbers of teeth with common factors"
+        remedy = 'Use run, which needs no period, or solver.phases = "off"'
         raise InputError("the meshes have no common period", Argument("case"), why, remedy)
     counts = {name: max(len(each.contacts), 1) for name, each in machine.meshes.items()}
     names = list(counts)

@@ -34,8 +34,8 @@ if TYPE_CHECKING:
 
 
 _SPEED = "operation.speed"
-#: Most periods of a run-up whose levels are computed.
-_RECORDED = 400
+#: Most periods of a run-up whose levels are computed, and speeds of one over phases.
+_RECORDED, _STEADY = 400, 31
 #: Change of the speed from one period of the clock to the next that causes a warning.
 _COARSE = 0.02
 
@@ -328,9 +328,12 @@ def parts_run_up(
     with collected(), single_blas_thread():
         result = result_under(middle, progress, [])
     if result.system.phases:
-        what, why = "the meshes have no common period", "A run-up rises from period to period"
-        remedy = 'Sweep operation.speed, or set solver.phases = "off"'
-        raise InputError(what, "solver.phases", why, remedy)
+        span = duration + hold + duration * down
+        time = np.linspace(0.0, span, _STEADY)
+        corners = [0.0, duration, duration + hold, span]
+        speed = np.interp(time, corners, [ends[0], ends[1], ends[1], ends[0] if down else ends[1]])
+        levels = levels_of(_steady_motions(result, speed, progress), speed, time=time)
+        return _levels_of_result(levels, result)
     per_speed = result.clock_frequency / middle.operating_point.speed
     speed, time = _periods(per_speed, ends, duration, hold, down)
     with collected(), single_blas_thread():
@@ -349,6 +352,22 @@ def parts_run_up(
         levels = levels_of(motions(), speed[::every], time=time[::every])
         progress.finish()
     return _levels_of_result(levels, result)
+
+
+def _steady_motions(
+    result: LoadResult, speeds: Array, progress: Progress
+) -> Iterator[MachineMotion]:
+    """Motions over phases at the speeds of a run-up, which is slow beside their decay."""
+    response: Any = None
+    middle = result.load.speed
+    progress.start("Speeds of the run-up", speeds.size)
+    for speed in speeds:
+        frequency = np.array(result.machine.phases.frequency) * abs(speed / middle)
+        with collected(), single_blas_thread():
+            response = harmonic_balance(result.system, frequency, start=response)
+        yield result.signals_along(response)
+        progress.advance()
+    progress.finish()
 
 
 def _levels_of_result(levels: MachineLevels, result: LoadResult) -> MachineLevels:
