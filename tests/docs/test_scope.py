@@ -118,3 +118,8 @@ def test_users_of_other_programs_see_where_things_are(program: str) -> None:
     assert table[0] == f"| in {program} | here |"
     page = (ROOT / "docs" / f"coming-from-{PROGRAMS[program]}.md").read_text("utf-8")
     assert all(line in page for line in table)
+
+
+def test_citation_has_the_version_of_the_package() -> None:
+    citation = (ROOT / "CITATION.cff").read_text("utf-8")
+    assert f"\nversion: {td.__version__}\n" in citation
