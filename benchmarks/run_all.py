@@ -33,6 +33,7 @@ SCRIPTS = (
     "helical_speed",
     "learning_speed",
     "signals_speed",
+    "rating_speed",
     "study_speed",
     "hypoid_speed",
     "point_contact_speed",

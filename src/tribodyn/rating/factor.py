@@ -100,11 +100,14 @@ def refuse_unknown(factors: Mapping[str, float], known: Mapping[str, object]) ->
             raise InputError(what, Argument("factors"), why, remedy)
 
 
-def check_range(name: str, value: float, low: float, high: float, source: str) -> None:
-    """Warn where a rule is used outside of the range of its source."""
+def check_range(
+    name: str, value: float, low: float, high: float, source: str, *, limited: bool = False
+) -> None:
+    """Warn where a rule is used outside of the range of its source, or at the end of it."""
     if not low <= value <= high:
+        used = "value at its end is used" if limited else "formula is used beyond it"
         warn(
             "rating-range",
             f"{name} = {value:.6g} lies outside of the range {low:g} to {high:g} of {source}; the "
-            "formula is used beyond it, compare with a computed or measured value",
+            f"{used}, compare with a computed or measured value",
         )

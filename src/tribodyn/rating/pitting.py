@@ -165,6 +165,7 @@ def _against_hard(
         unit="m",
         branch="" if limited == equivalent else f"{equivalent:.4g} um limited",
     )
+    check_range("HB", soft.material.hardness, 130.0, 470.0, f"Z_W of {PART_2}", limited=True)
     hardness = min(max(soft.material.hardness, 130.0), 470.0)
     branch = "soft against hard"
     if hardness != soft.material.hardness:

@@ -14,7 +14,7 @@ import numpy as np
 
 from tribodyn.errors import Argument, InputError
 from tribodyn.rating.bending import PART_3
-from tribodyn.rating.factor import Factors
+from tribodyn.rating.factor import Factors, check_range
 from tribodyn.rating.life import (
     bending_curve,
     between_static_and_endurance,
@@ -64,7 +64,9 @@ def slip_layer(material: GearMaterial) -> tuple[float, str]:
         return (0.3124, "sigma_B 150") if weak else (0.3095, "sigma_B 300")
     strengths, layers = _ST if kind.startswith("St") else _V
     strength = _strength(material)
-    limited = min(max(strength, strengths[0]), strengths[-1])
+    ends = strengths[0], strengths[-1]
+    check_range("strength", strength, *ends, f"rho' of {PART_3}, in N/mm2", limited=True)
+    limited = min(max(strength, ends[0]), ends[1])
     branch = f"strength {strength:.4g} N/mm2"
     if limited != strength:
         branch += f" limited to {limited:g}"
@@ -98,6 +100,7 @@ def _roughness_factor(material: GearMaterial, roughness: float) -> tuple[float, 
     rz = 1e6 * roughness
     if rz < 1.0:
         return smooth, "Rz below 1 um"
+    check_range("Rz", rz, 0.0, 40.0, f"Y_RrelT of {PART_3}, in um", limited=True)
     limited = min(rz, 40.0)
     branch = "" if limited == rz else f"Rz {rz:g} um limited to 40 um"
     return a - b * (limited + 1.0) ** c, branch

@@ -10,6 +10,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from tribodyn.errors import ModelWarning
 from tribodyn.machine import BearingState
 from tribodyn.machine.rolling.element_ring import RollingElementBearing
 from tribodyn.machine.rolling.roller_bearing import RollerBearing
@@ -93,6 +94,7 @@ class PartBearing:
     conditions: Any
     rolling: RollingElementBearing | None = None
     kind: str = ""  #: type of a rolling bearing
+    prefix: str = ""  #: of the keys, ``pin_`` of planets
 
     @cached_property
     def rated(self) -> RatedBearing:
@@ -114,9 +116,9 @@ class PartBearing:
     def missing(self) -> str:
         """What the modified life lacks; empty where nothing is missing."""
         if self.rolling is None and self.catalogue.pitch_diameter is None:
-            return "no pitch_diameter"
+            return f"no {self.prefix}pitch_diameter"
         if self.rated.fatigue_limit is None:
-            return "no fatigue_load_limit or static_load_rating"
+            return f"no {self.prefix}fatigue_load_limit or {self.prefix}static_load_rating"
         return ""
 
     def equivalent_load(self, radial: float, axial: float) -> tuple[float | None, str]:
@@ -378,6 +380,7 @@ class PartRatings:
     notches: tuple[NotchRating, ...] = ()
     required_life: float | None = None
     minimum_safety: float | None = None
+    warnings: tuple[ModelWarning, ...] = ()
 
     @property
     def system_life(self) -> float | None:

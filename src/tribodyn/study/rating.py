@@ -267,7 +267,8 @@ class CaseRating:
     @property
     def warnings(self) -> list[ModelWarning]:
         """Warnings of all ratings, each once: factors outside of the range of their source."""
-        listed = (warning for each in self.ratings for warning in each.standard.warnings)
+        listed = [warning for each in self.ratings for warning in each.standard.warnings]
+        listed += self.parts.warnings
         return list({str(warning): warning for warning in listed}.values())
 
     @property

@@ -106,7 +106,8 @@ def bearing_table(rating: CaseRating) -> RatingTable:
     """Lives of all bearings, with the load, the viscosity ratio and a_ISO under each load."""
     head = ("bearing", "load", "basic life", "modified life", "by elements", "P", "kappa", "a_ISO")
     rows = []
-    for each in rating.parts.bearings:
+    is_rated = any(each.lives for each in rating.parts.bearings)
+    for each in rating.parts.bearings if is_rated else ():
         if not each.lives:
             rows.append((each.bearing, each.reason, *[""] * 6))
         for life in each.lives:

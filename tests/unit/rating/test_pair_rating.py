@@ -282,3 +282,17 @@ def test_relief_factor_of_helical_pairs():
 def test_values_out_of_range_are_refused(values):
     with pytest.raises(InputError, match=next(iter(values))):
         rate_spur(**values)
+
+
+@pytest.mark.parametrize(
+    ("change", "text"),
+    [
+        ({"root_roughness": 60.0 * UM}, r"Rz = 60 lies outside of the range 0 to 40"),
+        ({"material": replace(THROUGH, yield_strength=1200e6)}, r"strength = 1200 .* 500 to 1000"),
+    ],
+)
+def test_values_that_are_limited_are_reported_with_the_limit(change, text):
+    gear = replace(SPUR_GEARS[0], **change)
+    with pytest.warns(ModelWarning, match=text):
+        rating = rate_spur(pinion=gear)
+    assert any("value at its end is used" in str(warning) for warning in rating.warnings)

@@ -95,6 +95,14 @@ def test_a_notch_has_the_stress_of_a_beam_on_two_supports(result, rating):
     assert (verdict.part, verdict.where, verdict.required) == ("in", "notch step", 1.2)
 
 
+@pytest.mark.filterwarnings("ignore")
+def test_a_bearing_beyond_the_range_of_its_rating_is_named():
+    rating = td.run(case(**{"bearings.B.dynamic_load_rating": 5e3})).rating
+    (warning,) = rating.warnings
+    assert warning.code == "rating-range"
+    assert 'bearing "B": P/C = 0.5' in warning.message
+
+
 def test_load_cases_add_up_by_their_shares():
     loads = [{"name": "low", "share": 0.75, "torque": 100.0}, {"name": "high", "share": 0.25}]
     bearing = td.run(MachineCase(**MACHINE, load_cases=loads)).rating.bearings["A"]

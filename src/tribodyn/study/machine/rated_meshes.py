@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from tribodyn.errors import collected
+from tribodyn.errors import collected, warn
 from tribodyn.machine.shaft_matrices import ShaftMatrices
 from tribodyn.study.case.to_models import lubricant
 from tribodyn.study.machine.pair_cases import read_teeth, teeth_under
@@ -129,14 +129,17 @@ def rated_parts(case: MachineCase, loads: Loads) -> PartRatings:
     rated = case.rated_parts
     if not loads or rated.rating is None:
         return PartRatings()
-    bearings = [_bearing(case, loads, name) for name in _bearings(case)]
-    notches = [
-        _notch(load, (shaft, place, name), rated)
-        for shaft, place in rated.notches
-        for name, load in loads.items()
-    ]
+    with collected() as caught:
+        bearings = [_bearing(case, loads, name) for name in _bearings(case)]
+        notches = [
+            _notch(load, (shaft, place, name), rated)
+            for shaft, place in rated.notches
+            for name, load in loads.items()
+        ]
+    for warning in caught:
+        warn(warning.code, warning.message)
     required = rated.rating.required_life, rated.rating.minimum_safety
-    return PartRatings(tuple(bearings), tuple(notches), *required)
+    return PartRatings(tuple(bearings), tuple(notches), *required, tuple(caught))
 
 
 def _bearings(case: MachineCase) -> Iterator[str]:
@@ -153,11 +156,11 @@ def _bearing(case: MachineCase, loads: Loads, name: str) -> BearingRating:
     part, rated = case.machine().bearings[name], case.rated_parts
     stage = next((s for s in case.stages if part.carrier and name.startswith(f"{s}_")), "")
     catalogue = rated.catalogues.get(f"planets.{stage}" if stage else name)
+    prefix = "pin_" if stage else ""
     if catalogue is None:
-        key = "pin_dynamic_load_rating" if stage else "dynamic_load_rating"
-        return BearingRating(name, (), reason=f"no {key}")
+        return BearingRating(name, (), reason=f"no {prefix}dynamic_load_rating")
     kind = str(case.data["bearings"][name].get("type", "")) if not stage else ""
-    bearing = PartBearing(catalogue, rated.rating, part.rolling, kind)
+    bearing = PartBearing(catalogue, rated.rating, part.rolling, kind, prefix)
     exponent, rows = bearing.rated.exponent, []
     for label, load in loads.items():
         flow, balance = load.machine.kinematics.shafts, load.static.bearings[name]
@@ -169,7 +172,11 @@ def _bearing(case: MachineCase, loads: Loads, name: str) -> BearingRating:
         share = load.load.share if label != "operation" else None
         values = math.hypot(y, z), abs(x), abs(speed), _viscosity(case, load), max(swing, 1.0)
         rows.append(BearingLoad(label, share, *values, balance.state))
-    return rate_bearing(name, bearing, rows, rated.rating.application_factor)
+    with collected() as caught:
+        rating = rate_bearing(name, bearing, rows, rated.rating.application_factor)
+    for warning in caught:
+        warn(warning.code, f'bearing "{name}": {warning.message}')
+    return rating
 
 
 def _viscosity(case: MachineCase, load: LoadResult) -> float | None:
