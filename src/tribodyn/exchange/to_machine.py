@@ -27,7 +27,7 @@ from tribodyn.exchange.to_planets import stage_from_rexs
 from tribodyn.study.case.case import Case
 from tribodyn.study.case.user_input import Source, plain
 from tribodyn.study.machine.case import MachineCase
-from tribodyn.study.machine.user_tables import changed_tables
+from tribodyn.study.machine.unused_keys import changed_machine
 
 #: Part of a face without a mate that is rounding of the positions [m].
 _FACE = 1e-5
@@ -89,7 +89,7 @@ def machine_from_rexs(
     data["assumed"] = {key: reason for key, reason in assumed.items() if key not in changes}
     origin = f"REXS {model.version} file of {model.application or 'an unnamed program'}"
     title = f"Gearbox of {len(model.stages)} stage{'s' * (len(model.stages) > 1)}"
-    tables = changed_tables(plain({"title": title, "origin": origin, **data}), changes, by=by)
+    tables = changed_machine(plain({"title": title, "origin": origin, **data}), changes, by=by)
     if "operation" not in tables or {"speed", "torque"} - tables["operation"].keys():
         remedy = 'Give both: --set "operation.speed=1500 rpm" --set "operation.torque=100 N*m"'
         what = "the speed and the torque of the gearbox are not known"

@@ -11,7 +11,7 @@ from tribodyn.exchange.gearbox import GearboxModel, Load, StageGear
 from tribodyn.exchange.to_case import NOT_THERE, material_values, nested, rack_values, shared_models
 from tribodyn.study.case.user_input import Source, plain
 from tribodyn.study.machine.case import MachineCase
-from tribodyn.study.machine.user_tables import changed_tables
+from tribodyn.study.machine.unused_keys import changed_machine
 from tribodyn.types import Array
 
 _SPUR = 1e-6
@@ -90,7 +90,7 @@ def stage_from_rexs(
     data["assumed"] = {key: reason for key, reason in assumed.items() if key not in changes}
     origin = f"REXS {model.version} file of {model.application or 'an unnamed program'}"
     title = f"Planetary stage with {len(planets)} planets"
-    tables = changed_tables(plain({"title": title, "origin": origin, **data}), changes, by=by)
+    tables = changed_machine(plain({"title": title, "origin": origin, **data}), changes, by=by)
     if {"speed", "torque"} - tables["operation"].keys():
         remedy = 'Give both: --set "operation.speed=1500 rpm" --set "operation.torque=100 N*m"'
         what = "the speed and the torque of the stage are not known"

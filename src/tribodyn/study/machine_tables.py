@@ -159,5 +159,6 @@ class MachineTables(Section):
     faults: Section = _parts(PartFaultTable, "a fault")
 
 
+MachineTables.fields["load_cases"].kind.listed = True  # type: ignore[union-attr]
 MachineTables.fields |= {name: CaseData.fields[name] for name in SHARED}
 MachineTables.fields["rating"] = table(MachineRating, "load capacity of gears and parts", "none")

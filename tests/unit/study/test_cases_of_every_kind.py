@@ -112,7 +112,7 @@ def test_a_load_case_is_changed_by_its_name() -> None:
     other = case.replace({key: "1234 rpm"})
     assert other[key] == other.load_cases[0].speed == pytest.approx(1234 * 3.141592653589793 / 30)
     assert changed_keys(other) == (key,)
-    with pytest.raises(InputError, match="is not a table"):
+    with pytest.raises(InputError, match="there is no load case"):
         case.replace({"load_cases.absent.speed": "1 rpm"})
 
 

@@ -13,7 +13,8 @@ from tribodyn.aliases import with_old_names
 from tribodyn.errors import InputError, Problem
 from tribodyn.study.case import to_models
 from tribodyn.study.case.case_data import CaseData
-from tribodyn.study.case.checks import cross_problems, dropped_options
+from tribodyn.study.case.changes import changed_tables
+from tribodyn.study.case.checks import cross_problems
 from tribodyn.study.case.gears import is_needed, with_gear_defaults
 from tribodyn.study.case.hypoid import torque_problem
 from tribodyn.study.case.provenance import (
@@ -27,12 +28,11 @@ from tribodyn.study.case.provenance import (
     tables,
     without_records,
 )
-from tribodyn.study.case.section import Table, choices, section_at, signature_of
+from tribodyn.study.case.section import choices, section_at, signature_of
 from tribodyn.study.case.user_input import (
     Source,
     UserInput,
     plain,
-    spread_problem,
     unsound,
     without_spread,
 )
@@ -55,8 +55,6 @@ _DERIVED = {
     "_shared",
     *(name for name, attribute in vars(CaseData).items() if isinstance(attribute, cached_property)),
 }
-#: Keys other than model names whose choice decides which keys of their table are allowed.
-_DECIDES = ("solver.method",)
 
 
 @with_old_names
@@ -130,15 +128,6 @@ class Case(CaseData, case=True):
             del self._assumed[key]
         self._user_input = UserInput({**inputs.data, **tables(self._stated, self._assumed)})
 
-    def _spread_faults(self, faulty: set[str]) -> list[tuple[str, Problem]]:
-        """Report spread values that reach beyond the range of their key."""
-        faults = []
-        for key, text in self._spread.items():
-            spec = None if key in faulty else spec_of(self, key)
-            problem = spread_problem(spec, key, text) if spec else None
-            faults += [(key, problem)] if problem else []
-        return faults
-
     def __getstate__(self) -> dict[str, Any]:
         """Return the state without derived attributes."""
         return {key: value for key, value in vars(self).items() if key not in _DERIVED}
@@ -171,9 +160,9 @@ class Case(CaseData, case=True):
         """
         if not by and (changed := self._with_numbers(changes)) is not None:
             return changed
-        ready = changes if by else {key: Plain(value) for key, value in changes.items()}
         source = self._source.with_replaced(changes, by or "replace:")
-        return type(self)(source, **changed_tables(self._user_input, ready, self._spread))
+        inputs = self._user_input.data
+        return type(self)(source, **changed_tables(Case, inputs, changes, self._spread, by))
 
     def _with_numbers(self, changes: Mapping[str, Any]) -> Case | None:
         """Return a copy with changed numbers, checked by a fast path; None if that does not apply.
@@ -242,33 +231,3 @@ class Case(CaseData, case=True):
 
 Case.__signature__ = signature_of(Case)
 Case.root = Case
-
-
-def changed_tables(
-    inputs: UserInput, changes: Mapping[str, Any], spread: Mapping[str, str] | None = None
-) -> dict[str, Any]:
-    """Tables with values changed by dotted key, without options of models that are replaced."""
-    dropped = dropped_options(inputs, changes, _chosen_by(changes))
-    kept = {key: text for key, text in (spread or {}).items() if key not in dropped}
-    data = inputs.merged({**kept, **dict.fromkeys(dropped), **changes})
-    if isinstance(marks := data.get("assumed"), Mapping):
-        data["assumed"] = {k: w for k, w in marks.items() if k not in changes and k not in dropped}
-    return data
-
-
-def _chosen_by(changes: Mapping[str, Any]) -> dict[str, str]:
-    """Return the models, laws and methods that changes select, without unknown names."""
-    kinds = {name: t.kind for name, t in Case.fields.items() if isinstance(t, Table)}
-    selectors = [f"{name}.{kind.selector}" for name, kind in kinds.items() if kind.selector]
-    chosen = {}
-    for key in (*selectors, *_DECIDES):
-        if key not in changes:
-            continue
-        section, _, name = key.partition(".")
-        spec: Any = kinds[section].fields[name]
-        value = changes[key]
-        value = value.value if isinstance(value, Plain) else value
-        value = spec.default if value is None else value
-        if value in spec.names():
-            chosen[key] = value
-    return chosen

@@ -15,7 +15,7 @@ from tribodyn.study.case.gears import (
     ring_problems,
     size_problems,
 )
-from tribodyn.study.case.section import Choice, SectionKeys, choices, section_at
+from tribodyn.study.case.section import Choice, SectionKeys, section_at
 from tribodyn.study.case.sections import THERMAL, lubricant_problems
 from tribodyn.study.case.user_input import CONFLICT_REASON, UserInput, conflicting_keys
 
@@ -292,18 +292,6 @@ def _assumed(inputs: UserInput, faulty: set[str]) -> KeyedProblems:
             yield f"assumed.{key}", Problem(f'no value is given for "{key}"', "", why, remedy)
 
 
-def dropped_options(
-    inputs: UserInput, changes: Mapping[str, Any], choices: Mapping[str, str]
-) -> set[str]:
-    """Return the options that a newly chosen model, law or method does not have."""
-    return {
-        key
-        for selector, name in choices.items()
-        for key in _keys_of_table(inputs, selector.partition(".")[0])
-        if key not in changes and key != selector and not _accepts(inputs, selector, name, key)
-    }
-
-
 def case_options(section: str, name: str) -> Mapping[str, Option]:
     """Return the options of a named model that are keys of the case file."""
     table = section_at((section,))
@@ -314,16 +302,6 @@ def case_options(section: str, name: str) -> Mapping[str, Option]:
 def _keys_of_table(inputs: UserInput, table: str) -> list[str]:
     """Return the dotted keys of all values of a table."""
     return [key for key in inputs.typed if key.startswith(f"{table}.")]
-
-
-def _accepts(inputs: UserInput, selector: str, name: str, key: str) -> bool:
-    section, _, option = key.rpartition(".")
-    if key == "film.stiffness":
-        return inputs.get(key) in _film_stiffnesses(name)
-    if selector == "solver.method":
-        return name != "steady" or option != "cycles"
-    keys = choices({selector: name})[section].keys
-    return option not in keys.owners or option in case_options(section, name)
 
 
 def _model_problems(
@@ -370,12 +348,6 @@ def _foreign_options(
             why = keys.models[first].case_options[option].absent
             other = f'"{first}"' if why else f"another {selector}"
             yield key, Problem(what, "", why or listing, f"Remove it, or choose {other}")
-
-
-def _film_stiffnesses(name: str) -> tuple[str, ...]:
-    from tribodyn.ehl import FILM_MODELS
-
-    return FILM_MODELS[name].stiffness_kinds
 
 
 def _film(inputs: UserInput, model: FilmModel, faulty: set[str]) -> KeyedProblems:

@@ -11,6 +11,7 @@ from tribodyn.errors import Problem
 from tribodyn.gear.hypoid.blank import GENERATIONS, HANDS, PROCESSES, RANGES, hypoid_blank
 from tribodyn.gear.hypoid.kinematics import ENTRAINMENTS
 from tribodyn.model import REQUIRED, Option, choice, file_path, flag, integer, number, numbers, text
+from tribodyn.study.case.changes import with_values
 from tribodyn.study.case.section import Section, Table
 from tribodyn.study.case.section import table as inner_table
 from tribodyn.study.case.user_input import UserInput, conflicting_keys
@@ -442,7 +443,7 @@ def with_gear_defaults(inputs: UserInput) -> UserInput:
     plain = isinstance(inputs.get("stiffness"), str) or inputs.get("gears.kind", "spur") != "spur"
     if plain or "stiffness.model" in inputs or not helix or str(helix).split()[0] in ("0", "0.0"):
         return inputs
-    return UserInput(inputs.merged({"stiffness.model": HELICAL_STIFFNESS}))
+    return UserInput(with_values(inputs.data, {"stiffness.model": HELICAL_STIFFNESS}))
 
 
 def heat_of_bodies(inputs: UserInput) -> Iterator[tuple[str, Problem]]:

@@ -23,8 +23,7 @@ from tribodyn.study.case.user_input import Stated, UserInput
 from tribodyn.study.case.values import FaultError, Plain, read_value, unmarked, written
 
 if TYPE_CHECKING:
-    from tribodyn.study.case.base import BaseCase
-    from tribodyn.study.case.case_data import CaseData
+    from tribodyn.study.case.case_data import BaseCase, CaseData
 
 
 #: Relative tolerance for equal values.

@@ -12,9 +12,10 @@ from typing import Any, Self
 
 from tribodyn import units
 from tribodyn.errors import InputError, Problem
-from tribodyn.study.case.case import Case, changed_tables
+from tribodyn.study.case.case import Case
+from tribodyn.study.case.changes import changed_tables
 from tribodyn.study.case.section import file_keys
-from tribodyn.study.case.user_input import Source, UserInput
+from tribodyn.study.case.user_input import Source
 from tribodyn.validated_files import read_bytes
 
 _SPACE = " \t\r"
@@ -224,7 +225,7 @@ def changed_file(text: str, name: str, changes: Mapping[str, Any], by: str = "")
         )
     _place_files(data, Path(name).parent)
     source = Source(name or "case", partial(key_lines, text)).with_replaced(changes, by)
-    return Case(source, **(changed_tables(UserInput(data), changes) if changes else data))
+    return Case(source, **(changed_tables(Case, data, changes, by=by) if changes else data))
 
 
 @contextmanager

@@ -169,6 +169,8 @@ class _AnyName(dict[str, Any]):
 class NamedTables(Section):
     """A table of tables of one kind, which the user names."""
 
+    listed: ClassVar[bool] = False  #: whether the file has a list of them, which have names
+
     def __init_subclass__(cls, inner: Table) -> None:
         """Set the kind of the inner tables."""
         cls.fields = _AnyName(inner)
@@ -188,6 +190,18 @@ def named_rows(value: Any) -> list[tuple[str, Mapping[str, Any]]]:
     if not isinstance(value, list | tuple) or not all(isinstance(row, Mapping) for row in value):
         return []
     return [(str(row.get("name", number)), row) for number, row in enumerate(value, 1)]
+
+
+def flat_keys(table: Mapping[str, Any], prefix: str = "") -> Iterator[tuple[str, Any]]:
+    """Dotted keys of nested tables with their values."""
+    for name, value in table.items():
+        if isinstance(value, Mapping):
+            yield from flat_keys(value, f"{prefix}{name}.")
+        elif rows := named_rows(value):
+            for row, body in rows:
+                yield from flat_keys(body, f"{prefix}{name}.{row}.")
+        else:
+            yield f"{prefix}{name}", value
 
 
 def table_in(data: Mapping[str, Any], name: str) -> Mapping[str, Any]:

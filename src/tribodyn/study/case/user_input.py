@@ -121,28 +121,6 @@ class UserInput(dict[str, Any]):
             copy[key] = number
         return copy
 
-    def merged(self, changes: Mapping[str, Any]) -> dict[str, Any]:
-        """Return a copy with dotted keys set."""
-        result: dict[str, Any] = _copy(self.data)
-        for key, value in changes.items():
-            *tables, name = key.split(".")
-            node = result
-            for table in tables:
-                node = node.setdefault(table, {})
-                if not isinstance(node, dict):
-                    raise InputError(f"{table} is a value, not a table", key, "", "Correct the key")
-            if value is None or (isinstance(value, Plain) and value.value is None):
-                node.pop(name, None)
-            else:
-                node[name] = value
-        return result
-
-
-def _copy(data: Any) -> Any:
-    if isinstance(data, Mapping):
-        return {key: _copy(value) for key, value in data.items()}
-    return data
-
 
 #: Reason for excluding one of two alternative keys.
 CONFLICT_REASON = "Both define the same quantity"
@@ -204,33 +182,30 @@ class Source:
 
 
 def without_spread(
-    data: Mapping[str, Any], prefix: str = "", *, lists: bool = False
+    data: Mapping[str, Any], prefix: str = ""
 ) -> tuple[dict[str, Any], dict[str, str], list[tuple[str, Problem]]]:
     """Return tables with central values, the spreads by key (of lists by number), and problems."""
-    plain: dict[str, Any] = {}
+    middles: dict[str, Any] = {}
     spreads: dict[str, str] = {}
     faults: list[tuple[str, Problem]] = []
     for name, value in data.items():
         key, text = f"{prefix}{name}", value.value if isinstance(value, Plain) else value
-        plain[name] = value
+        middles[name] = value
         if key in _TEXT_KEYS:
             continue
-        if isinstance(value, Mapping):
-            plain[name], inner, wrong = without_spread(value, f"{key}.", lists=lists)
-            spreads |= inner
-            faults += wrong
-        elif lists and isinstance(value, list | tuple) and any(map(_has_spread, value)):
-            items = {str(number): item for number, item in enumerate(value, 1)}
-            middles, inner, wrong = without_spread(items, f"{key}.")
-            plain[name] = list(middles.values())
-            spreads |= inner
+        numbered = isinstance(value, list | tuple) and any(map(_has_spread, value))
+        items = {str(place): each for place, each in enumerate(value, 1)} if numbered else {}
+        if inner := value if isinstance(value, Mapping) else dict(named_rows(value)) or items:
+            values, inside, wrong = without_spread(inner, f"{key}.")
+            middles[name] = values if isinstance(value, Mapping) else list(values.values())
+            spreads |= inside
             faults += wrong
         elif _has_spread(text):
             try:
-                plain[name], spreads[key] = _middle(key, text), text
+                middles[name], spreads[key] = _middle(key, text), text
             except InputError as error:
                 faults.append((key, error.problems[0]))
-    return plain, spreads, faults
+    return middles, spreads, faults
 
 
 def _has_spread(text: Any) -> bool:

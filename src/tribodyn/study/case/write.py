@@ -22,8 +22,7 @@ from tribodyn.study.case.section import RAW_KINDS, Section, Table, section_at
 from tribodyn.study.case.values import written
 
 if TYPE_CHECKING:
-    from tribodyn.study.case.base import BaseCase
-    from tribodyn.study.case.case_data import CaseData
+    from tribodyn.study.case.case_data import BaseCase, CaseData
 
 
 #: Line above ``[based_on]``.

@@ -171,7 +171,8 @@ class MachineCase(PartsBase):
             raise InputError(self._placed(error)) from None
         if problems := impossible_faults(self):
             raise InputError(origin.place(problems))
-        self._check_spreads(origin)
+        if problems := self._spread_faults():
+            raise InputError(origin.place(problems))
         self._read_records(data)
 
     def _read_tables(self, data: Mapping[str, Any], problems: KeyedProblems) -> Any:

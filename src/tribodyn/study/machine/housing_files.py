@@ -18,7 +18,7 @@ from tribodyn.types import Array
 from tribodyn.validated_files import read_bytes
 
 if TYPE_CHECKING:
-    from tribodyn.study.case.base import BaseCase
+    from tribodyn.study.case.case_data import BaseCase
 
 Kind = TypeVar("Kind", bound="BaseCase")
 _MATRICES = {"stiffness": "K", "mass": "M", "damping": "C"}

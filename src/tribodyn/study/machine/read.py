@@ -11,11 +11,11 @@ from typing import TYPE_CHECKING, Any
 from tribodyn.errors import InputError
 from tribodyn.model import NO_OPTIONS
 from tribodyn.study.case.read import changed_file, key_comments, key_lines, parse_toml
-from tribodyn.study.case.section import file_keys
+from tribodyn.study.case.section import file_keys, flat_keys
 from tribodyn.study.case.user_input import Source
 from tribodyn.study.machine.case import MachineCase
 from tribodyn.study.machine.tables import HousingTable
-from tribodyn.study.machine.user_tables import changed_tables, flat_keys
+from tribodyn.study.machine.unused_keys import changed_machine
 
 if TYPE_CHECKING:
     from tribodyn.study.case.case import Case
@@ -83,4 +83,4 @@ def _read(
         for key in keys if isinstance(table, dict) else ():
             if isinstance(table.get(key), str):
                 table[key] = str((place / table[key]).absolute())
-    return MachineCase(source, **changed_tables(data, changes, by=by))
+    return MachineCase(source, **changed_machine(data, changes, by=by))

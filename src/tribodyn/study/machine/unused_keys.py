@@ -6,6 +6,8 @@ from collections.abc import Iterable, Iterator, Mapping
 from typing import Any
 
 from tribodyn.errors import Problem
+from tribodyn.model import NO_OPTIONS
+from tribodyn.study.case.changes import changed_tables, with_values
 from tribodyn.study.case.rating_tables import BearingCatalogue, PartRating, ShaftStrength
 from tribodyn.study.case.values import written
 from tribodyn.study.machine.tables import (
@@ -17,6 +19,7 @@ from tribodyn.study.machine.tables import (
     MeshDynamics,
     mesh_table_kind,
 )
+from tribodyn.study.machine_tables import MachineTables
 
 KeyedProblems = Iterator[tuple[str, Problem]]
 
@@ -208,3 +211,21 @@ def _constant_meshes(data: Mapping[str, Any]) -> KeyedProblems:
         yield from _refused("solver", data.get("solver"), coupling, why, remedy)
         keys = [name for name in _OF_TEETH if name in MESH_KEYS]
         yield from _refused("dynamics", data.get("dynamics"), keys, why, remedy)
+
+
+def changed_machine(
+    tables: Mapping[str, Any],
+    changes: Mapping[str, Any],
+    spread: Mapping[str, str] = NO_OPTIONS,
+    by: str = "",
+) -> dict[str, Any]:
+    """Tables of a machine with values changed, without what the changes leave without effect."""
+    before = {key for key, _ in unused_keys(tables)}
+    data = changed_tables(MachineTables, tables, changes, spread, by)
+    parts = [key.split(".") for key in changes]
+    changed = {".".join(each[:depth]) for each in parts for depth in range(1, len(each) + 1)}
+    unused = [key for key, _ in unused_keys(data) if key not in before and key not in changed]
+    data = with_values(data, dict.fromkeys(unused))
+    if isinstance(reasons := data.get("assumed"), Mapping):
+        data["assumed"] = {key: why for key, why in reasons.items() if key not in unused}
+    return data

@@ -16,7 +16,8 @@ import numpy as np
 from tribodyn.arguments.quantities import quantity_in, without_units
 from tribodyn.errors import InputError, Problem, did_you_mean
 from tribodyn.machine.fields import display
-from tribodyn.study.case.base import BaseCase
+from tribodyn.study.case.case_data import BaseCase
+from tribodyn.study.case.changes import with_values
 from tribodyn.study.case.provenance import (
     Assumption,
     changed_keys,
@@ -25,14 +26,13 @@ from tribodyn.study.case.provenance import (
     without_records,
 )
 from tribodyn.study.case.reference import key_comment
-from tribodyn.study.case.section import named_rows, option_at, section_at, table_in
+from tribodyn.study.case.section import flat_keys, named_rows, option_at, section_at, table_in
 from tribodyn.study.case.to_models import USUAL_GEARS
 from tribodyn.study.case.user_input import (
     Source,
     Stated,
     UserInput,
     plain,
-    spread_problem,
     unsound,
     without_spread,
 )
@@ -47,7 +47,7 @@ from tribodyn.study.case.values import (
 from tribodyn.study.case.write import BASE_NOTE, base_lines, reason_lines, written_number
 from tribodyn.study.machine.read_parts import LENGTH
 from tribodyn.study.machine.tables import GROUPS, OperationTable
-from tribodyn.study.machine.unused_keys import unused_keys
+from tribodyn.study.machine.unused_keys import changed_machine
 from tribodyn.study.machine_tables import STIFF, MachineTables
 
 if TYPE_CHECKING:
@@ -74,7 +74,7 @@ class PartsBase(BaseCase):
             raise InputError(self._source.place(unreadable))
         typed = deepcopy(typed) if source is not None else plain(typed)
         ready = for_each_planet(without_records(typed))
-        self.data, self._spread, problems = without_spread(ready, lists=True)
+        self.data, self._spread, problems = without_spread(ready)
         return problems
 
     def _read_records(self, typed: Mapping[str, Any]) -> None:
@@ -107,7 +107,7 @@ class PartsBase(BaseCase):
 
     @cached_property
     def _user_input(self) -> UserInput:  # type: ignore[override]
-        return UserInput(with_spreads(self.data, self._spread))
+        return UserInput(with_values(self.data, self._spread))
 
     @cached_property
     def _settled(self) -> tuple[Stated, set[str]]:
@@ -160,29 +160,15 @@ class PartsBase(BaseCase):
     def replace(self, changes: Mapping[str, Any], *, by: str = "") -> Self:
         """Return a case with values changed by dotted key, as that of a pair does."""
         source = self._source.with_replaced(changes, by or "replace:")
-        tables = with_spreads(self.data, self._spread)
-        changed: Self = type(self)(source, **changed_tables(tables, changes, by=by))
+        tables = changed_machine(self.data, changes, self._spread, by)
+        changed: Self = type(self)(source, **tables)
         changed._records = self._stated
         return changed
 
     def _text(self, *, comments: bool) -> str:
         base = base_lines(self) if changed_keys(self) else []
-        lines = _Writer(self, comments).lines(with_spreads(self.data, self._spread), ())
+        lines = _Writer(self, comments).lines(with_values(self.data, self._spread), ())
         return "\n".join([*lines, *base]).strip() + "\n"
-
-    def _check_spreads(self, origin: Source) -> None:
-        """Refuse spreads beyond the range of their key, and of keys that have no number."""
-        problems: KeyedProblems = []
-        for key, text in self.uncertain.items():
-            option = self.option_of(key)
-            problem = None if option is None else spread_problem(option, key, text)
-            if option is None or option.kind not in ("number", "integer"):
-                what, why = f"{key} = {text}", "Only numbers of the case have a spread"
-                problem = Problem(what, "", why, "Give one value")
-            if problem is not None:
-                problems.append((key, problem))
-        if problems:
-            raise InputError(origin.place(problems))
 
 
 def _in_si(option: Option | None, key: str, value: Any) -> Any:
@@ -203,64 +189,6 @@ def for_each_planet(tables: dict[str, Any]) -> dict[str, Any]:
             if isinstance(count, int) and isinstance(body.get(name), str):
                 body[name] = [body[name]] * min(max(count, 1), 99)
     return tables
-
-
-def changed_tables(
-    tables: Mapping[str, Any], changes: Mapping[str, Any], *, by: str = ""
-) -> dict[str, Any]:
-    """Tables with values changed by dotted key, without what the changes leave without effect."""
-    data = deepcopy(dict(tables))
-    for key, value in changes.items():
-        *names, name = key.split(".")
-        table = data
-        for depth, each in enumerate(names):
-            if name.isdigit() and depth == len(names) - 1:
-                _set_element(table, each, int(name), value if by else plain(value), key)
-                break
-            rows: dict[str, Any] = dict(named_rows(table))
-            table = rows.get(each, "") if rows else table.setdefault(each, {})
-            inner = depth < len(names) - 1 and named_rows(table)
-            if not isinstance(table, dict) and not inner:
-                why, remedy = f"{each} is not a table", "Correct the key"
-                raise InputError(f"{key} = {value!r}", key, why, remedy)
-        else:
-            if value is None:
-                table.pop(name, None)
-            else:
-                table[name] = value if by else plain(value)
-    dropped = _drop_unused(data, changes, {key for key, _ in unused_keys(tables)})
-    if isinstance(reasons := data.get("assumed"), Mapping):
-        stale = (*changes, *dropped)
-        data["assumed"] = {k: why for k, why in reasons.items() if k not in stale}
-    return data
-
-
-def _drop_unused(data: dict[str, Any], changes: Mapping[str, Any], before: set[str]) -> list[str]:
-    """Remove values that had an effect before the changes and are not among them."""
-    parts = [key.split(".") for key in changes]
-    changed = {".".join(each[:depth]) for each in parts for depth in range(1, len(each) + 1)}
-    dropped = [key for key, _ in unused_keys(data) if key not in before and key not in changed]
-    for key in dropped:
-        *names, name = key.split(".")
-        table = data
-        for each in names:
-            table = table[each]
-        del table[name]
-    return dropped
-
-
-def _set_element(table: dict[str, Any], name: str, number: int, value: Any, key: str) -> None:
-    """Change a value of a list; a list of the planets that is missing has zeros."""
-    values = table.get(name)
-    if values is None and "count" in table:
-        values = [Plain(0.0)] * int(unmarked(table["count"]))
-    if isinstance(values, Plain):
-        values = [Plain(item) for item in np.atleast_1d(values.value).tolist()]
-    if not isinstance(values, list | tuple) or not 1 <= number <= len(values) or value is None:
-        count = len(values) if isinstance(values, list | tuple) else 0
-        why, remedy = f"{name} has {count} values, counted from 1", "Correct the number in the key"
-        raise InputError(f'there is no value "{key}"', key, why, remedy)
-    table[name] = [*values[: number - 1], value, *values[number:]]
 
 
 def stated_assumptions(case: PartsBase) -> Iterator[Assumption]:
@@ -344,30 +272,6 @@ def _estimates(texts: Iterable[str]) -> Iterator[tuple[str, str, str]]:
         key, _, value_and_reason = text.partition(" = ")
         value, _, why = value_and_reason.partition(", ")
         yield key, value, why
-
-
-def flat_keys(table: Mapping[str, Any], prefix: str = "") -> Iterator[tuple[str, Any]]:
-    """Dotted keys of nested tables with their values."""
-    for name, value in table.items():
-        if isinstance(value, Mapping):
-            yield from flat_keys(value, f"{prefix}{name}.")
-        elif rows := named_rows(value):
-            for row, body in rows:
-                yield from flat_keys(body, f"{prefix}{name}.{row}.")
-        else:
-            yield f"{prefix}{name}", value
-
-
-def with_spreads(tables: Mapping[str, Any], spreads: Mapping[str, str]) -> dict[str, Any]:
-    """Tables with the texts of values that have a spread."""
-    data = deepcopy(dict(tables))
-    for key, text in spreads.items():
-        *names, name = key.split(".")
-        table: Any = data
-        for each in names:
-            table = table[each]
-        table[name if isinstance(table, dict) else int(name) - 1] = text
-    return data
 
 
 def _option_at(case: PartsBase, path: tuple[str, ...]) -> Option | None:
