@@ -43,6 +43,13 @@ def machine(*teeth: int) -> Machine:
     )  # fmt: skip
 
 
+@pytest.mark.parametrize("phases", [False, True])
+def test_contacts_have_the_names_of_their_meshes(phases: bool) -> None:
+    train = machine(17, 24)
+    names = [contact.name for contact in system(train, phases=phases).contacts]
+    assert names == [f"mesh {name}" for name in train.meshes]
+
+
 def test_hunting_teeth_have_the_motion_of_their_period_in_few_points() -> None:
     train = machine(19, 23, 17, 31)
     assert train.clock.cycles == {"first": 23, "second": 17}
