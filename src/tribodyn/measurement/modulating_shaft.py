@@ -129,7 +129,7 @@ def doubt_teeth(orders: OrderSpectrum, teeth: int) -> Problem | None:
     return Problem(
         f"the mesh lines seem to be multiples of order {likely}, not of {teeth}",
         "",
-        f"Those hold {times:.3g} times the power or more",
+        f"Those hold {times:.0f} times the power or more",
         "Check the number of teeth, and the pulses of the tachometer in a revolution",
     )
 

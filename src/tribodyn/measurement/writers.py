@@ -60,7 +60,8 @@ def _mat(recording: Recording, path: Path) -> None:
 
     channels = {_identifier(name): values for name, values in recording.channels.items()}
     units = {f"{_identifier(name)}_unit": unit for name, unit in recording.units.items() if unit}
-    savemat(path, {"fs": recording.sample_rate, **channels, **units}, oned_as="column")
+    names = {f"{_identifier(name)}_name": name for name in recording.channels}
+    savemat(path, {"fs": recording.sample_rate, **channels, **units, **names}, oned_as="column")
 
 
 def _identifier(name: str) -> str:

@@ -90,6 +90,16 @@ def test_wav_of_floats_and_of_whole_numbers(tmp_path: Path) -> None:
     np.testing.assert_allclose(read(tmp_path / "u.wav")["channel 1"], ACC, atol=1e-2)
 
 
+@pytest.mark.parametrize("ending", ["mat", "h5", "csv"])
+def test_names_of_channels_come_back_as_they_were(tmp_path: Path, ending: str) -> None:
+    values = np.sin(np.arange(200.0))
+    saved = Recording({"meshes.first.mesh_force": values, "2nd acc": values}, 1e3,
+                      {"meshes.first.mesh_force": "N", "2nd acc": "m/s^2"})  # fmt: skip
+    recording = read(saved.save(tmp_path / f"r.{ending}"))
+    assert set(recording.channels) == set(saved.channels)
+    assert dict(recording.units) == dict(saved.units)
+
+
 def test_mat_and_hdf5(tmp_path: Path) -> None:
     savemat(tmp_path / "a.mat", {"acc": ACC, "fs": RATE, "more": {"sound": SOUND}})
     recording = read(tmp_path / "a.mat")

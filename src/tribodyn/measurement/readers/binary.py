@@ -231,15 +231,17 @@ def mat(path: Path) -> RecordingData:
         names = ", ".join([*list(twice)[:5], *(["..."] if len(twice) > 5 else [])])
         message = f"{path} holds {names} twice: the second of each is read; save each variable once"
         warn("duplicate-variables", message)
+    # Recording.save writes units and names of the channels beside them.
+    labels = {n: str(variables[f"{n}_name"]) for n in variables if f"{n}_name" in variables}
     named: dict[str, Any] = {}
     for name, value in variables.items():
         if isinstance(value, MatlabOpaque) or name == "None":
             kinds = value["s2"].reshape(-1).tolist() if value.dtype.names else [""]
             refuse_table(kinds[0], path)
-        elif name.endswith("_unit") and name[:-5] in variables:  # as Recording.save writes it
-            named[f"{name[:-5]}.unit"] = value
-        elif not name.startswith("__"):
-            named |= dict(_fields(name, value))
+        elif name.endswith("_unit") and name[:-5] in variables:
+            named[f"{labels.get(name[:-5], name[:-5])}.unit"] = value
+        elif not (name.startswith("__") or (name.endswith("_name") and name[:-5] in labels)):
+            named |= dict(_fields(labels.get(name, name), value))
     return from_arrays(named, path)
 
 

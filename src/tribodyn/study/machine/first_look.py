@@ -57,7 +57,7 @@ class PhaseCost(NamedTuple):
         return (
             f"The motion is found over {len(self.phases)} phases without a common period "
             f"({listed}): about {self.unknowns} unknowns, {1e-9 * self.memory:.2g} GB and "
-            f"{self.time:.1g} s for each load"
+            f"{self.time:.2g} s for each load"
         )
 
 
