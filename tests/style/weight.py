@@ -54,6 +54,7 @@ __all__ = ["ANY", "FILES", "LINES", "import_circles", "lines_of_code", "measures
 #: faults: check finds clamped teeth, run-ups over phases
 #: faults: check finds clamped teeth, run-ups over phases
 #: rating, study: limits of factors and bearings reported with value and limit
+#: measurement: names of channels in MAT files come back.
 LINES: dict[str, int] = {
     "__init__": 105,
     "__main__": 3,
@@ -82,7 +83,7 @@ LINES: dict[str, int] = {
     "losses": 929,
     "lubricant": 560,
     "machine": 5665,
-    "measurement": 3381,
+    "measurement": 3383,
     "members": 3,
     "mesh": 5698,
     "model": 223,
@@ -97,7 +98,7 @@ LINES: dict[str, int] = {
     "scope": 55,
     "signals": 1788,
     "stiffness": 5161,
-    "study": 18566,
+    "study": 18565,
     "surrogate": 777,
     "types": 7,
     "uncertainty": 290,
@@ -106,7 +107,7 @@ LINES: dict[str, int] = {
     "variants": 1048,
 }
 #: Modules of the package, and its annotations without a type.
-FILES, ANY = 762, 2682
+FILES, ANY = 762, 2683
 
 _NO_CODE = {
     tokenize.COMMENT, tokenize.NL, tokenize.NEWLINE, tokenize.INDENT, tokenize.DEDENT,
