@@ -9,6 +9,7 @@ from typing import Any
 import pytest
 
 import tribodyn as td
+from tribodyn.cli import main
 from tribodyn.errors import InputError
 from tribodyn.rating import ShaftMaterial, ShaftNotch, ShaftStress, rate_shaft
 from tribodyn.study import MachineCase, failure_probability, sobol_indices
@@ -188,3 +189,13 @@ def test_wrong_keys_of_bearings_and_shafts_are_refused(changes, text):
             del table[name]
     with pytest.raises(InputError, match=text):
         MachineCase(**tables)
+
+
+@pytest.mark.slow
+def test_the_command_prints_probabilities_of_failure(tmp_path, capsys):
+    path = tmp_path / "machine.toml"
+    path.write_text(case(**{"operation.torque": "200 N*m +- 5 %"}).to_toml(), "utf-8")
+    with pytest.raises(SystemExit) as left:
+        main(["rate", str(path), "--variants", "8"])
+    assert not left.value.code
+    assert "below 1e-6 %" in capsys.readouterr().out

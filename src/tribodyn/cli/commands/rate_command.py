@@ -91,8 +91,11 @@ def _probabilities(ready: Any, variants: int, seed: int, *, json: bool) -> None:
     ]
     for key, each in table_of.items():
         values = (figure_of(key).show(each[name]) for name in names[:2])
+        # the tail of a fitted distribution says no more than that it is rare
+        rare = "below 1e-6 %" if 0.0 < each["probability"] < 1e-8 else ""
         shares = (f"{100.0 * each[name]:.3g} %" for name in names[2:])
-        rows.append((in_words(key), *values, *shares))
+        share, probability = shares
+        rows.append((in_words(key), *values, share, rare or probability))
     say(table(rows))
 
 
