@@ -66,7 +66,7 @@ LINES: dict[str, int] = {
     "cases": 1376,
     "checkpoints": 142,
     "checks": 56,
-    "cli": 3066,
+    "cli": 3068,
     "compiled": 236,
     "contact": 422,
     "cookbook": 107,
