@@ -126,8 +126,8 @@ class Mesh:
     offset: float = 0.0
     crossed: CrossedAxes | None = None
     period: int = 1
-    turning: Sequence[Turn] = ()
     carrier: str | None = None
+    turning: Sequence[Turn] = ()
 
     @classmethod
     def hypoid(

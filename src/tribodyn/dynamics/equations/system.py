@@ -107,12 +107,12 @@ class Contact:
     damping_in_gap: bool = False
     cycles: Cycles = 1
     offset: float = 0.0
-    period: int = 1
     ramp_stiffness: Entry = ()
     ramp_gap: Entry = ()
     turning_error: Any = ()
     turning_cycles: Any = ()
     name: str = ""
+    period: int = 1
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "events", read_events(self.events, "Contact.events"))
