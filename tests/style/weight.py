@@ -55,6 +55,7 @@ __all__ = ["ANY", "FILES", "LINES", "import_circles", "lines_of_code", "measures
 #: faults: check finds clamped teeth, run-ups over phases
 #: rating, study: limits of factors and bearings reported with value and limit
 #: measurement: names of channels in MAT files come back.
+#: faults: phases of the shafts
 LINES: dict[str, int] = {
     "__init__": 105,
     "__main__": 3,
