@@ -56,6 +56,7 @@ __all__ = ["ANY", "FILES", "LINES", "import_circles", "lines_of_code", "measures
 #: rating, study: limits of factors and bearings reported with value and limit
 #: measurement: names of channels in MAT files come back.
 #: faults: phases of the shafts
+#: faults: phases of the shafts
 LINES: dict[str, int] = {
     "__init__": 105,
     "__main__": 3,
