@@ -57,6 +57,7 @@ __all__ = ["ANY", "FILES", "LINES", "import_circles", "lines_of_code", "measures
 #: measurement: names of channels in MAT files come back.
 #: faults: phases of the shafts
 #: faults: phases of the shafts
+#: study: one change by key for pairs and machines
 LINES: dict[str, int] = {
     "__init__": 105,
     "__main__": 3,
