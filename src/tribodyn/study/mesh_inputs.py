@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
-from contextlib import AbstractContextManager, nullcontext
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import AbstractContextManager, contextmanager, nullcontext
 from dataclasses import dataclass, field, replace
 from functools import cached_property, partial
 from typing import TYPE_CHECKING, Any, cast
 
-from tribodyn.errors import collected
+from tribodyn.errors import ComputationError, InputError, collected
 from tribodyn.gear import mass_properties
 from tribodyn.study.case import to_models
 from tribodyn.study.case.hypoid import bodies, levers, mounting
@@ -175,3 +175,16 @@ def contact_settings(case: Case) -> ToothContact:
         )
 
     return case._once("contact_settings", _OF_CONTACT, settings)
+
+
+@contextmanager
+def named_mesh(name: str) -> Iterator[None]:
+    """Name a mesh in errors that do not."""
+    try:
+        yield
+    except (InputError, ComputationError) as error:
+        problems = [
+            p if name in str(p) else replace(p, what=f"mesh {name}: {p.what}")
+            for p in error.problems
+        ]
+        raise type(error)(problems) from None

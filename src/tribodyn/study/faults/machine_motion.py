@@ -35,8 +35,7 @@ from tribodyn.study.faults.turning import (
     steady_over_turns,
 )
 from tribodyn.study.machine.first_look import warn_of_orders
-from tribodyn.study.machine.run import Balanced, named_mesh
-from tribodyn.study.mesh_inputs import mesh_inputs
+from tribodyn.study.mesh_inputs import mesh_inputs, named_mesh
 from tribodyn.study.planetary.common import only_stage
 from tribodyn.types import Array
 
@@ -45,6 +44,7 @@ if TYPE_CHECKING:
     from tribodyn.study.machine.case import MachineCase
     from tribodyn.study.machine.motion import MachineMotion
     from tribodyn.study.machine.result import LoadResult
+    from tribodyn.study.machine.run import Balanced
 
 _ACCURACY = Accuracy((128, 256), 1e-4)
 #: Most mesh cycles of a signal of a ring.

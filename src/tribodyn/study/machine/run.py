@@ -6,8 +6,7 @@ import json
 import re
 import sys
 import warnings
-from collections.abc import Iterable, Iterator, Mapping, Sequence
-from contextlib import contextmanager
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, NamedTuple
@@ -46,7 +45,7 @@ from tribodyn.study.machine.result import (
     power_with_friction,
     steady_motion,
 )
-from tribodyn.study.mesh_inputs import MeshInputs
+from tribodyn.study.mesh_inputs import MeshInputs, named_mesh
 from tribodyn.study.pipeline.assembly import mesh_contacts, mesh_damping
 from tribodyn.study.pipeline.store import Stored, StoredLoad, figures_of_load
 from tribodyn.study.pipeline.stored_motion import read_passes
@@ -340,19 +339,6 @@ def structure_at_rest(case: MachineCase, progress: Progress = SILENT) -> Machine
     balanced = balanced_machine(case, case.operating_point, progress)
     warn_of_meshes(balanced.warnings)
     return structure_of(case, balanced.static.linearized())
-
-
-@contextmanager
-def named_mesh(name: str) -> Iterator[None]:
-    """Name a mesh in errors that do not."""
-    try:
-        yield
-    except (InputError, ComputationError) as error:
-        problems = [
-            p if name in str(p) else replace(p, what=f"mesh {name}: {p.what}")
-            for p in error.problems
-        ]
-        raise type(error)(problems) from None
 
 
 def teeth_of(
