@@ -58,6 +58,7 @@ __all__ = ["ANY", "FILES", "LINES", "import_circles", "lines_of_code", "measures
 #: faults: phases of the shafts
 #: faults: phases of the shafts
 #: study: one change by key for pairs and machines
+#: faults: phases of the shafts
 LINES: dict[str, int] = {
     "__init__": 105,
     "__main__": 3,
@@ -101,7 +102,7 @@ LINES: dict[str, int] = {
     "scope": 55,
     "signals": 1788,
     "stiffness": 5161,
-    "study": 18565,
+    "study": 18564,
     "surrogate": 777,
     "types": 7,
     "uncertainty": 290,
