@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
-from tribodyn.drawing import drawing
+from tribodyn.drawing import Sketch, drawing
 from tribodyn.plot.theme.colors import MUTED, PINION, WHEEL
 from tribodyn.plot.theme.panels import Panel, stack
 from tribodyn.plot.theme.style import Trace, dots
@@ -40,7 +40,7 @@ def _symbol(percent: float) -> str:
     made_by="Call tribodyn.cases.compare_with_paper(name) and its plot method.",
     missing=_no_numbers,
 )
-def paper_comparison(comparison: PaperComparison) -> Any:
+def paper_comparison(comparison: PaperComparison) -> Sketch:
     """Draw the deviation of every printed number on a logarithmic scale."""
     rows = [row for row in comparison.rows if row["deviation"] is not None]
     traces: list[Trace] = []

@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from tribodyn.drawing import drawing
+from tribodyn.drawing import Sketch, drawing
 from tribodyn.plot.theme.colors import HEAT, MUTED, TOTAL, WHEEL
 from tribodyn.plot.theme.labels import axis_label, display_unit, displayed, rounded
 from tribodyn.plot.theme.panels import Panel, Row, curve, from_zero, stack, stack_rows
@@ -50,7 +50,7 @@ def _levels(heat: Trace, top: float) -> Trace:
     of="PointContactSolution",
     made_by="Call tribodyn.ehl.solve_point_contact and its plot method.",
 )
-def point_contact(solution: Any) -> Any:
+def point_contact(solution: Any) -> Sketch:
     """Draw maps of pressure and film, and a cut through the middle along the x axis."""
     x, y, pressure, film = _metric(solution)
     a, b = displayed("half_width", [solution.semi_axis_x, solution.semi_axis_y]).tolist()
@@ -91,7 +91,7 @@ def point_contact(solution: Any) -> Any:
     of="FiniteLineSolution",
     made_by="Call tribodyn.ehl.solve_finite_line_contact and its plot method.",
 )
-def finite_line_contact(solution: Any) -> Any:
+def finite_line_contact(solution: Any) -> Sketch:
     """Draw pressure, film and load along a roller."""
     y = displayed("face_width", solution.y)
     film = np.asarray(solution.ridge_film)
@@ -104,7 +104,7 @@ def finite_line_contact(solution: Any) -> Any:
                solution.normal_force / solution.length, "mean"),
     ]  # fmt: skip
     title = f"The ends carry {solution.edge_pressure_ratio:.2f} times the pressure of the middle"
-    return stack(title, f"Along the roller [{display_unit('face_width')}]", panels).figure()
+    return stack(title, f"Along the roller [{display_unit('face_width')}]", panels)
 
 
 def _along(
@@ -123,7 +123,7 @@ def _along(
     of="AreaFriction",
     made_by="Call the friction method of tribodyn.ehl.solve_point_contact(...).",
 )
-def area_friction(friction: Any) -> Any:
+def area_friction(friction: Any) -> Sketch:
     """Draw friction and film temperature over the position across the entrainment."""
     position = displayed("face_width", friction.position)
     force, rise = 1e-3 * friction.force_per_width, friction.temperature_rise
@@ -133,4 +133,4 @@ def area_friction(friction: Any) -> Any:
     ]
     title = f"Friction coefficient {friction.coefficient:.4f}"
     label = f"Across the entrainment [{display_unit('face_width')}]"
-    return stack(title, label, panels).figure()
+    return stack(title, label, panels)

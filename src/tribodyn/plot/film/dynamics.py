@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from tribodyn.drawing import drawing
+from tribodyn.drawing import Sketch, drawing
 from tribodyn.errors import InputError
 from tribodyn.plot.film.line_contact import contact_scales, window
 from tribodyn.plot.theme.colors import MUTED, PAIR_COLORS, PINION, TOTAL
@@ -139,7 +139,7 @@ def usual_films(film: Array) -> Trace:
     of="TransientLineContact",
     made_by="Call tribodyn.ehl.solve_transient_line_contact and its plot method.",
 )
-def film_transient(transient: TransientLineContact, *, steady: ArrayLike | None = None) -> Any:
+def film_transient(transient: TransientLineContact, *, steady: ArrayLike | None = None) -> Sketch:
     """Draw load, central and minimum film and the maximum pressure over time.
 
     Parameters
@@ -209,7 +209,7 @@ def _temperatures(label: str, x: Any, oil: Any, surfaces: Any, name: str) -> Pan
     of="ThermalLineContactSolution",
     made_by="Call tribodyn.ehl.solve_line_contact with thermal=True, then this figure.",
 )
-def film_temperature(solution: Any) -> Any:
+def film_temperature(solution: Any) -> Sketch:
     """Draw the temperatures of a heated line contact, the inlet on the left.
 
     Parameters
@@ -247,7 +247,7 @@ def film_temperature(solution: Any) -> Any:
     of="ThermalTransientLineContact",
     made_by="Call tribodyn.ehl.solve_transient_line_contact with thermal=True and its plot method.",
 )
-def film_temperature_over_time(transient: Any) -> Any:
+def film_temperature_over_time(transient: Any) -> Sketch:
     """Draw film, temperatures and friction of a heated line contact over time.
 
     Parameters
@@ -290,7 +290,7 @@ _TICKS = [0.1, 0.2, 0.5, 1, 2, 5, 10, 20, 50, 100]
     of="AmplitudeReduction",
     made_by="Call tribodyn.ehl.solve_amplitude_reduction(...) and its plot method.",
 )
-def amplitude_reduction(waves: AmplitudeReduction) -> Any:
+def amplitude_reduction(waves: AmplitudeReduction) -> Sketch:
     """Draw the amplitude that waves keep over their length, with the curve of pure rolling."""
     from tribodyn.ehl import amplitude_reduction as fitted
 

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from tribodyn.drawing import drawing
+from tribodyn.drawing import Sketch, drawing
 from tribodyn.errors import InputError
 from tribodyn.plot.theme.colors import INK, MUTED, PAIR_COLORS, TOTAL
 from tribodyn.plot.theme.labels import axis_label, display_unit, displayed, significant
@@ -194,7 +194,7 @@ def _film(solution: Any, scales: Scales) -> list[Trace]:
     of="LineContactSolution",
     made_by="Call tribodyn.ehl.solve_line_contact and its plot method.",
 )
-def line_contact(solution: Any, *, dimensionless: bool = False) -> Any:
+def line_contact(solution: Any, *, dimensionless: bool = False) -> Sketch:
     """Draw pressure and film of a line contact over the position, the inlet on the left.
 
     Parameters

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from tribodyn.drawing import Need, drawing
+from tribodyn.drawing import Need, Sketch, drawing
 from tribodyn.ehl.load_share import REGIME_LIMITS, REGIMES
 from tribodyn.plot.film.path import Path, gaps_sentence
 from tribodyn.plot.mesh.cycle import roll_angle_positions, sharing_under_load, table_drawing
@@ -57,7 +57,7 @@ def _missing(mesh: MeshTable) -> str:
 
 
 @table_drawing(heading="Lubrication regime", caption=_caption, missing=_missing)
-def lubrication(mesh: MeshTable) -> Any:
+def lubrication(mesh: MeshTable) -> Sketch:
     """Draw film ratio, load share and the parts of the friction force over the roll angle."""
     path = Path(mesh)
     ratio, share = path.under_load("film_ratio"), path.under_load("film_load_share")
@@ -151,7 +151,7 @@ _has_film = Need("central_film minimum_film", "The film model gives no film thic
     of="FilmOverOperation",
     made_by="Call tribodyn.film_over_operation(case, torque=..., speed=...) and its plot method.",
 )
-def film_over_operation(films: FilmOverOperation) -> Any:
+def film_over_operation(films: FilmOverOperation) -> Sketch:
     """Draw the minimum film over the speed, one curve per torque."""
     least_films = films.minimum_film if films.minimum_film is not None else films.central_film
     film = np.nanmin(np.asarray(least_films), axis=2)
@@ -192,7 +192,7 @@ def _no_map(films: FilmOverOperation) -> str:
     made_by="Call tribodyn.film_over_operation(case, torque=..., speed=...) with several of both.",
     missing=_no_map,
 )
-def lubrication_map(films: FilmOverOperation) -> Any:
+def lubrication_map(films: FilmOverOperation) -> Sketch:
     """Draw the lubrication regime over speed and torque."""
     ratio = np.nanmin(np.asarray(films.film_ratio), axis=2)
     turn, pull = display_unit("pinion_speed"), display_unit("torque")
@@ -235,7 +235,7 @@ def lubrication_map(films: FilmOverOperation) -> Any:
     of="MixedLineContact",
     made_by="Call tribodyn.ehl.mixed_line_contact(...) and its plot method.",
 )
-def mixed_line_contact(contact: MixedLineContact) -> Any:
+def mixed_line_contact(contact: MixedLineContact) -> Sketch:
     """Draw load shares, gap and pressures over the film ratio."""
     ratio = np.ravel(contact.film_ratio)
     order = np.argsort(ratio, kind="stable")

@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from functools import cached_property
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
-from tribodyn.drawing import Need
+from tribodyn.drawing import Need, Sketch
 from tribodyn.nomenclature import GEARS
 from tribodyn.plot.mesh.cycle import (
     driving_roll_angle,
@@ -86,7 +86,7 @@ class Path:
             for column, name, color, dash in rows
         ]  # fmt: skip
 
-    def figure(self, title: str, panels: list[Panel]) -> Any:
+    def figure(self, title: str, panels: list[Panel]) -> Sketch:
         """Stack panels over the roll angle, with the positions A to E."""
         marks = event_lines(roll_angle_positions(self.mesh).items())
         return stack(title, roll_label(self.mesh.gear_pair), panels, marks)
@@ -111,7 +111,7 @@ def _path_caption(mesh: MeshTable) -> str:
 
 
 @table_drawing(heading="Along the path of contact", caption=_path_caption)
-def path_of_contact(mesh: MeshTable) -> Any:
+def path_of_contact(mesh: MeshTable) -> Sketch:
     """Draw speeds, radii and slide-to-roll ratio over the roll angle of the driving gear."""
     path = Path(mesh)
     fastest = np.max(np.abs(path.life("sliding_speed")))
@@ -151,7 +151,7 @@ def _frictionless(mesh: MeshTable) -> str:
 
 
 @table_drawing(heading="Friction", caption=_friction_caption, missing=_frictionless)
-def friction(mesh: MeshTable) -> Any:
+def friction(mesh: MeshTable) -> Sketch:
     """Draw friction coefficient and friction force of a tooth pair over the roll angle."""
     path = Path(mesh)
     coefficient, load = path.under_load("friction_coefficient"), path.life("normal_force")
@@ -190,7 +190,7 @@ def _film_caption(mesh: MeshTable) -> str:
 
 
 @table_drawing(heading="Oil film", caption=_film_caption, missing=_has_film)
-def film(mesh: MeshTable) -> Any:
+def film(mesh: MeshTable) -> Sketch:
     """Draw the film thickness of one tooth pair over the roll angle of the driving gear."""
     path = Path(mesh)
     unit = display_unit("film_thickness")
@@ -234,7 +234,7 @@ def _no_pressure(mesh: MeshTable) -> str:
     caption=_pressure_caption,
     missing=_no_pressure,
 )
-def film_pressure(mesh: MeshTable) -> Any:
+def film_pressure(mesh: MeshTable) -> Sketch:
     """Draw the greatest film pressure of one tooth pair over the roll angle."""
     path = Path(mesh)
     greatest = rounded("film_pressure", np.nanmax(path.life("film_pressure")))
@@ -277,7 +277,7 @@ def _no_stiffness(mesh: MeshTable) -> str:
     caption=_stiffness_caption,
     missing=_no_stiffness,
 )
-def film_stiffness(mesh: MeshTable) -> Any:
+def film_stiffness(mesh: MeshTable) -> Sketch:
     """Draw the stiffness of film, teeth and pair over the roll angle."""
     path = Path(mesh)
     label = axis_label("film_stiffness", "Stiffness")

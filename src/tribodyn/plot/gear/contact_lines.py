@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from tribodyn.contact import path_of_contact
-from tribodyn.drawing import drawing
+from tribodyn.drawing import Sketch, drawing
 from tribodyn.gear import tooth_outline
 from tribodyn.plot.mesh.cycle import PAIRS, RUN
 from tribodyn.plot.theme.colors import INK, MUTED, PINION, WHEEL
@@ -117,7 +117,7 @@ def _straight(pair: CylindricalPair) -> str:
     missing=_straight,
     made_by=RUN,
 )
-def contact_lines(pair: CylindricalPair) -> Any:
+def contact_lines(pair: CylindricalPair) -> Sketch:
     """Draw the flanks of the pinion in space with the moving lines of contact."""
     teeth = range(-1, path_of_contact(pair).pairs + 1)
     phases = np.arange(_FRAMES) / _FRAMES

@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
-from tribodyn.drawing import drawing
+from tribodyn.drawing import Sketch, drawing
 from tribodyn.gear import (
     default_relief_length,
     flank_gap,
@@ -147,7 +147,7 @@ def _caption(pair: SpurPair) -> str:
     of=(*PAIRS, *(f"{name}.gear_pair" for name in _OTHERS)),
     made_by=RUN,
 )
-def flank_modification(pair: SpurPair) -> Any:
+def flank_modification(pair: SpurPair) -> Sketch:
     """Draw the modifications and deviations of both flanks."""
     rows = [
         make(pair)

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from tribodyn.contact import path_of_contact
-from tribodyn.drawing import drawing
+from tribodyn.drawing import Sketch, drawing
 from tribodyn.plot.gear.outlines import (
     circle,
     on_line_of_action,
@@ -182,7 +182,7 @@ def _caption(pair: SpurPair) -> str:
     of=PAIRS,
     made_by=RUN,
 )
-def gear_pair(pair: SpurPair) -> Any:
+def gear_pair(pair: SpurPair) -> Sketch:
     """Draw both gears in mesh with their circles and the path of contact."""
     path = path_of_contact(pair)
     traces = [*_gears(pair, 0.5 * (path.B + path.D)), *_circles(pair), *_contact_line(pair, path)]

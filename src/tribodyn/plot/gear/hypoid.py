@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
-from tribodyn.drawing import drawing
+from tribodyn.drawing import Sketch, drawing
 from tribodyn.errors import quiet
 from tribodyn.gear import hypoid_flanks
 from tribodyn.plot.theme.colors import FILLS, INK, MUTED, PAIR_COLORS, PINION, WHEEL, translucent
@@ -59,7 +59,7 @@ def _panel(blank: HypoidBlank, gear: str, color: str) -> Row:
     of="HypoidBlank",
     made_by="Call tribodyn.gear.hypoid_blank.",
 )
-def hypoid_blank(blank: HypoidBlank) -> Any:
+def hypoid_blank(blank: HypoidBlank) -> Sketch:
     """Draw the sections of both blanks."""
     rows = [_panel(blank, "pinion", PINION), _panel(blank, "wheel", WHEEL)]
     rows[1].axis["scaleanchor"] = "y2"
@@ -165,7 +165,7 @@ def _error(contact: ToothContact) -> Panel:
     of=("ToothContact", "Result.hypoid_contact"),
     made_by="Call tribodyn.gear.tooth_contact.",
 )
-def hypoid_contact(contact: ToothContact) -> Any:
+def hypoid_contact(contact: ToothContact) -> Sketch:
     """Draw contact pattern, path of contact and transmission error."""
     label = f"marked at {contact.marking_thickness * 1e6:.3g} µm"
     marking = pattern(contact, label, PINION)
@@ -280,7 +280,7 @@ def _scene(eye: tuple[float, float, float], **axes: str) -> Trace:
     of=("HypoidFlanks", "Result.case.hypoid_flanks"),
     made_by=_MADE_BY,
 )
-def hypoid_pair(flanks: HypoidFlanks) -> Any:
+def hypoid_pair(flanks: HypoidFlanks) -> Sketch:
     """Draw both gears in mesh."""
     order = (flanks.side, "coast" if flanks.side == "drive" else "drive")
     with quiet():
@@ -310,7 +310,7 @@ def hypoid_pair(flanks: HypoidFlanks) -> Any:
     of=("HypoidFlanks", "Result.case.hypoid_flanks"),
     made_by=_MADE_BY,
 )
-def ease_off(flanks: HypoidFlanks) -> Any:
+def ease_off(flanks: HypoidFlanks) -> Sketch:
     """Draw the ease-off over the flank."""
     x = np.broadcast_to(flanks.along[:, None], flanks.across.shape) * 1e3
     y, gap = flanks.across * 1e3, flanks.gap * 1e6

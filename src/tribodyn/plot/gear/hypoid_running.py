@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
-from tribodyn.drawing import drawing
+from tribodyn.drawing import Sketch, drawing
 from tribodyn.ehl.load_share import REGIME_LIMITS
 from tribodyn.plot.gear.hypoid import flank_rows, outline, pattern
 from tribodyn.plot.theme.colors import (
@@ -47,7 +47,7 @@ def _over_line(place: Array, values: Array, name: str, color: str, unit: str) ->
     of="HypoidKinematics",
     made_by="Call tribodyn.gear.hypoid_kinematics(contact, pinion_speed) and its plot method.",
 )
-def hypoid_kinematics(motion: HypoidKinematics) -> Any:
+def hypoid_kinematics(motion: HypoidKinematics) -> Sketch:
     """Draw speeds, slide-to-roll ratio and radius of the gap over the rotation of the wheel."""
     place = np.degrees(motion.rotation)
     speed = display_unit("sliding_speed")
@@ -102,7 +102,7 @@ def _label(misalignment: Misalignment) -> str:
     of="MisalignmentStudy",
     made_by="Call tribodyn.gear.misalignment_study.",
 )
-def hypoid_misalignment(study: MisalignmentStudy) -> Any:
+def hypoid_misalignment(study: MisalignmentStudy) -> Sketch:
     """Draw patterns on the flank and the transmission error of each case."""
     flank: list[Trace] = [outline(study.contacts[0])]
     errors: list[Trace] = []
@@ -181,7 +181,7 @@ def _regimes(heat: Trace) -> Trace:
     of=("HypoidLoadedContact", "Result.hypoid_friction.loaded"),
     made_by=_MADE_BY,
 )
-def hypoid_pressure(loaded: HypoidLoadedContact) -> Any:
+def hypoid_pressure(loaded: HypoidLoadedContact) -> Sketch:
     """Draw the pressure over the flank: the contact pattern under load."""
     traces = _flank(loaded, 1e-9 * loaded.hertz_pressure, "pressure", "GPa", (0.5, 1.0))
     title = (
@@ -200,7 +200,7 @@ def hypoid_pressure(loaded: HypoidLoadedContact) -> Any:
     of=("HypoidLoadedContact", "Result.hypoid_friction.loaded"),
     made_by=_MADE_BY,
 )
-def hypoid_load(loaded: HypoidLoadedContact) -> Any:
+def hypoid_load(loaded: HypoidLoadedContact) -> Sketch:
     """Draw load shares, transmission error and stiffness over the mesh cycle."""
     phase, count = loaded.phase, loaded.load_share.shape[1]
     shares = [
@@ -250,7 +250,7 @@ def _friction_caption(friction: HypoidFriction) -> str:
     of=("HypoidFriction", "Result.hypoid_friction"),
     made_by="Call tribodyn.mesh.hypoid_friction.",
 )
-def hypoid_friction(friction: HypoidFriction) -> Any:
+def hypoid_friction(friction: HypoidFriction) -> Sketch:
     """Draw friction coefficient and film ratio over the flank."""
     loaded, ratio = friction.loaded, np.minimum(friction.film_ratio, 1e3)
     maps = [

@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
-from tribodyn.drawing import drawing
+from tribodyn.drawing import Sketch, drawing
 from tribodyn.losses.gearbox import PARTS
 from tribodyn.plot.theme.colors import (
     GRID,
@@ -77,7 +77,7 @@ def _loss_parts(gearbox: GearboxLosses) -> Row:
     return Row(label, from_zero(text, traces, 1.2), {"range": [x.min(), x.max()]})
 
 
-def _bars(gearbox: GearboxLosses) -> Any:
+def _bars(gearbox: GearboxLosses) -> Sketch:
     """Bars of the loss parts at a single operating point."""
     powers = {part: float(getattr(gearbox, part).item()) for part in PARTS}
     parts = zip(PARTS.items(), _COLORS, strict=True)
@@ -111,7 +111,7 @@ def _caption(gearbox: GearboxLosses) -> str:
     of="GearboxLosses",
     made_by="Call tribodyn.loss_map(case) and its plot method.",
 )
-def losses(gearbox: GearboxLosses) -> Any:
+def losses(gearbox: GearboxLosses) -> Sketch:
     """Draw the efficiency over torque and speed, and the parts of the loss."""
     if gearbox.total.size == 1:
         return _bars(gearbox)
@@ -138,7 +138,7 @@ _SINKS = (
     of="RigPowerFlow",
     made_by="Call tribodyn.rig_power_flow(case) and its plot method.",
 )
-def power_flow(rig: RigPowerFlow) -> Any:
+def power_flow(rig: RigPowerFlow) -> Sketch:
     """Draw the power of the motor as a Sankey diagram."""
     place = {part: number for number, part in enumerate(rig.part)}
     columns = ([place[part] for part in parts] for _, parts, _ in _SINKS)
@@ -177,7 +177,7 @@ def power_flow(rig: RigPowerFlow) -> Any:
     of="FrictionFromLoss",
     made_by="Call tribodyn.losses.friction_from_power_loss(table) and its plot method.",
 )
-def friction_from_loss(measured: FrictionFromLoss) -> Any:
+def friction_from_loss(measured: FrictionFromLoss) -> Sketch:
     """Draw friction coefficients with error bars over the torque, one curve per speed."""
     turns = np.round(displayed("speed", measured.speed), 1)
     torque, traces = displayed("torque", measured.torque), []
@@ -218,7 +218,7 @@ def friction_from_loss(measured: FrictionFromLoss) -> Any:
     of="HeatBalance",
     made_by="Use Result.heat of a case with lubricant.heat_transfer.",
 )
-def heat_balance(balance: HeatBalance) -> Any:
+def heat_balance(balance: HeatBalance) -> Sketch:
     """Draw power loss and dissipated heat over the temperature of gears and oil."""
     order = np.argsort(balance.temperature, kind="stable")
     celsius = balance.temperature - ZERO_CELSIUS

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from tribodyn.drawing import drawing
+from tribodyn.drawing import Sketch, drawing
 from tribodyn.plot.gear.outlines import BentMesh, bent_mesh, on_line_of_action, wheel_center
 from tribodyn.plot.mesh.loaded_contact import several_cycles, torque_names
 from tribodyn.plot.theme.colors import FILLS, INK, MUTED, PINION, WHEEL
@@ -132,7 +132,7 @@ def _chosen(contact: LoadedContact, phase: float | None) -> list[int]:
 )
 def mesh_deformation(
     contact: LoadedContact, *, phase: float | None = None, torque: int = -1
-) -> Any:
+) -> Sketch:
     """Draw the teeth in mesh with exaggerated deformation, and their loads.
 
     Parameters

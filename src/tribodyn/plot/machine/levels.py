@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
-from tribodyn.drawing import drawing
+from tribodyn.drawing import Sketch, drawing
 from tribodyn.plot.motion.sweeps import axis_text, value_text
 from tribodyn.plot.theme.colors import COLORS, MUTED
 from tribodyn.plot.theme.labels import axis_label, displayed, listed, rounded
@@ -116,7 +116,7 @@ def _title(levels: Iterable[tuple[Sequence[str], Array]], x: Sequence[str]) -> s
     of="MachineLevels",
     made_by="Call tribodyn.speed_sweep or tribodyn.run_up with a machine.",
 )
-def machine_levels(study: MachineLevels) -> Any:
+def machine_levels(study: MachineLevels) -> Sketch:
     """Draw the levels of all parts over the speed of the input."""
     x = displayed("speed", study.speed)
     levels = [
@@ -139,7 +139,7 @@ def machine_levels(study: MachineLevels) -> Any:
     of="MachineLevels",
     made_by="Call tribodyn.speed_sweep or tribodyn.run_up with a machine.",
 )
-def machine_level_lines(study: MachineLevels) -> Any:
+def machine_level_lines(study: MachineLevels) -> Sketch:
     """Draw the amplitudes at the mesh harmonics over the speed of the input."""
     x, panels, largest = displayed("speed", study.speed), [], ""
     sources = list(dict.fromkeys(name.rpartition(" x ")[0] for name in study.line))
@@ -182,7 +182,7 @@ def _lack(study: Sweep) -> str:
     of="Sweep",
     made_by='Call tribodyn.sweep(machine, "operation.speed", ("400 rpm", "3500 rpm"), 60).',
 )
-def machine_sweep(study: Sweep) -> Any:
+def machine_sweep(study: Sweep) -> Sketch:
     """Draw the levels of all parts of a machine over the value that varies."""
     (axis,) = study.axes
     x, levels = axis.display_values(), []
@@ -229,7 +229,7 @@ def _not_of_machines(comparison: ResultComparison) -> str:
     of="ResultComparison",
     made_by="tribodyn.compare_results",
 )
-def machine_comparison(comparison: ResultComparison) -> Any:
+def machine_comparison(comparison: ResultComparison) -> Sketch:
     """Draw the levels of all parts of several machines as bars."""
     summaries = [result.summary() for result in comparison.results]
     keys = dict.fromkeys(key for summary in summaries for key in summary)
@@ -268,7 +268,7 @@ def _by_kind(keys: Iterable[str]) -> Iterator[tuple[str, str, list[str], list[st
     of="MachineEnsemble",
     made_by="Call tribodyn.ensemble(machine, {...}, seed=1) and its plot method.",
 )
-def machine_ensemble(study: MachineEnsemble) -> Any:
+def machine_ensemble(study: MachineEnsemble) -> Sketch:
     """Draw the levels of all parts with the interval of the variants."""
     columns, rows, widest = study.figures(), [], (0.0, "No level varies")
     for number, (quantity, label, names, parts) in enumerate(_by_kind(columns)):

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from itertools import cycle
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
-from tribodyn.drawing import drawing
+from tribodyn.drawing import Sketch, drawing
 from tribodyn.plot.machine.side_view import SideView, joined_names, shaft_outline
 from tribodyn.plot.motion.linear import crossing_dots, natural_lines
 from tribodyn.plot.theme.colors import COLORS, GRID, MUTED, PAIR_COLORS, PINION, WHEEL
@@ -82,7 +82,7 @@ def _rigid(modes: MachineModes) -> str:
     of=("MachineModes", "MachineResult.modes"),
     made_by="Run a case with shafts, or call tribodyn.machine.machine_modes.",
 )
-def machine_modes(modes: MachineModes) -> Any:
+def machine_modes(modes: MachineModes) -> Sketch:
     """Draw the natural modes of a machine on its shafts, one at a time."""
     structure = modes.structure
     view = SideView.of(structure.machine)
@@ -168,7 +168,7 @@ def _crossings(met: Sequence[Meeting]) -> Trace:
     of=("MachineCampbell", "MachineResult.campbell"),
     made_by="Run a case with shafts, or tribodyn modes.",
 )
-def machine_campbell(diagram: MachineCampbell) -> Any:
+def machine_campbell(diagram: MachineCampbell) -> Sketch:
     """Draw natural frequencies and labelled excitations over the speed of the input."""
     speed = displayed("speed", diagram.speed)
     hertz = displayed("frequency", np.multiply.outer(diagram.order, diagram.speed) / (2.0 * np.pi))

@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
-from tribodyn.drawing import drawing
+from tribodyn.drawing import Sketch, drawing
 from tribodyn.plot.machine.side_view import joined_names
 from tribodyn.plot.theme.colors import COLORS, INK
 from tribodyn.plot.theme.labels import axis_label, display_unit, displayed, rounded
@@ -85,7 +85,7 @@ def _caption(motion: MachineMotion) -> str:
     of=("MachineMotion", "MachineResult.motion"),
     made_by="Run a case with shafts: tribodyn.run.",
 )
-def machine_orders(motion: MachineMotion) -> Any:
+def machine_orders(motion: MachineMotion) -> Sketch:
     """Draw the lines of mesh forces, bearing forces and housing accelerations."""
     signals = [
         ("mesh_force", "Mesh forces", motion.mesh_force),
@@ -178,7 +178,7 @@ def _panels(
     of=("MachineMotion", "MachineResult.motion"),
     made_by="Run a case with shafts: tribodyn.run.",
 )
-def machine_forces(motion: MachineMotion) -> Any:
+def machine_forces(motion: MachineMotion) -> Sketch:
     """Draw the alternating forces of meshes and on bearings over one period of the clock."""
     panels = [
         *_panels(motion, "mesh_force", motion.mesh, motion.mesh_force),
@@ -207,7 +207,7 @@ def machine_forces(motion: MachineMotion) -> Any:
     of="KinematicFrequencies",
     made_by="Take those of a case: tribodyn.kinematic_frequencies.",
 )
-def kinematic_frequencies(lines: KinematicFrequencies) -> Any:
+def kinematic_frequencies(lines: KinematicFrequencies) -> Sketch:
     """Draw the frequencies of the parts, one row for each."""
     rows = list(dict.fromkeys(lines.part))
     traces = []

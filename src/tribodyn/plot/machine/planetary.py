@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from tribodyn.drawing import drawing
+from tribodyn.drawing import Sketch, drawing
 from tribodyn.gear import gear_outline
 from tribodyn.machine.planetary.positions import read_angles
 from tribodyn.plot.theme.colors import COLORS, MUTED, PAIR_COLORS, PINION, WHEEL, translucent
@@ -91,7 +91,7 @@ def _not_drawn(result: MachineResult | MachineCase) -> str:
     of=("MachineResult", "MachineCase"),
     made_by="Load or run a case with planets: tribodyn.load_case, tribodyn.run.",
 )
-def planetary_stage(result: MachineResult | MachineCase) -> Any:
+def planetary_stage(result: MachineResult | MachineCase) -> Sketch:
     """Draw the first planetary stage of a machine with moving planets."""
     whole: Any = result
     case: MachineCase = getattr(whole, "case", whole)
@@ -151,7 +151,7 @@ def planetary_stage(result: MachineResult | MachineCase) -> Any:
     of=("PlanetaryMotion",),
     made_by="Run a case with planets: tribodyn.run(...).operation.stage().motion.",
 )
-def planetary_forces(motion: PlanetaryMotion) -> Any:
+def planetary_forces(motion: PlanetaryMotion) -> Sketch:
     """Draw the mesh forces of all planets and the motion of the sun over a mesh cycle."""
     panels = []
     for mesh, force in (("Sun mesh", motion.sun_mesh_force), ("Ring mesh", motion.ring_mesh_force)):
@@ -188,7 +188,7 @@ def planetary_forces(motion: PlanetaryMotion) -> Any:
     of=("RingSensorSignal",),
     made_by="Call ring_sensor() of a result at one load, or tribodyn.machine.ring_sensor_signal.",
 )
-def ring_sensor(signal: RingSensorSignal) -> Any:
+def ring_sensor(signal: RingSensorSignal) -> Sketch:
     """Draw the sidebands of a sensor on the ring."""
     panels, teeth = [], signal.ring_teeth
     for harmonic in (1, 2):
@@ -234,7 +234,7 @@ def _without_factors(statistics: LoadShareStatistics | MachineEnsemble) -> str:
     of=("LoadShareStatistics", "MachineEnsemble"),
     made_by="Call tribodyn.study.load_share_statistics(...) or tribodyn.ensemble(stage, seed=1).",
 )
-def load_share_statistics(statistics: LoadShareStatistics | MachineEnsemble) -> Any:
+def load_share_statistics(statistics: LoadShareStatistics | MachineEnsemble) -> Sketch:
     """Draw the distribution of the mesh load factor."""
     factor = np.sort(_load_factors(statistics))
     part = 100.0 * (np.arange(factor.size) + 0.5) / factor.size
@@ -296,7 +296,7 @@ def _mode_trace(angles: Array, motion: Array, color: str, width: float, visible:
     of=("PlanetaryModes",),
     made_by="Call tribodyn.machine.planetary_modes on a plane model.",
 )
-def planetary_modes(modes: PlanetaryModes) -> Any:
+def planetary_modes(modes: PlanetaryModes) -> Sketch:
     """Draw the natural modes of a planetary stage, one at a time."""
     angles = np.asarray(modes.angles)
     count = modes.frequency.size

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
-from tribodyn.drawing import drawing
+from tribodyn.drawing import Sketch, drawing
 from tribodyn.plot.theme.colors import COLORS, MUTED, translucent
 from tribodyn.plot.theme.labels import rounded
 from tribodyn.plot.theme.style import figure, sankey
@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     of="MachineResult",
     made_by="Run a case with shafts: tribodyn.run.",
 )
-def machine_power(result: MachineResult) -> Any:
+def machine_power(result: MachineResult) -> Sketch:
     """Draw the power that flows through shafts and meshes, and what is lost."""
     machine, lost = result.machine, result.operation.friction_power
     run, flow, figures = machine.operation, result.operation.power_flow, result.operation.figures

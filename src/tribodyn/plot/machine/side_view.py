@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from tribodyn.drawing import drawing
+from tribodyn.drawing import Sketch, drawing
 from tribodyn.machine.graph.mesh_checks import gear_hand
 from tribodyn.plot.theme.colors import FILLS, INK, MUTED, PAIR_COLORS, PINION, WHEEL
 from tribodyn.plot.theme.labels import rounded
@@ -334,7 +334,7 @@ def _levels(view: SideView) -> dict[str, int]:
     of=("Machine", "MachineResult.machine"),
     made_by="Load a case with shafts, or build a tribodyn.machine.Machine.",
 )
-def machine(machine: Machine) -> Any:
+def machine(machine: Machine) -> Sketch:
     """Draw the shafts of a machine with gears and bearings, to scale."""
     view = SideView.of(machine)
     traces = [*_shafts(view), *_bearings(view), *_gears(view)]

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from tribodyn.drawing import Need, drawing
+from tribodyn.drawing import Need, Sketch, drawing
 from tribodyn.mesh.face.maps import face_map
 from tribodyn.plot.mesh.cycle import table_drawing
 from tribodyn.plot.theme.colors import HEAT, MUTED
@@ -72,7 +72,7 @@ class _Map(NamedTuple):
 
 
 @table_drawing(heading="Maps over the face", caption=_caption, missing=_without_face)
-def face_maps(mesh: MeshTable) -> Any:
+def face_maps(mesh: MeshTable) -> Sketch:
     """Draw load, pressure, film and friction over path and face."""
     charts = {
         name: face_map(mesh, name)
@@ -91,7 +91,7 @@ def face_maps(mesh: MeshTable) -> Any:
     return _stacked(title, maps, mesh.gear_pair, (first.path, first.face_position))
 
 
-def _stacked(title: str, maps: list[_Map], pair: Any, place: tuple[Array, Array]) -> Any:
+def _stacked(title: str, maps: list[_Map], pair: Any, place: tuple[Array, Array]) -> Sketch:
     """Maps of a mesh one below the other."""
     total = _HEIGHT * len(maps) + _GAP * (len(maps) - 1)
     traces, layout = [], Trace()
@@ -145,7 +145,7 @@ def _least_in_words(rating: MeshRating) -> str:
     of="MeshRating",
     made_by="Run a case with [rating], and take one of result.rating.ratings.",
 )
-def rating_maps(rating: MeshRating) -> Any:
+def rating_maps(rating: MeshRating) -> Sketch:
     """Draw pressure, temperature, film and safeties over path and face."""
     data, maps = rating.maps, []
     assert data is not None

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from tribodyn.drawing import drawing
+from tribodyn.drawing import Sketch, drawing
 from tribodyn.plot.mesh.cycle import between
 from tribodyn.plot.theme.colors import TOTAL
 from tribodyn.plot.theme.labels import axis_label, display_unit, displayed, rounded
@@ -213,7 +213,7 @@ def _over_cycles_or_angle(contact: LoadedContact) -> str:
     of="LoadedContact",
     made_by="Call tribodyn.loaded_contact(case) and its plot method.",
 )
-def loaded_contact(contact: LoadedContact) -> Any:
+def loaded_contact(contact: LoadedContact) -> Sketch:
     """Draw transmission error, stiffness and load sharing of a loaded tooth contact."""
     hunting, pair = several_cycles(contact), contact.gear_pair
     stiffness = "Secant stiffness" if hunting else "Mesh stiffness"
@@ -283,7 +283,7 @@ def _traces(contact: LoadedContact, life: Life, inside: Mask) -> list[Trace]:
     of="LoadedContact",
     made_by="Call tribodyn.loaded_contact(case) and its plot method.",
 )
-def loaded_sharing(contact: LoadedContact) -> Any:
+def loaded_sharing(contact: LoadedContact) -> Sketch:
     """Draw the force on a tooth pair over the range in which it carries load."""
     pair, (first, last) = contact.gear_pair, span(contact)
     life = Life.of(contact, contact.normal_force)

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from tribodyn.drawing import Need, drawing
+from tribodyn.drawing import Need, Sketch, drawing
 from tribodyn.plot.mesh.loaded_contact import in_legend, torque_colors, torque_names, whole_cycles
 from tribodyn.plot.theme.colors import COLORS, MUTED, PAIR_COLORS, PINION, TOTAL, WHEEL
 from tribodyn.plot.theme.labels import axis_label, display_unit, displayed, listed, rounded
@@ -120,7 +120,7 @@ def _harris_caption(study: HarrisMap) -> str:
     of="HarrisMap",
     made_by="Call tribodyn.harris_map(case) and its plot method.",
 )
-def harris_map(study: HarrisMap) -> Any:
+def harris_map(study: HarrisMap) -> Sketch:
     """Draw the transmission error per torque, its peak to peak and harmonics over torque."""
     swings = study.peak_to_peak_transmission_error
     least = rounded(_QUANTITY, np.min(swings))
@@ -208,7 +208,7 @@ def _relief_caption(study: TipReliefOptimum) -> str:
     of="TipReliefOptimum",
     made_by="Call tribodyn.optimize_tip_relief(case) and its plot method.",
 )
-def tip_relief_map(study: TipReliefOptimum) -> Any:
+def tip_relief_map(study: TipReliefOptimum) -> Sketch:
     """Draw the objective over amount and length, and the transmission error before and after."""
     amount = rounded("tip_relief", study.amount)
     length = rounded("tip_relief_length", study.length)
@@ -284,7 +284,7 @@ def _series_caption(study: ComprehensiveStiffness) -> str:
     of="ComprehensiveStiffness",
     made_by="Call tribodyn.comprehensive_stiffness(case) and its plot method.",
 )
-def comprehensive_stiffness(study: ComprehensiveStiffness) -> Any:
+def comprehensive_stiffness(study: ComprehensiveStiffness) -> Sketch:
     """Draw the stiffness of film, teeth and both in series over the roll angle."""
     pair, styles = study.gear_pair, _curve_styles(study)
     with_film = float(np.mean(study.mean_mesh_stiffness))
@@ -324,7 +324,7 @@ _WORDS = {
     of=("Coupling", "Result.coupling"),
     made_by='Set solver.coupling = "static" or "dynamic".',
 )
-def coupling(coupled: Coupling) -> Any:
+def coupling(coupled: Coupling) -> Sketch:
     """Draw the change of each quantity per iteration, and the converged load."""
     curves, changed = [], list[str]()
     for (name, label), color in zip(_WORDS.items(), (TOTAL, *COLORS), strict=False):
@@ -360,7 +360,7 @@ def coupling(coupled: Coupling) -> Any:
     of="LeadOptimum",
     made_by="Call tribodyn.stiffness.optimize_lead and the plot method of its result.",
 )
-def lead_optimum(study: LeadOptimum) -> Any:
+def lead_optimum(study: LeadOptimum) -> Sketch:
     """Draw the load over the face before and after the modification, a colour for each torque."""
     place, traces = displayed("face_position", study.face_position), []
     colors, names = torque_colors(study.torque.size), torque_names(study.torque)

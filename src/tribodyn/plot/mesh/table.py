@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from tribodyn.drawing import Sketch
 from tribodyn.plot.mesh.cycle import (
     CYCLES,
     between,
@@ -89,7 +90,7 @@ def _stiffness_caption(mesh: MeshTable) -> str:
 
 
 @table_drawing(heading="Mesh stiffness", caption=_stiffness_caption)
-def mesh_stiffness(mesh: MeshTable) -> Any:
+def mesh_stiffness(mesh: MeshTable) -> Sketch:
     """Draw the stiffness of the tooth pairs and their sum."""
     total = cycles(mesh.phase, mesh.mesh_stiffness)
     traces = [curve("mesh_stiffness", *total, "all pairs", TOTAL)]
@@ -121,7 +122,7 @@ def _pairs(mesh: MeshTable, ends: tuple[float, float]) -> list[tuple[str, Array,
     "applies to small vibration about the load. The curve of a tooth pair is its part of the "
     "secant stiffness.",
 )
-def static_stiffness(mesh: MeshTable) -> Any:
+def static_stiffness(mesh: MeshTable) -> Sketch:
     """Draw secant and tangent stiffness of the mesh and the parts of the tooth pairs."""
     pair, ends = mesh.gear_pair, (-_MARGIN, mesh.transverse_contact_ratio + _MARGIN)
 
@@ -176,7 +177,7 @@ def _caption(mesh: MeshTable) -> str:
 
 
 @table_drawing(heading="Load sharing", caption=_caption)
-def load_sharing(mesh: MeshTable) -> Any:
+def load_sharing(mesh: MeshTable) -> Sketch:
     """Draw the load on one tooth pair over the roll angle of the driving gear."""
     pair = mesh.gear_pair
     age, share = closed(*life_with_corners(mesh))
@@ -242,7 +243,7 @@ def _error_caption(contact: Any) -> str:
     caption=_error_caption,
     of=("MeshTable", "Result"),
 )
-def static_transmission_error(contact: Any) -> Any:
+def static_transmission_error(contact: Any) -> Sketch:
     """Draw the static transmission error over two mesh cycles, and its mesh harmonics."""
     mesh: MeshTable = getattr(contact, "mesh", contact)
     error: Array = (
@@ -284,7 +285,7 @@ def _law_caption(mesh: MeshTable) -> str:
 
 
 @table_drawing(heading="Force law of the mesh", caption=_law_caption)
-def force_law(mesh: MeshTable) -> Any:
+def force_law(mesh: MeshTable) -> Sketch:
     """Draw the force on the mesh over its deflection for several mesh phases."""
     law, load = mesh.force_law, mesh.total_normal_force
     chosen = _phases(mesh)

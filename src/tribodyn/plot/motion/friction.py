@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from itertools import product
 from textwrap import wrap
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from tribodyn.cases.papers.friction_claims import DRIVING, HELD
-from tribodyn.drawing import drawing
+from tribodyn.drawing import Sketch, drawing
 from tribodyn.plot.theme.colors import INK, PAIR_COLORS, PINION, WHEEL
 from tribodyn.plot.theme.panels import Panel, stack
 from tribodyn.plot.theme.style import Trace, bars, figure, heat, line
@@ -97,7 +97,7 @@ def _no_harmonics(experiment: FrictionExperiment) -> str:
     of="FrictionExperiment",
     made_by=_MADE,
 )
-def friction_effect(experiment: FrictionExperiment) -> Any:
+def friction_effect(experiment: FrictionExperiment) -> Sketch:
     """Draw the effect of friction on forces and transmission error over its mean coefficient."""
     panels = [
         Panel(label, [{**t, "showlegend": number == 0} for t in _curves(experiment, name)])
@@ -115,7 +115,7 @@ def friction_effect(experiment: FrictionExperiment) -> Any:
     of="FrictionExperiment",
     made_by=_MADE,
 )
-def friction_claims(experiment: FrictionExperiment) -> Any:
+def friction_claims(experiment: FrictionExperiment) -> Sketch:
     """Draw for each published claim the assumptions under which it holds."""
     judged = [
         (claim.statement, claim.holds.ravel())
@@ -147,7 +147,7 @@ def friction_claims(experiment: FrictionExperiment) -> Any:
     of="FrictionExperiment",
     made_by=_MADE,
 )
-def friction_harmonics(experiment: FrictionExperiment) -> Any:
+def friction_harmonics(experiment: FrictionExperiment) -> Sketch:
     """Draw how friction changes the harmonics of the dynamic transmission error."""
     names = [f"{_HARMONIC}{k}" for k in range(1, _HARMONICS + 1)]
     change = 100.0 * np.array([experiment.change(name) for name in names])

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from tribodyn.drawing import drawing
+from tribodyn.drawing import Sketch, drawing
 from tribodyn.plot.theme.colors import INK, MUTED, PAIR_COLORS, PINION, TOTAL, WHEEL, translucent
 from tribodyn.plot.theme.labels import axis_label, display_unit, displayed, rounded, significant
 from tribodyn.plot.theme.panels import Panel, curve, curves, event_lines, stack
@@ -63,7 +63,7 @@ def _strained(modes: NaturalModes) -> Trace:
     of=("NaturalModes", "Result.natural_modes"),
     made_by="Call tribodyn.dynamics.natural_modes and its plot method.",
 )
-def mode_shapes(modes: NaturalModes) -> Any:
+def mode_shapes(modes: NaturalModes) -> Sketch:
     """Draw the energy shares of all elastic modes."""
     first, unit = modes.rigid, display_unit("frequency")
     hertz = displayed("frequency", modes.frequency[first:])
@@ -167,7 +167,7 @@ def _met(diagram: Campbell) -> list[Trace]:
     of=("Campbell", "Result.campbell"),
     made_by="Call tribodyn.dynamics.campbell and its plot method.",
 )
-def campbell(diagram: Campbell) -> Any:
+def campbell(diagram: Campbell) -> Sketch:
     """Draw natural frequencies and mesh harmonics over speed."""
     speed = displayed("speed", diagram.speed)
     modes = float(np.max(displayed("frequency", diagram.frequency), initial=0.0))
@@ -192,7 +192,7 @@ def campbell(diagram: Campbell) -> Any:
     of="ForcedResponse",
     made_by="Call tribodyn.dynamics.forced_response and its plot method.",
 )
-def forced_response(response: ForcedResponse) -> Any:
+def forced_response(response: ForcedResponse) -> Sketch:
     """Draw amplitudes of mesh force, deflection and transmission error over frequency."""
     x = displayed("frequency", response.frequency)
     force = np.abs(response.mesh_force)

@@ -179,7 +179,7 @@ def _axis_mismatch(comparison: ResultComparison) -> str:
     of="ResultComparison",
     made_by="tribodyn.compare_results",
 )
-def result_comparison(comparison: ResultComparison) -> Any:
+def result_comparison(comparison: ResultComparison) -> Sketch:
     """Draw transmission error and mesh force of all results in the same axes."""
     motions = _motions(comparison)
     panels: list[Panel] = []

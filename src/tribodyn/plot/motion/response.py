@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
-from tribodyn.drawing import drawing
+from tribodyn.drawing import Sketch, drawing
 from tribodyn.plot.theme.colors import MUTED, PAIR_COLORS, PINION, TOTAL, WHEEL
 from tribodyn.plot.theme.labels import readable, scaled, significant, unit_of
 from tribodyn.plot.theme.panels import Panel, extremes, stack
@@ -53,7 +53,7 @@ def _milliseconds(time: Array) -> tuple[Array, str]:
     of="Response",
     made_by="Call tribodyn.dynamics.simulate or steady_state and its plot method.",
 )
-def response(motion: Response) -> Any:
+def response(motion: Response) -> Sketch:
     """Draw contact forces, compressions and accelerations over the time."""
     time, label = _milliseconds(motion.time)
     force = motion.contact_force
@@ -86,7 +86,7 @@ def response(motion: Response) -> Any:
     of="AdaptiveSolution",
     made_by="Call tribodyn.dynamics.solve_adaptive and its plot method.",
 )
-def adaptive_solution(solution: AdaptiveSolution) -> Any:
+def adaptive_solution(solution: AdaptiveSolution) -> Sketch:
     """Draw positions and step lengths over the time."""
     time, label = _milliseconds(solution.time)
     names = tuple(solution.names)

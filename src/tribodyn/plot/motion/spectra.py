@@ -5,11 +5,12 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable, Sequence
 from dataclasses import replace
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from tribodyn.analysis import Spectrum, amplitude_spectrum
+from tribodyn.drawing import Sketch
 from tribodyn.plot.mesh.cycle import run_drawing
 from tribodyn.plot.motion.motion import Motion, no_translation
 from tribodyn.plot.motion.time_histories import GEARS, directions, wrapped_label
@@ -120,7 +121,7 @@ def _natural(result: Result, last: float) -> tuple[Trace, list[Trace]]:
     return lines, legend
 
 
-def _harmonic_figure(title: str, result: Result, panels: list[Panel]) -> Any:
+def _harmonic_figure(title: str, result: Result, panels: list[Panel]) -> Sketch:
     """Draw a figure of harmonics, with buttons for a linear and a logarithmic scale."""
     layout, legend = _harmonic_layout(result, panels)
     panels[0] = replace(panels[0], traces=[*panels[0].traces, *legend])
@@ -177,7 +178,7 @@ def _decades(panel: Panel) -> list[float]:
     "buttons switch to a logarithmic scale, which shows the small harmonics.",
     missing=_no_harmonics,
 )
-def spectrum(result: Result) -> Any:
+def spectrum(result: Result) -> Sketch:
     """Draw the mesh harmonics of the transmission error and of the accelerations."""
     quantity, error = "dynamic_transmission_error", Motion(result).transmission_error
     rows = [("transmission error", TOTAL, error)]
@@ -200,7 +201,7 @@ def _no_bearing_harmonics(result: Result) -> str:
     "frequencies of the gears on their supports that the mesh strains most.",
     missing=_no_bearing_harmonics,
 )
-def bearing_spectrum(result: Result) -> Any:
+def bearing_spectrum(result: Result) -> Sketch:
     """Draw the mesh harmonics of the bearing forces."""
     panels = _gear_panels(result, "bearing_force")
     title = f"Mesh harmonic {_strongest(panels)} is the strongest on the {GEARS[0][0]}'s bearing"

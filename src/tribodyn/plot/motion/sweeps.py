@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from tribodyn.drawing import drawing
+from tribodyn.drawing import Sketch, drawing
 from tribodyn.plot.theme.colors import COLORS, MUTED, PAIR_COLORS, PINION, WHEEL
 from tribodyn.plot.theme.labels import (
     axis_label,
@@ -108,7 +108,7 @@ def _speed_caption(sweep: SpeedSweep) -> str:
     of="SpeedSweep",
     made_by="Call tribodyn.dynamics.speed_sweep(...) and its plot method.",
 )
-def speed_sweep(sweep: SpeedSweep, *, signal: str | None = None) -> Any:
+def speed_sweep(sweep: SpeedSweep, *, signal: str | None = None) -> Sketch:
     """Draw rms, range and loss of contact over the speed.
 
     Parameters
@@ -213,7 +213,7 @@ def _case_curves(study: Sweep, values: Any, unit: str) -> list[Trace]:
     return traces
 
 
-def _map(study: Sweep, values: Any, label: str, unit: str, title: str) -> Any:
+def _map(study: Sweep, values: Any, label: str, unit: str, title: str) -> Sketch:
     first, second = study.axes
     hover, bar = f"%{{x}}, %{{y}}<br>%{{z:.5g}} {unit} %{{text}}", axis(label)
     bar["title"]["side"] = "right"
@@ -232,7 +232,7 @@ def _map(study: Sweep, values: Any, label: str, unit: str, title: str) -> Any:
     made_by='Call tribodyn.sweep(case, {"operation.speed": ("400 rpm", "3500 rpm", '
     "60)}) and its plot method.",
 )
-def sweep(study: Sweep, figure: str = "rms_mesh_force") -> Any:
+def sweep(study: Sweep, figure: str = "rms_mesh_force") -> Sketch:
     """Draw a summary figure over the keys that vary.
 
     Parameters

@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 from textwrap import wrap
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
+from tribodyn.drawing import Sketch
 from tribodyn.plot.mesh.cycle import cycles, run_drawing
 from tribodyn.plot.motion.motion import Motion, no_translation
 from tribodyn.plot.theme.colors import MUTED, PAIR_COLORS, PINION, TOTAL, WHEEL
@@ -120,7 +121,7 @@ def _mean_shift(result: Result, motion: Motion) -> str:
 
 
 @run_drawing(heading="Mesh force", caption=_force_caption)
-def mesh_force(result: Result) -> Any:
+def mesh_force(result: Result) -> Sketch:
     """Draw the dynamic and the static mesh force."""
     motion = Motion(result)
     force = motion.mesh_force
@@ -158,7 +159,7 @@ def _friction_caption(result: Result) -> str:
         "" if np.any(result.mesh.friction_coefficient) else 'friction.law is "none".'
     ),
 )
-def friction_force(result: Result) -> Any:
+def friction_force(result: Result) -> Sketch:
     """Draw the friction force of all tooth pairs and its film and asperity parts."""
     motion = Motion(result)
     forces = response_series.friction_forces(result, result.response.fine)
@@ -193,7 +194,7 @@ def _error_caption(result: Result) -> str:
 
 
 @run_drawing(heading="Transmission error", caption=_error_caption)
-def transmission_error(result: Result) -> Any:
+def transmission_error(result: Result) -> Sketch:
     """Draw the dynamic transmission error and, for a steady state, the quasi-static one."""
     motion, unit = Motion(result), display_unit("dynamic_transmission_error")
     moving = motion.transmission_error
@@ -226,7 +227,7 @@ def _shake_caption(result: Result) -> str:
 
 
 @run_drawing(heading="Accelerations", caption=_shake_caption, missing=no_translation)
-def acceleration(result: Result) -> Any:
+def acceleration(result: Result) -> Sketch:
     """Draw the accelerations of the gear centres."""
     motion = Motion(result)
     strongest = np.max(np.abs(motion.measured(motion.of_gear("acceleration", "pinion", "y"))))
@@ -246,7 +247,7 @@ def _bearing_caption(result: Result) -> str:
 
 
 @run_drawing(heading="Bearing forces", caption=_bearing_caption, missing=no_translation)
-def bearing_force(result: Result) -> Any:
+def bearing_force(result: Result) -> Sketch:
     """Draw the forces of both gears on their bearings."""
     motion = Motion(result)
     swing = np.ptp(motion.measured(motion.of_gear("bearing_force", "pinion", "y")))
@@ -269,7 +270,7 @@ def _in_a_plane(result: Result) -> str:
     "along the common perpendicular of the two axes, y along the pinion axis, z normal to x and y.",
     missing=_in_a_plane,
 )
-def tooth_force(result: Result) -> Any:
+def tooth_force(result: Result) -> Sketch:
     """Draw the three components of the tooth force."""
     motion, fine = Motion(result), result.response.fine
     components = response_series.tooth_force(

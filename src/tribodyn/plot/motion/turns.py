@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
-from tribodyn.drawing import drawing
+from tribodyn.drawing import Sketch, drawing
 from tribodyn.plot.signals.lines import strongest_lines
 from tribodyn.plot.theme.colors import PINION, TOTAL, WHEEL, translucent
 from tribodyn.plot.theme.labels import axis_label, display_unit, displayed, rounded
@@ -47,7 +47,7 @@ def _caption(motion: TurningMotion) -> str:
     of=("TurningMotion", "Result.turns"),
     made_by="Give a case with [faults.NAME], run it, and read result.turning_motion.",
 )
-def turning_motion(motion: TurningMotion) -> Any:
+def turning_motion(motion: TurningMotion) -> Sketch:
     """Draw transmission error and mesh force over the turns, and the orders of the motion."""
     teeth = motion.pinion_teeth
     turns = motion.time * motion.rotation_frequency("pinion")
@@ -94,7 +94,7 @@ def turning_motion(motion: TurningMotion) -> Any:
     of="TurningMesh",
     made_by="Call tribodyn.faults.turning_mesh(...) and its plot method.",
 )
-def turning_mesh(mesh: TurningMesh) -> Any:
+def turning_mesh(mesh: TurningMesh) -> Sketch:
     """Draw transmission error and stiffness over the mesh cycles, and the load along the face."""
     parts = (
         ("static_transmission_error", mesh.transmission_error, "Error at rest", PINION),
@@ -142,7 +142,7 @@ def _wear_caption(wear: Wear) -> str:
     of="Wear",
     made_by="Call tribodyn.study.wear(...) and its plot method.",
 )
-def wear_depth(wear: Wear) -> Any:
+def wear_depth(wear: Wear) -> Sketch:
     """Draw the depth of wear of both gears over the flank."""
     panels = []
     gears = (("Pinion", wear.depth_pinion, PINION), ("Wheel", wear.depth_wheel, WHEEL))

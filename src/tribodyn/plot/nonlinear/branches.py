@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from tribodyn.drawing import drawing
+from tribodyn.drawing import Sketch, drawing
 from tribodyn.nomenclature import QUANTITIES
 from tribodyn.plot.theme.colors import MUTED, PAIR_COLORS, PINION, TOTAL, WHEEL
 from tribodyn.plot.theme.labels import (
@@ -168,7 +168,7 @@ def _branch_caption(branch: Branch) -> str:
     made_by='Call tribodyn.bifurcation(case, over="operation.speed", between=("400 '
     'rpm", "3500 rpm")) and its plot method.',
 )
-def bifurcation(diagram: Bifurcation) -> Any:
+def bifurcation(diagram: Bifurcation) -> Sketch:
     """Draw the section, the rms and, if computed, the largest exponent over the parameter."""
     factor, unit = _scale(diagram)
     parameter, label = _bifurcation_parameter(diagram)
@@ -253,7 +253,7 @@ def _branch_title(branch: Branch) -> str:
     of="Branch",
     made_by="Call tribodyn.dynamics.continuation(...) and its plot method.",
 )
-def continuation(branch: Branch) -> Any:
+def continuation(branch: Branch) -> Sketch:
     """Draw rms and largest multiplier of a branch over its parameter."""
     x = _branch_parameter(branch, branch.parameter)
     rms, special, unit = _signal(branch)

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from tribodyn.drawing import drawing
+from tribodyn.drawing import Sketch, drawing
 from tribodyn.errors import InputError
 from tribodyn.plot.theme.colors import FILLS, MUTED, PAIR_COLORS, PINION, TOTAL, WHEEL
 from tribodyn.plot.theme.labels import scaled, unit_of
@@ -34,7 +34,7 @@ _MAX_POINTS = 1500
     of="PhasePortrait",
     made_by="Call tribodyn.analysis.phase_portrait(response) and its plot method.",
 )
-def phase_portrait(portrait: PhasePortrait) -> Any:
+def phase_portrait(portrait: PhasePortrait) -> Sketch:
     """Draw the curve and its points at the mesh phase 0."""
     unit = unit_of(portrait.name)
     x_factor, x_unit = scaled(portrait.position, unit)
@@ -71,7 +71,7 @@ def _over_place(
     place: tuple[str, list[float]],
     speed: tuple[str, list[float]],
     **more: Any,
-) -> Any:
+) -> Sketch:
     """Figure of velocities over positions; each axis has a label and a range."""
     x, y = (axis(label, range=ends) for label, ends in (place, speed))
     return plane_figure(title, traces, x, y, height=560, **more)
@@ -119,7 +119,7 @@ def _window(values: Any, motion: float) -> list[float]:
     of="PoincareSection",
     made_by="Call tribodyn.analysis.poincare(...) and its plot method.",
 )
-def poincare(section: PoincareSection, coordinate: int | str = 0) -> Any:
+def poincare(section: PoincareSection, coordinate: int | str = 0) -> Sketch:
     """Draw the points of one coordinate in its phase plane.
 
     Parameters
@@ -180,7 +180,7 @@ def _exponent_title(spectrum: LyapunovExponents) -> str:
     of="LyapunovExponents",
     made_by="Call tribodyn.analysis.lyapunov_exponents(...) and its plot method.",
 )
-def lyapunov(spectrum: LyapunovExponents) -> Any:
+def lyapunov(spectrum: LyapunovExponents) -> Sketch:
     """Draw the running means of the largest exponents."""
     cycles = len(spectrum.growth)
     count = np.arange(1, cycles + 1)

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from tribodyn.drawing import drawing
+from tribodyn.drawing import Sketch, drawing
 from tribodyn.nomenclature import QUANTITIES
 from tribodyn.plot.theme.colors import PAIR_COLORS, PINION, WHEEL
 from tribodyn.plot.theme.labels import (
@@ -105,7 +105,7 @@ def _display_factor(displayed_values: Array, values: Any) -> float:
     of="Basins",
     made_by="Call tribodyn.analysis.basins(...) and its plot method.",
 )
-def basins(plane: Basins) -> Any:
+def basins(plane: Basins) -> Sketch:
     """Draw the plane of initial states coloured by attractor."""
     first, second = plane.coordinates
     x, x_label = _plane_axis(first, plane.first, plane.units[0])
@@ -205,7 +205,7 @@ def _map_title(survey: ParameterMap) -> str:
     of="ParameterMap",
     made_by="Call tribodyn.analysis.parameter_map(...) and its plot method.",
 )
-def parameter_map(survey: ParameterMap) -> Any:
+def parameter_map(survey: ParameterMap) -> Sketch:
     """Draw period, rms and contact loss."""
     x, x_label = parameter_axis(survey.names[0], survey.first, survey.units[0])
     y, y_label = parameter_axis(survey.names[1], survey.second, survey.units[1])

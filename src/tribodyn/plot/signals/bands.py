@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from tribodyn.drawing import FIGURES, drawing
+from tribodyn.drawing import FIGURES, Sketch, drawing
 from tribodyn.errors import InputError
 from tribodyn.plot.theme.colors import COLORS, MUTED, PINION, TOTAL, translucent
 from tribodyn.plot.theme.labels import label_with, readable, scaled, significant
@@ -62,7 +62,7 @@ def _lines(result: CaseEnsemble) -> tuple[list[Trace], str]:
     of="CaseEnsemble",
     made_by="Call tribodyn.ensemble(case, {...}, seed=1) and its plot method.",
 )
-def ensemble(result: CaseEnsemble) -> Any:
+def ensemble(result: CaseEnsemble) -> Sketch:
     """Draw force over time, transmission error over the phase, and the spectrum, with bands."""
     time = 1e3 * result.phase / float(np.mean(result.mesh_frequency))
     force, newton = _curve(result, "mesh_force", time)
@@ -90,7 +90,7 @@ def ensemble(result: CaseEnsemble) -> Any:
     of="Surrogate",
     made_by="Call tribodyn.surrogate.train(data, ...) and its plot method.",
 )
-def surrogate(result: Surrogate) -> Any:
+def surrogate(result: Surrogate) -> Sketch:
     """Draw predictions over computed values of the held-out rows, one panel per target."""
     rows, qualities = [], []
     for number, name in enumerate(result.targets):

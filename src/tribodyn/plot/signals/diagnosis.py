@@ -58,7 +58,7 @@ def finer(values: Array) -> Array:
     of="SynchronousAverage",
     made_by="Call tribodyn.analysis.time_synchronous_average(...) and its plot method.",
 )
-def synchronous_average(average: SynchronousAverage) -> Any:
+def synchronous_average(average: SynchronousAverage) -> Sketch:
     """Draw mean revolution, residual and difference over the angle of the shaft."""
     unit = readable(average.unit)
     mean = finer(average.signal)
@@ -107,7 +107,7 @@ _MAP, _MOST = 1.8, 480
     of="NarrowbandDemodulation",
     made_by="Call tribodyn.analysis.narrowband_demodulation(average) and its plot method.",
 )
-def narrowband_demodulation(demodulation: NarrowbandDemodulation) -> Any:
+def narrowband_demodulation(demodulation: NarrowbandDemodulation) -> Sketch:
     """Draw amplitude and phase modulation over the angle of the shaft."""
     size = finer(100.0 * demodulation.amplitude_modulation)
     phase = finer(demodulation.phase_modulation)
@@ -133,7 +133,7 @@ def narrowband_demodulation(demodulation: NarrowbandDemodulation) -> Any:
     of="Cepstrum",
     made_by="Call tribodyn.analysis.cepstrum on a signal and its plot method.",
 )
-def cepstrum(result: Cepstrum, *, shortest: float = 0.0) -> Any:
+def cepstrum(result: Cepstrum, *, shortest: float = 0.0) -> Sketch:
     """Draw the cepstrum over the quefrency.
 
     Parameters
@@ -179,7 +179,7 @@ def _heatmap(x: Array, y: Array, values: Array, title: str, hover: str, top: flo
     of="Kurtogram",
     made_by="Call tribodyn.analysis.kurtogram on a signal and its plot method.",
 )
-def kurtogram(result: Kurtogram) -> Any:
+def kurtogram(result: Kurtogram) -> Sketch:
     """Draw the spectral kurtosis over the frequency and the number of bands."""
     counts = np.unique(result.splits)
     half = float(result.width[0] * result.splits[0])
@@ -221,7 +221,7 @@ def kurtogram(result: Kurtogram) -> Any:
     of="CyclicCoherence",
     made_by="Call tribodyn.analysis.cyclic_coherence on a signal and its plot method.",
 )
-def cyclic_coherence(result: CyclicCoherence) -> Any:
+def cyclic_coherence(result: CyclicCoherence) -> Sketch:
     """Draw the coherence over carrier and modulation, and its mean over the carriers."""
     alpha = result.cyclic_frequency
     groups = np.arange(0, alpha.size, -(-alpha.size // _MOST))
@@ -254,7 +254,7 @@ def cyclic_coherence(result: CyclicCoherence) -> Any:
     made_by="Call tribodyn.measurement.sideband_cursors(orders, carrier, spacing) and its plot "
     "method.",
 )
-def sideband_cursors(cursors: SidebandCursors) -> Any:
+def sideband_cursors(cursors: SidebandCursors) -> Sketch:
     """Draw the orders around a carrier with the cursors of its sidebands."""
     low, high = (cursors.order[k] + s * cursors.spacing for k, s in ((0, -0.7), (-1, 0.7)))
     spectrum, unit = cursors.orders, readable(cursors.unit)

@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
-from tribodyn.drawing import drawing
+from tribodyn.drawing import Sketch, drawing
 from tribodyn.plot.signals.maps import amplitude_label, with_unit
 from tribodyn.plot.theme.colors import MUTED, PINION, TOTAL, WHEEL
 from tribodyn.plot.theme.labels import (
@@ -81,7 +81,7 @@ def _peaks(spectrum: SignalSpectrum, unit: str) -> list[Trace]:
 )
 def signal_spectrum(
     spectrum: SignalSpectrum, *, marks: Iterable[tuple[str, float]] = (), to: float | None = None
-) -> Any:
+) -> Sketch:
     """Draw the lines of a spectrum over the frequency.
 
     Parameters
@@ -124,7 +124,7 @@ def spectrum_title(spectrum: SignalSpectrum) -> str:
     of="Spectrum",
     made_by="Call tribodyn.analysis.amplitude_spectrum(response, signal) and its plot method.",
 )
-def harmonic_spectrum(spectrum: Spectrum) -> Any:
+def harmonic_spectrum(spectrum: Spectrum) -> Sketch:
     """Draw the amplitudes over the mesh harmonics as bars."""
     top = int(np.argmax(spectrum.amplitude))
     unit = readable(spectrum.unit)
@@ -148,7 +148,7 @@ def harmonic_spectrum(spectrum: Spectrum) -> Any:
     made_by="Call tribodyn.analysis.sidebands(signal, rate, carrier, modulation) and its plot "
     "method.",
 )
-def sidebands(lines: Sidebands) -> Any:
+def sidebands(lines: Sidebands) -> Sketch:
     """Draw the amplitudes of the carrier and of its sidebands over the frequency."""
     unit = readable(lines.unit)
     width = 0.25 * lines.modulation
@@ -183,7 +183,7 @@ def _over_speed(speed: Array, values: Array, name: str, unit: str) -> Trace:
     made_by="Call .cut(order) of an order map, or tribodyn.analysis.order_cut, and its plot "
     "method.",
 )
-def order_cut(cut: OrderCut) -> Any:
+def order_cut(cut: OrderCut) -> Sketch:
     """Draw the amplitude of an order over the speed."""
     top = int(np.argmax(cut.amplitude))
     title = (
@@ -200,7 +200,7 @@ def order_cut(cut: OrderCut) -> Any:
     of="OverallLevel",
     made_by="Call tribodyn.analysis.overall_level(run_up) and its plot method.",
 )
-def overall_level(level: OverallLevel) -> Any:
+def overall_level(level: OverallLevel) -> Sketch:
     """Draw the alternating rms over the speed."""
     top = int(np.argmax(level.rms))
     unit = readable(level.unit)

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any, SupportsFloat
+from typing import TYPE_CHECKING, SupportsFloat
 
 import numpy as np
 
 from tribodyn.analysis import OrderMap
-from tribodyn.drawing import drawing
+from tribodyn.drawing import Sketch, drawing
 from tribodyn.plot.theme.colors import GRID, INK, MUTED, PINION, TOTAL, WHEEL
 from tribodyn.plot.theme.labels import (
     axis_label,
@@ -74,7 +74,7 @@ def amplitude_heatmap(x: Array, y: Array, amplitude: Array, unit: str, hover: st
     of="Spectrogram",
     made_by="Call tribodyn.analysis.spectrogram on a signal and its plot method.",
 )
-def spectrogram(result: Spectrogram) -> Any:
+def spectrogram(result: Spectrogram) -> Sketch:
     """Draw amplitudes over time and frequency, and the rms over time."""
     number, block = result.strongest()
     frequency, moment = float(result.frequency[number]), float(result.time[block])
@@ -124,7 +124,7 @@ def _axis(result: OrderMap) -> tuple[Array, str, str]:
     of="OrderMap",
     made_by="Call tribodyn.analysis.order_map on the record of a run-up and its plot method.",
 )
-def order_map(result: OrderMap) -> Any:
+def order_map(result: OrderMap) -> Sketch:
     """Draw amplitudes over orders and speed, and cuts at the strongest orders."""
     place, label, unit = _axis(result)
     orders = strongest_orders(result)
@@ -159,7 +159,7 @@ def order_map(result: OrderMap) -> Any:
     of=("OrderMap", "Spectrogram"),
     made_by="Call tribodyn.analysis.order_map or spectrogram on a signal and draw what it returns.",
 )
-def waterfall(result: OrderMap | Spectrogram) -> Any:
+def waterfall(result: OrderMap | Spectrogram) -> Sketch:
     """Draw the spectra of an order map or a spectrogram as a waterfall."""
     by_order = isinstance(result, OrderMap)
     place = result.order if isinstance(result, OrderMap) else result.frequency

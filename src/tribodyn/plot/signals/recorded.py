@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
-from tribodyn.drawing import drawing
+from tribodyn.drawing import Sketch, drawing
 from tribodyn.measurement import Comparison, OrderSpectrum, Recording, TrackedOrders
 from tribodyn.plot.signals.lines import spectrum_panel, strongest_lines
 from tribodyn.plot.signals.maps import amplitude_label, with_unit
@@ -32,7 +32,7 @@ _DASHES = ("solid", "dash", "dot", "dashdot")
     of="Recording",
     made_by="Call tribodyn.measurement.read(path) and its plot method.",
 )
-def recording(recording: Recording) -> Any:
+def recording(recording: Recording) -> Sketch:
     """Draw the channels over time, one panel each, at most eight."""
     names = list(recording.channels)
     panels = []
@@ -62,7 +62,7 @@ def outline(time: Array, values: Array) -> tuple[Array, Array]:
     of="OrderSpectrum",
     made_by="Call tribodyn.measurement.order_spectrum(...) and its plot method.",
 )
-def order_spectrum(spectrum: OrderSpectrum, *, marks: Iterable[tuple[str, float]] = ()) -> Any:
+def order_spectrum(spectrum: OrderSpectrum, *, marks: Iterable[tuple[str, float]] = ()) -> Sketch:
     """Draw the amplitudes over the orders of a shaft.
 
     Parameters
@@ -93,7 +93,7 @@ def order_spectrum(spectrum: OrderSpectrum, *, marks: Iterable[tuple[str, float]
     of="TrackedOrders",
     made_by="Call tribodyn.measurement.track_orders(...) and its plot method.",
 )
-def tracked_orders(tracked: TrackedOrders) -> Any:
+def tracked_orders(tracked: TrackedOrders) -> Sketch:
     """Draw the amplitudes of the tracked orders and the shaft speed over time."""
     curves: list[Trace] = []
     for number, (order, size) in enumerate(zip(tracked.order, tracked.amplitude, strict=True)):
@@ -122,7 +122,7 @@ def tracked_orders(tracked: TrackedOrders) -> Any:
     of="Comparison",
     made_by="Call tribodyn.measurement.compare(result, recording, channels) and its plot method.",
 )
-def comparison(comparison: Comparison) -> Any:
+def comparison(comparison: Comparison) -> Sketch:
     """Draw the measured spectra with the computed mesh harmonics."""
     panels, ends = [], []
     ratio = comparison.speed_ratio if np.isfinite(comparison.speed_ratio) else 1.0
@@ -209,7 +209,7 @@ def order_panel(lines: OrderSpectrum) -> Panel:
     of="SignalAnalysis",
     made_by=_MADE_BY,
 )
-def signal_analysis(analysis: SignalAnalysis) -> Any:
+def signal_analysis(analysis: SignalAnalysis) -> Sketch:
     """Draw signal, spectrum, envelope spectrum and orders in stacked panels."""
     hertz = axis_label("frequency")
     reach = visible_frequency(analysis)
@@ -242,7 +242,7 @@ def signal_analysis(analysis: SignalAnalysis) -> Any:
     of="SignalAnalysis",
     made_by=_MADE_BY,
 )
-def signal_history(analysis: SignalAnalysis) -> Any:
+def signal_history(analysis: SignalAnalysis) -> Sketch:
     """Draw signal, envelope and speed of the shaft over the time."""
     panels = [_signal_panel(analysis)]
     speed = _speed(analysis)

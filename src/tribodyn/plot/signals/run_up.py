@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from tribodyn.drawing import drawing
+from tribodyn.drawing import Sketch, drawing
 from tribodyn.plot.signals.maps import amplitude_heatmap
 from tribodyn.plot.theme.colors import COLORS, MUTED, TOTAL, WHEEL
 from tribodyn.plot.theme.labels import axis_label, displayed, readable, rounded, significant
@@ -105,7 +105,7 @@ def _title(levels: list[Any], peaks: Sequence[Any], unit: str, factor: float) ->
 )
 def run_up(
     run: RunUp, *, signal: str = "contact_force", orders: Sequence[float] | None = None
-) -> Any:
+) -> Sketch:
     """Draw overall level and order cuts over the speed.
 
     Parameters
@@ -232,7 +232,7 @@ def _on_one_scale(surfaces: list[tuple[float, Trace]]) -> None:
 )
 def run_up_map(
     run: RunUp, *, signal: str = "contact_force", highest_frequency: float | None = None
-) -> Any:
+) -> Sketch:
     """Draw amplitudes over speed and frequency, one panel for each direction.
 
     Parameters

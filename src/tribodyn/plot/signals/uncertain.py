@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from tribodyn.drawing import drawing
+from tribodyn.drawing import Sketch, drawing
 from tribodyn.errors import Argument, InputError, did_you_mean
 from tribodyn.plot.theme.colors import FILLS, GRID, MUTED, PAIR_COLORS, PINION, TOTAL, WHEEL
 from tribodyn.plot.theme.labels import capitalized, label_with, readable, scaled, significant
@@ -34,7 +34,7 @@ _PANELS, _POINTS = 8, 3000
     made_by="Call tribodyn.uncertainty.sobol_indices(function, distributions, seed=1) and its "
     "plot method.",
 )
-def sobol_indices(indices: SobolIndices) -> Any:
+def sobol_indices(indices: SobolIndices) -> Sketch:
     """Draw first-order and total shares of every input as bars, the largest on top."""
     order = np.argsort(indices.total_order)
     names = [str(indices.name[k]) for k in order]
@@ -64,7 +64,7 @@ def sobol_indices(indices: SobolIndices) -> Any:
     of="Band",
     made_by="Call tribodyn.uncertainty.bootstrap_band(samples, seed=1) and its plot method.",
 )
-def band(result: Band, x: Any = None, label: str = "") -> Any:
+def band(result: Band, x: Any = None, label: str = "") -> Sketch:
     """Draw the mean curve with its band.
 
     Parameters
@@ -122,7 +122,7 @@ def band(result: Band, x: Any = None, label: str = "") -> Any:
     made_by="Call tribodyn.operating_data(case) or tribodyn.vibration_data(case) and its plot "
     "method.",
 )
-def data_set(data: DataSet, x: str = "") -> Any:
+def data_set(data: DataSet, x: str = "") -> Sketch:
     """Draw the columns of a table over one of them, at most eight panels.
 
     Parameters
@@ -183,7 +183,7 @@ _KINDS = (("alone", PINION), ("with interactions", PAIR_COLORS[0]))
     made_by='Call tribodyn.sobol_indices(case, "peak_mesh_force", {"operation.torque": '
     '"90 N*m +- 5 %"}, seed=1) and its plot method.',
 )
-def sensitivity(shares: CaseSensitivity) -> Any:
+def sensitivity(shares: CaseSensitivity) -> Sketch:
     """Draw the shares of the inputs as bars, one group per summary figure."""
     figures, inputs = [str(name) for name in shares.figure], [str(key) for key in shares.input]
     orders = (shares.first_order, shares.total_order)
