@@ -143,4 +143,4 @@ def viscosity_from_slope(temperature: float, point: TemperaturePoint, slope: flo
     shifted = viscosity + _SHIFT
     steepness = slope * viscosity * there / (shifted * math.log(shifted))
     ordinate = math.log10(math.log10(shifted)) - steepness * math.log10(temperature / there)
-    return 1e-6 * (10.0**10.0**ordinate - _SHIFT)
+    return float(1e-6 * (10.0**10.0**ordinate - _SHIFT))
