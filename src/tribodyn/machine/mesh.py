@@ -89,11 +89,11 @@ class Mesh:
     period : int
         Mesh cycles after which the force law repeats, more than one where teeth differ: error,
         contacts, frictions and events are then over the phase of all these cycles, in [0, 1).
-    turning : sequence of Turn
-        Errors that turn with a gear, of a motion over phases; one clock needs them in ``error``.
     carrier : str, optional
         Shaft with which the axes of both gears turn: the carrier of planets. The angle is that at
         the position of the carrier for which the machine is computed.
+    turning : sequence of Turn
+        Errors that turn with a gear, of a motion over phases; one clock needs them in ``error``.
 
     Raises
     ------

@@ -116,7 +116,13 @@ from tribodyn.plot.signals.recorded import (
     tracked_orders,
 )
 from tribodyn.plot.signals.run_up import run_up, run_up_map
-from tribodyn.plot.signals.uncertain import band, data_set, sensitivity, sobol_indices
+from tribodyn.plot.signals.uncertain import (
+    band,
+    data_set,
+    failure_probability,
+    sensitivity,
+    sobol_indices,
+)
 
 __all__ = [
     "FIGURES",
@@ -145,6 +151,7 @@ __all__ = [
     "ease_off",
     "ensemble",
     "face_maps",
+    "failure_probability",
     "film",
     "film_along_path",
     "film_over_operation",

@@ -140,7 +140,8 @@ class MeshRating:
         )
         for (name, gear, other), single in zip(pairs, ("Z_B", "Z_D"), strict=True):
             point = single[-1] if gear.factors[single] > 1.0 else "C"
-            for mode, where in (("pitting", f"at {point}"), ("bending", "root")):
+            places = {"pitting": f"at {point}", "bending": "root"}
+            for mode, where in places.items():
                 key, required = f"{mode}_safety", getattr(needed, f"{mode}_safety")
                 values = getattr(gear, key), required, getattr(other, key)
                 yield Verdict(mode, name, self.load, *values, where)

@@ -66,9 +66,6 @@ class Contact:
         phases, in one period of each of them.
     offset : float
         Mesh phase of this contact when the clock starts, in [0, 1).
-    period : int
-        Mesh cycles after which the entries repeat, more than one where teeth differ: they are then
-        functions of the phase of all of these, which ``cycles`` counts.
     ramp_stiffness, ramp_gap : (m,) array or function
         Ramps of a force law: stiffnesses that are added beyond further half dead zones [N/m], [m];
         functions return (p, m). Harmonic balance and the modal engine take them.
@@ -79,6 +76,9 @@ class Contact:
         For each turning error, the turns of its shaft in one period of each phase.
     name : str
         Name of the mesh or support in messages; its number by default.
+    period : int
+        Mesh cycles after which the entries repeat, more than one where teeth differ: they are then
+        functions of the phase of all of these, which ``cycles`` counts.
 
     Raises
     ------

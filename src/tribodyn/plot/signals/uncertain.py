@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -15,7 +16,7 @@ from tribodyn.plot.theme.style import ABOVE, Trace, axis, bars, between, line, m
 from tribodyn.types import Array
 
 if TYPE_CHECKING:
-    from tribodyn.study import CaseSensitivity, DataSet
+    from tribodyn.study import CaseSensitivity, DataSet, FailureProbability
     from tribodyn.uncertainty import Band, SobolIndices
 
 #: Axis of shares of the variance.
@@ -36,25 +37,50 @@ _PANELS, _POINTS = 8, 3000
 )
 def sobol_indices(indices: SobolIndices) -> Sketch:
     """Draw first-order and total shares of every input as bars, the largest on top."""
-    order = np.argsort(indices.total_order)
-    names = [str(indices.name[k]) for k in order]
-    traces = [
-        bars(100.0 * values[order], names, label, color,
-             f"%{{y}}, {label}: %{{x:.3g}} %<extra></extra>", orientation="h")
-        for label, values, color in (
-            ("total order", indices.total_order, WHEEL),
-            ("first order", indices.first_order, PINION),
-        )
-    ]  # fmt: skip
-    top = order[-1]
+    top = int(np.argsort(indices.total_order)[-1])
     title = (
         f"{significant(100.0 * float(indices.first_order[top]))} % of the variance comes from "
         f"{indices.name[top]} alone, {significant(100.0 * float(indices.total_order[top]))} % "
         "with its interactions"
     )
+    columns = {"total order": indices.total_order, "first order": indices.first_order}
+    return _paired_bars(title, indices.name, columns, _SHARE, "Input")
+
+
+def _paired_bars(
+    title: str, names: Any, columns: Mapping[str, Array], share: Trace, label: str
+) -> Sketch:
+    """Two shares of each name as bars, the largest on top."""
+    order = np.argsort(next(iter(columns.values())))
+    sorted_names = [str(names[k]) for k in order]
+    traces = [
+        bars(100.0 * values[order], sorted_names, name, color,
+             f"%{{y}}, {name}: %{{x:.3g}} %<extra></extra>", orientation="h")
+        for (name, values), color in zip(columns.items(), (WHEEL, PINION), strict=True)
+    ]  # fmt: skip
     legend = {"traceorder": "reversed", "x": 1.01, "xanchor": "left", "y": 1.0}
-    layout: Trace = {"height": 190 + 52 * len(names), "barmode": "group", "legend": legend}
-    return plane_figure(title, traces, _SHARE, axis("Input", ticks=""), **layout)
+    layout: Trace = {"height": 190 + 52 * len(order), "barmode": "group", "legend": legend}
+    return plane_figure(title, traces, share, axis(label, ticks=""), **layout)
+
+
+@drawing(
+    heading="Probability of failure",
+    caption="Share of the variants in which a safety or a life falls below what is required, and "
+    "the probability of this by the lognormal distribution through all variants.",
+    of="FailureProbability",
+    made_by="Call tribodyn.study.failure_probability(case, distributions, seed=1) and its plot "
+    "method.",
+)
+def failure_probability(result: FailureProbability) -> Sketch:
+    """Draw share and probability of every safety and life as bars, the largest on top."""
+    top = int(np.argmax(result.probability))
+    title = (
+        f"{result.figure[top]} falls below what is required with "
+        f"{significant(100.0 * float(result.probability[top]))} %"
+    )
+    share = axis("Below what is required [%]", rangemode="tozero")
+    columns = {"of the distribution": result.probability, "of the variants": result.share}
+    return _paired_bars(title, result.figure, columns, share, "Safety or life")
 
 
 @drawing(
