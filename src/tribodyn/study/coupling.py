@@ -255,8 +255,8 @@ def load_of_torque(mesh: MeshTable, gear: str) -> Array:
 
 def _levers(mesh: MeshTable, gear: str) -> tuple[Array, Array]:
     """Levers of the teeth and of their friction about the axis of a gear."""
-    both = np.atleast_2d(mesh.direction), mesh.friction
-    pushes, rubs = (column_of(each, f"{gear}_theta") for each in both)
+    directions = np.atleast_2d(mesh.direction), mesh.friction
+    pushes, rubs = (column_of(each, f"{gear}_theta") for each in directions)
     return pushes, rubs
 
 

@@ -25,11 +25,11 @@ def _viscosities(data: LubricantData) -> tuple[float, float | None]:
     oils = [lubricant(data, temperature) for temperature in _REFERENCE]
     if data.name is not None or data.density_at_15 is not None:
         return oils[0].kinematic_viscosity, oils[1].kinematic_viscosity
-    fall, there = data.temperature_viscosity_coefficient, data.temperature
-    if fall is None or there is None:  # stated at 40 degC
+    fall, reference = data.temperature_viscosity_coefficient, data.temperature
+    if fall is None or reference is None:  # stated at 40 degC
         return oils[0].kinematic_viscosity, None
     slope = fall - _DENSITY_FALL / oils[0].density
-    point = there, oils[0].kinematic_viscosity
+    point = reference, oils[0].kinematic_viscosity
     cold, warm = (viscosity_from_slope(temperature, point, slope) for temperature in _REFERENCE)
     return cold, warm
 

@@ -156,8 +156,8 @@ def _factors(rating: MeshRating) -> list[tuple[str, ...]]:
     standard = rating.standard
     rows = [_factor(name, factor) for name, factor in standard.factors.items()]
     for gear, each in zip(rating.gears, standard.gears.values(), strict=True):
-        own = {name: f for name, f in each.factors.items() if standard.factors.get(name) is not f}
-        rows += [_factor(f"{name} of {gear}", factor) for name, factor in own.items()]
+        extra = {name: f for name, f in each.factors.items() if standard.factors.get(name) is not f}
+        rows += [_factor(f"{name} of {gear}", factor) for name, factor in extra.items()]
     computed = rating.computed
     rows += [
         (f"{name} computed", f"{computed.factors[name]:.6g}", "", "motion and load of the run", "")

@@ -38,8 +38,8 @@ def changed_tables(
         by = by or "replace:"
         raise InputError([replace(p, where=f"{by} {p.where}") for p in problems])
     dropped = _dropped_options(root, UserInput(data), changes)
-    kept = {key: text for key, text in spread.items() if key not in dropped}
-    tables = with_values(data, {**kept, **dict.fromkeys(dropped), **changes})
+    spread_values = {key: text for key, text in spread.items() if key not in dropped}
+    tables = with_values(data, {**spread_values, **dict.fromkeys(dropped), **changes})
     if isinstance(marks := tables.get("assumed"), Mapping):
         stale = {*changes, *dropped}
         tables["assumed"] = {key: why for key, why in marks.items() if key not in stale}
@@ -100,8 +100,8 @@ def _missing_parts(
     """Report keys of parts that do not exist, and that the changes do not give as a whole."""
     for key in changes:
         group, name, inner = (*key.split(".", 2), "", "")[:3]
-        section, known = section_at((group,), root), table_in(data, group)
-        if not inner or name in known or not section or not issubclass(section, NamedTables):
+        section, parts = section_at((group,), root), table_in(data, group)
+        if not inner or name in parts or not section or not issubclass(section, NamedTables):
             continue
         part = section.fields["NAME"]
         assert isinstance(part, Table)
@@ -111,8 +111,8 @@ def _missing_parts(
             what = f'there is no {part.meaning.partition(" ")[2]} "{name}"'
             remedy = "Correct the name"
             remedy += f", or give also {', '.join(absent)} of a new one" if absent else ""
-            why = f"Known: {', '.join(known) or 'none'}"
-            yield Problem(what, key, why, did_you_mean(name, list(known), remedy))
+            why = f"Known: {', '.join(parts) or 'none'}"
+            yield Problem(what, key, why, did_you_mean(name, list(parts), remedy))
 
 
 def _dropped_options(

@@ -257,10 +257,10 @@ def _of_blank(name: str) -> Option:
     default = inspect.signature(hypoid_blank).parameters[name].default
     (low, high, unit), inputs = RANGES[name], default is not inspect.Parameter.empty
     display_unit, example = _SHOWN[unit]
-    words: dict[str, Any] = {"unit": unit, "display_unit": display_unit, "example": example}
+    units: dict[str, Any] = {"unit": unit, "display_unit": display_unit, "example": example}
     basis, start = _TAPER if default is None else "", default if inputs else REQUIRED
     why = "designs in use lie well within"
-    option: Option = number(start, low, high, why, meaning=MEANINGS[name], basis=basis, **words)
+    option: Option = number(start, low, high, why, meaning=MEANINGS[name], basis=basis, **units)
     return option
 
 

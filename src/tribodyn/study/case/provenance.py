@@ -294,8 +294,8 @@ def _bored(case: CaseData, default: Any) -> Any:
     if case.gears.kind != "spur":
         return default
     gears = case.gears.pinion, case.gears.wheel
-    held = (gear.bore_diameter or gear.tooth_count < 0 for gear in gears)
-    return "rim" if default == "bore" and not all(held) else default
+    supported = (gear.bore_diameter or gear.tooth_count < 0 for gear in gears)
+    return "rim" if default == "bore" and not all(supported) else default
 
 
 def effective_values(case: CaseData) -> dict[str, Any]:
@@ -306,8 +306,8 @@ def effective_values(case: CaseData) -> dict[str, Any]:
         values["film.model"] = "none"
     if case.stiffness.reference is None:
         values["stiffness.reference"] = _bored(case, values["stiffness.reference"])
-    both = [f"dynamics.{name}" for name in ("mesh_damping", "bearing_damping")]
-    values |= {f"{key}_ratio": None for key in both if values[key] is not None}
+    dampings = [f"dynamics.{name}" for name in ("mesh_damping", "bearing_damping")]
+    values |= {f"{key}_ratio": None for key in dampings if values[key] is not None}
     values["dynamics.mesh_law"] = mesh_law_of(case)
     if case.solver.method == "transient":
         values["solver.cycles"] = values["solver.cycles"] or _TRANSIENT_CYCLES

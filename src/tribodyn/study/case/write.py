@@ -192,13 +192,13 @@ def case_rows(case: BaseCase) -> list[tuple[str, str, str]]:
     values = {key: derived.get(key, value) for key, value in effective(case).items()}
     specs = {key: case.option_of(key) for key in values}
     return [
-        (key, _shown(specs[key], value), origins.get(key, "").partition(":")[0])
+        (key, _value_text(specs[key], value), origins.get(key, "").partition(":")[0])
         for key, value in values.items()
         if value is not None and key != "title"
     ]
 
 
-def _shown(spec: Option | None, value: Any) -> str:
+def _value_text(spec: Option | None, value: Any) -> str:
     if spec is None or spec.kind in RAW_KINDS:
         return written(value).strip('"')
     return spec.show(value)

@@ -106,8 +106,8 @@ def pulse(frequency: Array, force: float, duration: float) -> ComplexArray:
     """Spectrum of half a sine of a force [N*s]."""
     turns = frequency * duration
     offset = 1.0 - (2.0 * turns) ** 2
-    near = np.abs(offset) < 1e-9
-    size = np.where(near, 0.25 * np.pi, np.cos(np.pi * turns) / np.where(near, 1.0, offset))
+    pole = np.abs(offset) < 1e-9
+    size = np.where(pole, 0.25 * np.pi, np.cos(np.pi * turns) / np.where(pole, 1.0, offset))
     return np.asarray(2.0 / np.pi * force * duration * size * np.exp(-1j * np.pi * turns))
 
 

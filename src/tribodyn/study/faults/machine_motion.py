@@ -55,14 +55,14 @@ _SHORTER = (
 )
 
 
-def rehearse_faults(case: MachineCase, rest: Balanced) -> list[str]:
+def rehearse_faults(case: MachineCase, state: Balanced) -> list[str]:
     """Costs of the motions over phases; refuse faulty teeth that cannot run, and too much."""
     costs = check_motion(case)
     teeth = {n: f for n, f in case.faults.items() if f.gear and f.kind != "crack"}  # elements
     if teeth:
         cracked = [f"faults.{name}" for name in case.faults if name not in teeth]
         plain = case.replace(dict.fromkeys(cracked)) if cracked else case
-        turning_machine(plain, rest, phases=fault_cost(case, rest.machine) is not None)
+        turning_machine(plain, state, phases=fault_cost(case, state.machine) is not None)
     return costs
 
 

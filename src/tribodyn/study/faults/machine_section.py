@@ -194,9 +194,9 @@ def bearing_impacts(case: MachineCase, fault: PartFaultTable) -> BearingForce:
     }
     if rolling is not None:
         geometry = (rolling.elements, rolling.element_diameter, rolling.pitch)
-        known = {**dict(zip(_GEOMETRY, geometry, strict=True))}
-        known["contact_angle"] = float(getattr(rolling, "contact_angle", 0.0))
-        values = {k: known.get(k) if v is None else v for k, v in values.items()}
+        bearing_data = {**dict(zip(_GEOMETRY, geometry, strict=True))}
+        bearing_data["contact_angle"] = float(getattr(rolling, "contact_angle", 0.0))
+        values = {k: bearing_data.get(k) if v is None else v for k, v in values.items()}
     for key in _GEOMETRY:
         if values[key] is None:
             why = f"Bearing {name} has no type, whose geometry states it"

@@ -134,13 +134,13 @@ class MachinePhaseMotion(MachineTurningMotion):
             amplitude = (rate**2 * position) @ row
         elif place.quantity == "force":
             still = np.zeros(position.shape[1])
-            rest = structure.bearing_load(place.part, still, still)
+            preload = structure.bearing_load(place.part, still, still)
             parts = [
-                structure.bearing_load(place.part, get(position), get(rate * position)) - rest
+                structure.bearing_load(place.part, get(position), get(rate * position)) - preload
                 for get in (np.real, np.imag)
             ]
             loads = parts[0] + 1j * parts[1]
-            loads[0] += rest
+            loads[0] += preload
             amplitude = loads[:, :3] @ place.direction
             if place.part in self.seats:
                 force = SensedLines(lines.frequency, amplitude, lines.numbers)
@@ -180,12 +180,12 @@ class MachinePhaseMotion(MachineTurningMotion):
         at = turn * np.arange(_PASSING) / _PASSING
         weights = np.fft.fft(passing_weights(planetary_angles(parts), at, *self.ring), axis=0)
         weights /= _PASSING
-        kept = np.abs(weights).max(axis=1) > _LEAST * np.abs(weights).max()
-        count = np.rint(np.fft.fftfreq(_PASSING) * _PASSING).astype(np.int64)[kept]
+        significant = np.abs(weights).max(axis=1) > _LEAST * np.abs(weights).max()
+        count = np.rint(np.fft.fftfreq(_PASSING) * _PASSING).astype(np.int64)[significant]
         force = np.stack(
             [lines.amplitude[:, self._contacts_of(name)].sum(axis=1) for name in names], axis=1
         )
-        amplitude = (force @ weights[kept].T).reshape(-1)
+        amplitude = (force @ weights[significant].T).reshape(-1)
         frequency = np.add.outer(lines.frequency, rate * count).reshape(-1)
         numbers = np.concatenate(
             [np.repeat(lines.numbers, count.size, axis=0),

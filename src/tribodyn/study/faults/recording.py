@@ -62,7 +62,7 @@ def recording_of(
         raise InputError(what, "argument duration", why, "Change the duration or the rate")
     rng = np.random.default_rng(scatter.seed)
     time = np.arange(count) / sample_rate
-    reached = _reached(motion, time, scatter.speed_fluctuation, rng)
+    motion_time = _motion_time(motion, time, scatter.speed_fluctuation, rng)
     channels: dict[str, Array] = {}
     units: dict[str, str] = {}
     for sensor in sensors:
@@ -70,42 +70,42 @@ def recording_of(
         if key not in motion.splines:
             motion.splines[key] = _passed(motion, sensor, sample_rate)
         even = scatter.speed_fluctuation == 0.0
-        samples = _sampled(motion.splines[key], sample_rate, reached, even=even)
+        samples = _sampled(motion.splines[key], sample_rate, motion_time, even=even)
         for number, defect in enumerate(defects):
             draw = scatter.seed * 1009 + number
             samples = samples + motion.impacts(sensor, defect, time, draw)
         channels[sensor] = samples + scatter.noise * rng.standard_normal(count)
         units[sensor] = motion.places.place(sensor).unit
-    ahead = motion.lead_at(reached) / motion.mesh_frequency
-    turns = (reached + ahead) * motion.rotation_frequency(motion.tacho)
+    ahead = motion.lead_at(motion_time) / motion.mesh_frequency
+    turns = (motion_time + ahead) * motion.rotation_frequency(motion.tacho)
     channels["tacho"] = _tacho(turns, scatter.tacho_jitter, rng)
     units["tacho"] = "V"
     return Recording(channels, sample_rate, units)
 
 
-def _reached(
+def _motion_time(
     motion: PeriodicMotion, time: Array, fluctuation: float, rng: np.random.Generator
 ) -> Array:
     """Times of the motion that are reached at each time; the speed wanders slowly [s]."""
-    reached = time + motion.period * rng.random()
+    motion_time = time + motion.period * rng.random()
     if fluctuation == 0.0:
-        return np.asarray(reached)
+        return np.asarray(motion_time)
     # A few slow waves with random phases, shorter than ten turns of the pinion.
     slow = motion.rotation_frequency(motion.tacho) * (rng.random(4) * 0.2 + 0.05)
     phases = 2.0 * np.pi * rng.random(4)
     size = fluctuation * np.sqrt(2.0 / slow.size)  # rms of the speed over its mean
     for frequency, phase in zip(slow, phases, strict=True):
         omega = 2.0 * np.pi * frequency
-        reached = reached + size / omega * (np.sin(omega * time + phase) - np.sin(phase))
-    return np.asarray(reached)
+        motion_time = motion_time + size / omega * (np.sin(omega * time + phase) - np.sin(phase))
+    return np.asarray(motion_time)
 
 
 def _passed(motion: PeriodicMotion, sensor: str, rate: float) -> tuple[Array, ComplexArray]:
     """Lines of a signal that half the rate can hold."""
     frequency, lines = motion.harmonics(sensor)
     lines = lines * anti_alias(frequency / rate)
-    held = np.abs(lines) > _LEAST * np.abs(lines).max(initial=0.0)
-    return frequency[held], lines[held]
+    significant = np.abs(lines) > _LEAST * np.abs(lines).max(initial=0.0)
+    return frequency[significant], lines[significant]
 
 
 def _sampled(lines: tuple[Array, ComplexArray], rate: float, time: Array, *, even: bool) -> Array:

@@ -83,8 +83,8 @@ class PairSensors:
         """Coordinate or mesh of a signal, whose attribute is also accepted."""
         by_name = self._by_name
         if sensor not in by_name and sensor not in by_name.values():
-            alike = [a if a == b else f"{b} or {a}" for a, b in by_name.items()]
-            raise unlisted_sensor(sensor, alike)
+            sensor_names = [a if a == b else f"{b} or {a}" for a, b in by_name.items()]
+            raise unlisted_sensor(sensor, sensor_names)
         name = by_name.get(sensor, sensor)
         if name in self.coordinates:
             return SensorPlace("acceleration", name, "rad/s^2" if "_theta" in name else "m/s^2")

@@ -130,9 +130,9 @@ def even_samples(phase: Array, count: int) -> Callable[[Array], Array]:
         steps = 0.5 * (rows[1:] + rows[:-1]) * widths[:, None]
         integral = np.concatenate((np.zeros((1, rows.shape[1])), np.cumsum(steps, axis=0)))
         change = (rows[before + 1] - rows[before]) * part[:, None]
-        reached = (rows[before] + 0.5 * change) * (part * widths[before])[:, None]
+        remainder = (rows[before] + 0.5 * change) * (part * widths[before])[:, None]
         period = turned[:, None] * integral[-2]  # from the first to the last but one place
-        means = np.diff(integral[before] + reached - period, axis=0) * count
+        means = np.diff(integral[before] + remainder - period, axis=0) * count
         return np.asarray(means.reshape(count, *values.shape[1:]))
 
     return sampled

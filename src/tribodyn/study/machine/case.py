@@ -168,7 +168,7 @@ class MachineCase(PartsBase):
             for name in self.meshes_with_teeth:
                 inputs_under(self, name, self.operating_point)
         except InputError as error:
-            raise InputError(self._placed(error)) from None
+            raise InputError(self._located(error)) from None
         if problems := impossible_faults(self):
             raise InputError(origin.place(problems))
         if problems := self._spread_faults():
@@ -259,7 +259,7 @@ class MachineCase(PartsBase):
         if problems:
             raise InputError(self.source.place(problems))
 
-    def _placed(self, error: TribodynError) -> list[Problem]:
+    def _located(self, error: TribodynError) -> list[Problem]:
         """Problems of a machine with the lines of its parts."""
         source = self.source
         return [
@@ -360,8 +360,8 @@ class MachineCase(PartsBase):
         """Machine under a load, without force laws of teeth that are computed."""
         key = load.speed, load.torque
         if key not in self._machines:
-            alike = (m for k, m in self._machines.items() if min(np.multiply(k, key)) > 0.0)
-            if (machine := next(alike, None)) is None:
+            same_sense = (m for k, m in self._machines.items() if min(np.multiply(k, key)) > 0.0)
+            if (machine := next(same_sense, None)) is None:
                 machine = self._checked_machine(load)
             self._machines[key] = machine._with(Operation(*self.ends, *key))
         return self._machines[key]

@@ -84,5 +84,5 @@ def _load_cases(
             share = read_share(f"{key}.share", table.share, problems)
         if share is not None:
             stated = {"speed": table.speed, "torque": table.torque}
-            own = {name: value for name, value in stated.items() if value is not None}
-            yield replace(point, name=table.name or f"load case {place + 1}", share=share, **own)
+            values = {name: value for name, value in stated.items() if value is not None}
+            yield replace(point, name=table.name or f"load case {place + 1}", share=share, **values)

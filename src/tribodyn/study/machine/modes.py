@@ -191,8 +191,8 @@ def excited_share(modes: MachineModes, orders: Iterable[str]) -> Array:
         kind, _, name = order.partition(" ")
         if order in stages:
             letters = {*order.rpartition("(")[2]}
-            reached = [bool({*_TYPES[each]} & letters) for each in types[stages[order][0]]]
-            columns.append(np.array(reached, dtype=float))
+            excited = [bool({*_TYPES[each]} & letters) for each in types[stages[order][0]]]
+            columns.append(np.array(excited, dtype=float))
         elif kind == "mesh":
             part = f"meshes.{name.rpartition(' x ')[0]}"
             columns.append(modes.strain_share[:, modes.parts.index(part)])
@@ -261,9 +261,9 @@ def axial_notes(modes: MachineModes) -> list[str]:
             continue
         parts = modes.structure.machine.bearings.items()
         stiffness = {n: b.stiffness_matrix[0, 0] for n, b in parts if b.shaft == shaft}
-        held = [(n, float(f"{1e-6 * k:.3g}")) for n, k in stiffness.items() if k > 0.0]
+        supports = [(n, float(f"{1e-6 * k:.3g}")) for n, k in stiffness.items() if k > 0.0]
         free = [name for name, k in stiffness.items() if not k > 0.0]
-        springs = ", ".join(f"{name} with {k:g} N/um" for name, k in held) or "no bearing"
+        springs = ", ".join(f"{name} with {k:g} N/um" for name, k in supports) or "no bearing"
         mode = f"Mode {number + 1} ({modes.frequency[number]:.4g} Hz)"
         text = f"{mode} moves shaft {shaft} along its axis; {springs} holds it at this load"
         notes.append(f"{text}, {', '.join(free)} not at all." if free else f"{text}.")

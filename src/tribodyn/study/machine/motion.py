@@ -86,9 +86,9 @@ def line_numbers(turns: Array, orders: Sequence[int]) -> dict[int, tuple[int, ..
     sums, sizes = others @ turns, np.abs(others).sum(axis=1)
     numbers = {}
     for order in orders:
-        number, rest = np.divmod(order - sums, turns[first])
-        place = int(np.argmin(np.where(rest == 0, sizes + np.abs(number), 2**40)))
-        if rest[place] == 0:
+        number, remainder = np.divmod(order - sums, turns[first])
+        place = int(np.argmin(np.where(remainder == 0, sizes + np.abs(number), 2**40)))
+        if remainder[place] == 0:
             line = others[place].tolist()
             line[first] = int(number[place])
             numbers[order] = tuple(line)
@@ -108,12 +108,12 @@ def line_cause(
     """Cause of a line in words: multiples of meshes, and of what turns with the phases."""
     for name, cycles in meshes.items():
         axis = int(np.argmax(np.abs(cycles)))
-        count, rest = divmod(numbers[axis], cycles[axis])
-        if not rest and tuple(count * each for each in cycles) == tuple(numbers):
+        count, remainder = divmod(numbers[axis], cycles[axis])
+        if not remainder and tuple(count * each for each in cycles) == tuple(numbers):
             return f"{count} x {name}"
     terms: dict[str, Fraction] = {}
-    for axis, whole in enumerate(numbers):
-        number = Fraction(whole)
+    for axis, cycle_count in enumerate(numbers):
+        number = Fraction(cycle_count)
         followers = [(name, cycles[axis]) for name, cycles in meshes.items() if cycles[axis]]
         unit = units[axis] if units else Unit("", Fraction(1))
         if followers:

@@ -213,8 +213,8 @@ def teeth_under(case: MachineCase, mesh: str, load: LoadCase) -> TeethUnder:
 
 def temperatures_of(load: LoadCase) -> dict[str, float]:
     """Temperatures of oil and gears that a load has for itself [K]."""
-    known = {name: getattr(load, name) for name in ("temperature", "gear_temperature")}
-    return {name: value for name, value in known.items() if value is not None}
+    temperatures = {name: getattr(load, name) for name in ("temperature", "gear_temperature")}
+    return {name: value for name, value in temperatures.items() if value is not None}
 
 
 def read_pair(
@@ -313,8 +313,8 @@ def read_blanks(
             continue  # others are reported where they are read
         try:
             blanks[name] = blank = blank_of(mesh, (teeth[0], teeth[1]))
-            both = zip(mesh.gears, _ROLES, strict=True)
-            widths |= {gear: getattr(blank, f"face_width_{role}") for gear, role in both}
+            gear_roles = zip(mesh.gears, _ROLES, strict=True)
+            widths |= {gear: getattr(blank, f"face_width_{role}") for gear, role in gear_roles}
         except InputError as error:
             for problem in error.problems:
                 place = problem.where.name if isinstance(problem.where, Argument) else "gears"

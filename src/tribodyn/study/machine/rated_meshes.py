@@ -58,13 +58,13 @@ def rated_figures(case: MachineCase, load: LoadResult) -> dict[str, float]:
 def rated_meshes(case: MachineCase, loads: Loads) -> Iterator[RatedMesh]:
     """Each group of equal meshes with computed teeth under each load, if there is ``[rating]``."""
     for name, load in loads.items():
-        seen = set()
+        rated_groups = set()
         for mesh in case.meshes_with_teeth:
             under = teeth_under(case, mesh, load.load)
             pair, _ = read_teeth(case, mesh, under)
-            if pair.rating is None or (group := case.tooth_group(mesh)) in seen:
+            if pair.rating is None or (group := case.tooth_group(mesh)) in rated_groups:
                 continue
-            seen.add(group)
+            rated_groups.add(group)
             yield _rated_mesh(case, load, (name, mesh), pair, under.names)
 
 

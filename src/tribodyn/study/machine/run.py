@@ -121,28 +121,28 @@ def run_load(
     start: Response | None = None,
 ) -> LoadResult:
     """Compute a machine under one load; its motion is searched from that of a similar one."""
-    rest = balanced_machine(case, load, progress)
-    of_meshes += rest.warnings
+    state = balanced_machine(case, load, progress)
+    of_meshes += state.warnings
     progress.start(f"Motion: {load.name}")
-    structure = structure_of(case, rest.static.linearized())
+    structure = structure_of(case, state.static.linearized())
     system = system_of(structure, phases=over_phases(case.solver, structure.machine))
     response = steady_motion(structure, system, start)
     progress.finish()
     motion = machine_motion(structure, response)
     return LoadResult(
-        *(rest.load, structure, rest.static, rest.tables, rest.misalignment),
-        *(system, motion, response, rest.heat),
+        *(state.load, structure, state.static, state.tables, state.misalignment),
+        *(system, motion, response, state.heat),
     )
 
 
 def rehearse_machine(case: MachineCase) -> Balanced:
     """Raise the input errors of teeth and balance without computing films and motion."""
     with collected(), single_blas_thread():
-        rest, *_ = (
+        state, *_ = (
             balanced_machine(case, load, rehearsal=True)
             for load in (case.operating_point, *case.load_cases)
         )
-    return rest
+    return state
 
 
 def balanced_machine(
@@ -153,34 +153,34 @@ def balanced_machine(
         return _settled(case, load, progress, rehearsal=True)
     if case.heat is None:
         return _coupled(case, load, progress)
-    rest: Balanced | None = None
+    state: Balanced | None = None
 
     def solve(to: Temperatures) -> tuple[Balanced, float]:
-        nonlocal rest
+        nonlocal state
         warm = replace(load, temperature=to.oil, gear_temperature=to.gears)
-        rest = _coupled(case, warm, progress, rest)
-        return rest, sum(power_with_friction(rest.static.machine, rest.tables)[1].values())
+        state = _coupled(case, warm, progress, state)
+        return state, sum(power_with_friction(state.static.machine, state.tables)[1].values())
 
     pairs = [read_teeth(case, n, teeth_under(case, n, load))[0] for n in case.meshes_with_teeth]
     try:
         oils = [pair.lubricant for pair in pairs if pair.lubricant is not None]
-        warm_rest, at, heat = balanced(case.heat, oils, solve)
+        warm_state, at, heat = balanced(case.heat, oils, solve)
     except ComputationError as error:
-        raise ComputationError(case._placed(error)) from None
+        raise ComputationError(case._located(error)) from None
     warm = replace(load, temperature=at.oil, gear_temperature=at.gears)
-    return warm_rest._replace(load=warm, heat=heat)
+    return warm_state._replace(load=warm, heat=heat)
 
 
 def _coupled(
     case: MachineCase, load: LoadCase, progress: Progress, start: Balanced | None = None
 ) -> Balanced:
     """Static balance of a machine with teeth that agree with their load, where the case says so."""
-    rest, solver = _settled(case, load, progress, start=start), case.solver
+    state, solver = _settled(case, load, progress, start=start), case.solver
     if solver.coupling == "none":
-        return rest
-    meshes = _Meshes(case, load, progress, rest)
-    meshes, tables, *_ = settled(meshes, rest.tables, solver.coupling, solver.coupling_tolerance)
-    return meshes.rest._replace(static=meshes.balance(tables), tables=dict(tables))
+        return state
+    meshes = _Meshes(case, load, progress, state)
+    meshes, tables, *_ = settled(meshes, state.tables, solver.coupling, solver.coupling_tolerance)
+    return meshes.state._replace(static=meshes.balance(tables), tables=dict(tables))
 
 
 @dataclass(frozen=True)
@@ -190,21 +190,21 @@ class _Meshes:
     case: MachineCase
     load: LoadCase
     progress: Progress
-    rest: Balanced  #: with the teeth under the nominal load
+    state: Balanced  #: with the teeth under the nominal load
 
     @cached_property
     def inputs(self) -> dict[str, MeshInputs]:
         """What the teeth are computed from."""
-        misaligned = self.rest.misalignment.items()
+        misaligned = self.state.misalignment.items()
         return {name: inputs_under(self.case, name, self.load, m) for name, m in misaligned}
 
     def balance(self, tables: Mapping[str, MeshTable]) -> StaticBalance:
         """Static balance with the force laws of mesh tables."""
-        return _balance(self.case, self.load, tables, self.rest.misalignment)
+        return _balance(self.case, self.load, tables, self.state.misalignment)
 
     def required(self, tables: Mapping[str, MeshTable]) -> dict[str, Array]:
         """Forces that hold the torques which reach the meshes, less the friction before them."""
-        machine = self.rest.static.machine
+        machine = self.state.static.machine
         flow, nominal = power_with_friction(machine, tables)[0].meshes, machine.kinematics.meshes
         return {
             name: flow[name].power
@@ -215,18 +215,18 @@ class _Meshes:
 
     def following(self, tables: Mapping[str, MeshTable]) -> tuple[_Meshes, float]:
         """The same with the misalignments by these teeth, and their change."""
-        static, before = self.balance(tables), self.rest.misalignment
+        static, before = self.balance(tables), self.state.misalignment
         change, after = _moved(before, static)
         if change <= _SETTLED:
             return self, change
         teeth = _teeth(self.case, self.load, after, False, self.progress)
         nominal = {name: table for name, (table, _, _) in teeth.items()}
-        rest = self.rest._replace(static=static, tables=nominal, misalignment=after)
-        return replace(self, rest=rest), change
+        state = self.state._replace(static=static, tables=nominal, misalignment=after)
+        return replace(self, state=state), change
 
     def under(self, loading: Mapping[str, Array]) -> dict[str, MeshTable]:
         """Teeth under given forces; planets with equal teeth and forces share them."""
-        nominal = self.rest.tables
+        nominal = self.state.tables
         keys = {n: (id(nominal[n]), of.round(12).tobytes()) for n, of in loading.items()}
         first = {key: name for name, key in reversed(keys.items())}
 
@@ -428,7 +428,7 @@ def _static(
     try:
         return static_balance(machine, laws=face_laws(machine, slopes))
     except (InputError, ComputationError) as error:
-        raise type(error)(case._placed(error)) from None
+        raise type(error)(case._located(error)) from None
 
 
 def structure_of(case: MachineCase, machine: Machine) -> MachineStructure:

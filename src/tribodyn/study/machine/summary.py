@@ -36,8 +36,8 @@ def summary_of(result: LoadResult) -> Figures:
         for name, figures in parts.items():
             prefix = f"{group}.{name}" if name else group
             values |= {f"{prefix}.{key}": value for key, value in figures.items()}
-    known = {key: float(v) for key, v in values.items() if v is not None and np.isfinite(v)}
-    return Figures(without_rounding(known))
+    finite = {key: float(v) for key, v in values.items() if v is not None and np.isfinite(v)}
+    return Figures(without_rounding(finite))
 
 
 def without_rounding(figures: Mapping[str, float]) -> dict[str, float]:

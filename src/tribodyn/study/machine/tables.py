@@ -345,8 +345,8 @@ class CouplingTable(Section):
     def keys_for(cls, data: Mapping[str, Any]) -> Mapping[str, Option | Table]:
         """Keys of a coupling of its model, of an unknown one those of a linear one."""
         model = COUPLINGS.all().get(str(data.get("model", "linear")))
-        own = {name: cls.fields[name] for name in ("shafts", "model")}
-        return cls.fields if model is None else {**own, **model.case_options}
+        common = {name: cls.fields[name] for name in ("shafts", "model")}
+        return cls.fields if model is None else {**common, **model.case_options}
 
 
 class MeshDynamics(Section):

@@ -166,8 +166,8 @@ def _planets(data: Mapping[str, Any]) -> KeyedProblems:
         for role in ("sun", "ring", "carrier"):
             member = str(body.get(role))
             shaft = str(_tables(data, "gears").get(member, {}).get("shaft", member))
-            held = [b for b in _tables(data, "bearings").values() if b.get("shaft") == shaft]
-            if held or _is_set(_tables(data, "shafts").get(shaft), "sections"):
+            bearings = [b for b in _tables(data, "bearings").values() if b.get("shaft") == shaft]
+            if bearings or _is_set(_tables(data, "shafts").get(shaft), "sections"):
                 why = f"Shaft {shaft} has sections, or bearings that support it"
                 yield from _refused(key, body, (f"{role}_support",), why, "Remove it")
 
@@ -191,9 +191,9 @@ def _constant_meshes(data: Mapping[str, Any]) -> KeyedProblems:
         is_crossed = mesh_table_kind(body) is HypoidMeshTable
         crossed, plane = crossed or is_crossed, plane or not is_crossed
         computed |= {str(gear) for gear in (names if isinstance(names, list | tuple) else ())}
-    known = named <= {*gears}  # other meshes are reported where they are read
+    complete = named <= {*gears}  # other meshes are reported where they are read
     for name, body in gears.items():
-        if known and name not in computed:
+        if complete and name not in computed:
             yield from _refused(f"gears.{name}", body, _OF_FLANKS, why, remedy)
     if crossed and not plane:
         why = "The stiffness of hypoid teeth is line_stiffness or stiffness_model of their mesh"

@@ -211,7 +211,7 @@ class ResultOfCase(ABC):
 
     def _repr_html_(self) -> str:
         """Table of the summary by topic for notebooks."""
-        rows = [(topic, in_words(name), *rest) for topic, name, *rest in self.rows()]
+        rows = [(topic, in_words(name), *columns) for topic, name, *columns in self.rows()]
         return html_table(repr(self), ("topic", "figure", "value", "meaning"), rows)
 
     def __repr__(self) -> str:

@@ -45,10 +45,10 @@ class Figures(dict[str, float]):
         load, kind, part, name = split_key(str(key))
         name = PARTS[kind].get("deprecated", {}).get(name, name) if kind else name
         start = f"load_cases.{load}." if load else ""
-        names, word = [part], mesh_kinds("meshed").get(part)
+        names, role = [part], mesh_kinds("meshed").get(part)
         meshes = {split_key(each)[2]: None for each in self if each.startswith(f"{start}meshes.")}
-        if kind == "meshes" and word and len({each.rpartition("_")[0] for each in meshes}) == 1:
-            names = [each for each in meshes if each.rstrip("0123456789").endswith(f"_{word}")]
+        if kind == "meshes" and role and len({each.rpartition("_")[0] for each in meshes}) == 1:
+            names = [each for each in meshes if each.rstrip("0123456789").endswith(f"_{role}")]
         keys = [f"{start}{kind}.{each}.{name}" for each in names]
         return [each for each in keys if dict.__contains__(self, each) and each != key]
 

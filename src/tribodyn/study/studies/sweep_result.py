@@ -256,8 +256,8 @@ class Sweep(Record):
             self[name]  # raises an error that lists the figures
         film = any(axis.key.startswith(("film", "lubricant")) for axis in self.axes)
         usual = (*_MOTIONS, *(_FILMS if film else ()))
-        shown = [name for name in usual if name in self.figures]
-        return list(names) or shown or self._of_parts()
+        available = [name for name in usual if name in self.figures]
+        return list(names) or available or self._of_parts()
 
     def _of_parts(self) -> list[str]:
         """Figures of the parts of a machine that tables show."""
