@@ -91,12 +91,12 @@ def split_replacements(
     return split
 
 
-def refuse_unknown(factors: Mapping[str, float], known: Mapping[str, object]) -> None:
+def refuse_unknown(factors: Mapping[str, float], in_use: Mapping[str, object]) -> None:
     """Raise an error for a factor of the caller that no rating uses."""
     for name in factors:
-        if name.rpartition(".")[2] not in known:
-            what, why = f'factors has "{name}"', f"Factors of this rating: {', '.join(known)}"
-            remedy = did_you_mean(name, known, "Use one of these names")
+        if name.rpartition(".")[2] not in in_use:
+            what, why = f'factors has "{name}"', f"Factors of this rating: {', '.join(in_use)}"
+            remedy = did_you_mean(name, in_use, "Use one of these names")
             raise InputError(what, Argument("factors"), why, remedy)
 
 

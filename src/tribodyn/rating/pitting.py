@@ -127,15 +127,15 @@ def _hardening(
     mesh: MeshLoad, index: int, oil: GearOil, factors: Factors
 ) -> tuple[float, float, str]:
     """Z_W of a gear at endurance and for static stress, and its rule."""
-    own, mate = mesh.rated[index], mesh.rated[1 - index]
-    soft = own.material.kind.startswith(("St", "V", "GGG"))
+    rated, mate = mesh.rated[index], mesh.rated[1 - index]
+    soft = rated.material.kind.startswith(("St", "V", "GGG"))
     if soft and mate.material.is_hard:
-        return _against_hard(mesh, (own, mate), oil, factors)
-    hardnesses = own.material.hardness, mate.material.hardness
+        return _against_hard(mesh, (rated, mate), oil, factors)
+    hardnesses = rated.material.hardness, mate.material.hardness
     through = all(gear.material.kind.startswith("V") for gear in mesh.rated)
     if index == 0 or not through or None in hardnesses:
         return 1.0, 1.0, "no work hardening"
-    quotient = mate.material.hardness / own.material.hardness  # type: ignore[operator]
+    quotient = mate.material.hardness / rated.material.hardness  # type: ignore[operator]
     if quotient < 1.2:
         return 1.0, 1.0, "similar hardness"
     excess = min(abs(mesh.ratio), 20.0) - 1.0

@@ -136,23 +136,23 @@ def root_stress_by_elements(
     expected, radius = _same_load_point(spur, ratio)
     unit = root_stress(spur, root_section(spur, None, 2019).fillet_radius, poissons_ratio)
     highest = float(at_places(unit, 0, np.array(radius)).max())
-    found = highest / (math.cos(spur.normal_pressure_angle) * expected)
+    stress_ratio = highest / (math.cos(spur.normal_pressure_angle) * expected)
     if table is None:
-        return RootStress(found)
+        return RootStress(stress_ratio)
     slices, share = slice_count(table), math.cos(pair.base_helix_angle)
     columns = table.load_per_width, getattr(table, f"{gear}_curvature_radius")
     load, radii = (by_pair(column, slices) for column in columns)
     load = load * math.cos(pair.helix_angle) / share / part.normal_module
     greatest = np.zeros(len(load))
-    for own in range(load.shape[1]):
-        stress = np.zeros((*load[:, own].shape, unit.position.shape[0]))
+    for tooth in range(load.shape[1]):
+        stress = np.zeros((*load[:, tooth].shape, unit.position.shape[0]))
         for other in range(load.shape[1]):
-            away = np.rint((radii[:, other] - radii[:, own]) / pair.base_pitch)
+            away = np.rint((radii[:, other] - radii[:, tooth]) / pair.base_pitch)
             for number in NEIGHBOURS:
-                pressed = np.where((away == number) & (load[:, own] > 0.0), load[:, other], 0.0)
+                pressed = np.where((away == number) & (load[:, tooth] > 0.0), load[:, other], 0.0)
                 if pressed.any():
                     unit_stress = at_places(unit, number, radii[:, other] / share)
                     stress += pressed[..., None] * unit_stress
         greatest = np.maximum(greatest, stress.max(axis=(1, 2)))
     over_phase = PhaseFunction(table.grid, greatest)
-    return RootStress(found, table.phase, greatest, table.total_normal_force, over_phase)
+    return RootStress(stress_ratio, table.phase, greatest, table.total_normal_force, over_phase)

@@ -268,8 +268,8 @@ def rate_spectrum(
     ratings: list[PairRating] = []
     stresses: tuple[list[tuple[_Stress, _Stress]], ...] = [], []
     for case in loaded:
-        own = replace(stated, required_life=case.duration)
-        mesh = MeshLoad(pair, rated[0], rated[1], own, abs(case.torque), case.speed, Factors())
+        timed = replace(stated, required_life=case.duration)
+        mesh = MeshLoad(pair, rated[0], rated[1], timed, abs(case.torque), case.speed, Factors())
         rating = rate_mesh(mesh, oil, factors or {})
         ratings.append(rating)
         for index, gear in enumerate(stresses):

@@ -337,15 +337,15 @@ def rate_shaft(
     used = []
     for index, kind in enumerate(_KINDS):
         amplitude = abs(stress.amplitudes[index])
-        own = mean / math.sqrt(3.0) if index == 2 else mean
+        mean_stress = mean / math.sqrt(3.0) if index == 2 else mean
         limit, cut = fatigue[index], yielding[index]
         psi = limit / (2.0 * strength - limit)
         psi = factors.record(f"psi_{kind}", psi, f"{SOURCE}, mean stress sensitivity")
         if not constant_ratio:
-            allowed, bound = limit - psi * own, cut - own
+            allowed, bound = limit - psi * mean_stress, cut - mean_stress
         elif amplitude > 0.0:
-            allowed = limit / (1.0 + psi * own / amplitude)
-            bound = cut / (1.0 + own / amplitude)
+            allowed = limit / (1.0 + psi * mean_stress / amplitude)
+            bound = cut / (1.0 + mean_stress / amplitude)
         else:
             allowed = bound = limit
         branch = "yield strength" if bound < allowed else "mean stress"

@@ -55,13 +55,13 @@ def contact_ratio_factor(first: float, second: float) -> float:
     elif total < 2.0 and max(first, second) < 1.0:
         shape = 0.70 * (first**2 + second**2) - 0.22 * total + 0.52 - 0.60 * first * second
     else:
-        one, other = max(first, second), min(first, second)
+        larger, smaller = max(first, second), min(first, second)
         if total < 2.0:
-            shape = 0.18 * one**2 + 0.70 * other**2 + 0.82 * one - 0.52 * other
-            shape -= 0.30 * one * other
+            shape = 0.18 * larger**2 + 0.70 * smaller**2 + 0.82 * larger - 0.52 * smaller
+            shape -= 0.30 * larger * smaller
         else:
-            shape = 0.44 * one**2 + 0.59 * other**2 + 0.30 * one - 0.30 * other
-            shape -= 0.15 * one * other
+            shape = 0.44 * larger**2 + 0.59 * smaller**2 + 0.30 * larger - 0.30 * smaller
+            shape -= 0.15 * larger * smaller
     return shape / (2.0 * total * first)
 
 
