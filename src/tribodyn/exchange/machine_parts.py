@@ -159,9 +159,9 @@ def bearing_tables(
     model: GearboxModel, axes: dict[int, Axis]
 ) -> Iterator[tuple[str, dict[str, Any], str]]:
     """Name, table and reason of what is assumed of each bearing."""
-    held = [(b, _sides(model, b, axes)) for b in _bearings(model)]
-    grounded = [next(iter(sides.values())) for _, sides in held if len(sides) == 1]
-    for bearing, sides in held:
+    connections = [(b, _sides(model, b, axes)) for b in _bearings(model)]
+    grounded = [next(iter(sides.values())) for _, sides in connections if len(sides) == 1]
+    for bearing, sides in connections:
         if not sides:
             add_remark(model, f"{bearing} is left out: it is on no shaft of the stages")
             continue
@@ -177,8 +177,8 @@ def bearing_tables(
         if not rolling:
             rolling, reason = _support(bearing)
         if len(sides) > 1:
-            both = " and ".join(axes[number].name for number in sides.values())
-            note = f"it joins {both} in the file; it holds {axis.name} against the housing"
+            shafts = " and ".join(axes[number].name for number in sides.values())
+            note = f"it joins {shafts} in the file; it holds {axis.name} against the housing"
             reason = f"{note}; {reason}" if reason else note
         yield f"bearing_{bearing.id}", table | rolling, reason
 
@@ -200,7 +200,7 @@ def _sides(model: GearboxModel, bearing: Component, axes: dict[int, Axis]) -> di
 def _rolling(bearing: Component, axis: Axis) -> tuple[dict[str, Any], str]:
     """Type and dimensions of a rolling bearing, and a note; empty where the file has none."""
     kind = bearing.text("bearing_type")
-    matches = [t for word, t in _TYPES.items() if word in kind and not kind.startswith("axial")]
+    matches = [t for stem, t in _TYPES.items() if stem in kind and not kind.startswith("axial")]
     bore, outer = (bearing.number(f"{side}_diameter", "m") for side in ("inner", "outer"))
     rows = bearing.number("number_of_bearing_rows", "") or 1.0
     if not matches or not bore or not outer or rows > 1.0:

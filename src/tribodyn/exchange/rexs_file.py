@@ -153,9 +153,9 @@ class RexsFile:
         """Names of attributes with a value that are not read, by kind of gear, shaft or bearing."""
         names: dict[str, dict[str, None]] = {}
         for part in self.components.values():
-            if any(word in part.kind for word in _PARTS):
-                own = (name for name, value in part.values.items() if value.content is not None)
-                listed = [n for n in own if n not in _READ and not n.startswith("custom_")]
+            if any(stem in part.kind for stem in _PARTS):
+                filled = (name for name, value in part.values.items() if value.content is not None)
+                listed = [n for n in filled if n not in _READ and not n.startswith("custom_")]
                 names.setdefault(part.kind, {}).update(dict.fromkeys(listed))
         return {kind: list(each) for kind, each in sorted(names.items()) if each}
 

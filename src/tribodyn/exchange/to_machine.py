@@ -76,7 +76,7 @@ def machine_from_rexs(
         raise InputError(problems)
     model.stage(model.stages[0].id if model.stages else None)  # refuses a model without stages
     load = model.load(load_case)
-    shafts = _reached(model, load)
+    shafts = _shaft_senses(model, load)
     data, assumed = _parts(model, shafts, changes)
     data |= _operation(model, load, data, shafts)
     shared, notes = shared_models(model, load, changes)
@@ -133,7 +133,7 @@ def _shafts_of(model: GearboxModel, stage: Stage) -> tuple[int, int]:
     return numbers[0], numbers[1]
 
 
-def _reached(model: GearboxModel, load: Load) -> dict[int, int]:
+def _shaft_senses(model: GearboxModel, load: Load) -> dict[int, int]:
     """Shafts from the input on, with 1 or -1 where they turn against it."""
     edges = [(*_shafts_of(model, stage), -1 if stage.ratio > 0.0 else 1) for stage in model.stages]
     joined = {shaft for edge in edges for shaft in edge[:2]}
@@ -158,8 +158,8 @@ def _parts(
     assumed: dict[str, str] = {}
     tables: dict[str, Any] = {"shafts": {}, "bearings": {}, "gears": {}, "meshes": {}}
     for number, axis in axes.items():
-        own = {**shared, **material_values(model, number)}
-        values = {k.partition(".")[2]: v for k, v in own.items() if shared.get(k) != v}
+        material = {**shared, **material_values(model, number)}
+        values = {k.partition(".")[2]: v for k, v in material.items() if shared.get(k) != v}
         tables["shafts"][axis.name] = axis.table | values
     for stage in model.stages:
         numbers = _shafts_of(model, stage)

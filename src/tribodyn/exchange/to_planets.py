@@ -100,8 +100,8 @@ def stage_from_rexs(
 
 def _of_case(key: str, gears: dict[str, Any]) -> bool:
     """Whether a note is on a gear of the case, or on no gear."""
-    group, _, rest = key.partition(".")
-    return group != "gears" or rest.partition(".")[0] in gears
+    group, _, inner = key.partition(".")
+    return group != "gears" or inner.partition(".")[0] in gears
 
 
 def _gears(model: GearboxModel) -> tuple[StageGear, list[StageGear], StageGear]:
@@ -128,8 +128,8 @@ def _gears(model: GearboxModel) -> tuple[StageGear, list[StageGear], StageGear]:
     planets = [s.gear_2 if s.gear_1.teeth < 0 else s.gear_1 for s in outer]
     numbers = {planet.id for planet in planets}
     suns = [s.gear_2 if s.gear_1.id in numbers else s.gear_1 for s in inner]
-    alike = {(p.teeth, p.profile_shift_coefficient, p.helix_angle) for p in planets}
-    if max(len({sun.id for sun in suns}), len({ring.id for ring in rings}), len(alike)) > 1:
+    planet_types = {(p.teeth, p.profile_shift_coefficient, p.helix_angle) for p in planets}
+    if max(len({sun.id for sun in suns}), len({ring.id for ring in rings}), len(planet_types)) > 1:
         why = "All planets are equal and mesh with one sun and one ring"
         remedy = f"List the data of its gears: tribodyn import {model.path}"
         raise InputError(f"{stages[0]} has another design", model.path, why, remedy)
