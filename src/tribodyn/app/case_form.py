@@ -170,7 +170,7 @@ class CaseForm:
     def groups(self) -> list[dict[str, Any]]:
         """All tables with their fields: the essential ones first, the others collapsed."""
         root = _Place("", self.case.root, self.case.user_input.data, "")
-        top = [self._group(root, []), *map(self._whole, self._inside(root))]
+        top = [self._group(root, []), *map(self._table_group, self._inside(root))]
         return [group for group in top if _is_filled(group)]
 
     def options(self) -> dict[str, Option]:
@@ -219,9 +219,9 @@ class CaseForm:
             if option.kind != "list" and not self._idle(key := place.inside(name)):
                 yield key, option
 
-    def _whole(self, place: _Place) -> dict[str, Any]:
+    def _table_group(self, place: _Place) -> dict[str, Any]:
         """A table with the tables in it."""
-        inner = map(self._whole, self._inside(place))
+        inner = map(self._table_group, self._inside(place))
         return self._group(place, [group for group in inner if _is_filled(group)])
 
     def _group(self, place: _Place, inner: list[dict[str, Any]]) -> dict[str, Any]:

@@ -173,13 +173,13 @@ def _parts(desk: TabSession, case: MachineCase) -> list[Any]:
     every = [html.Summary(f"All speeds, torques and powers ({len(rows)})")]
     every.append(table(["Quantity", "Value", "Meaning"], rows))
     assumed = [[a.key, a.value or "", a.reason or ""] for a in case.assumptions]
-    taken = [html.Summary(f"Assumed ({len(assumed)})"), table(["Key", "Value", "Reason"], assumed)]
+    notes = [html.Summary(f"Assumed ({len(assumed)})"), table(["Key", "Value", "Reason"], assumed)]
     parts = [
         cards([[n.label, n.value, n.unit] for n in first]),
         *notice("Warnings", [str(warning) for warning in warnings]),
         _block(block.__dict__, f"pair-{figure.name}", json.loads(block.json)),
         html.Details(every, className="block"),
-        *([html.Details(taken, className="block")] if assumed else []),
+        *([html.Details(notes, className="block")] if assumed else []),
     ]
     return [*_outdated(desk), html.Div(parts, className="outdated" if desk.faults else "")]
 
@@ -251,11 +251,11 @@ def _overview(content: dict[str, Any]) -> list[Any]:
 def _topics(content: dict[str, Any]) -> dict[str, list[Any]]:
     """Overview, figures by topic, and tables of a result."""
     blocks = content.get("blocks", [])
-    drawn = [block for block in blocks if not block["missing"]]
-    topics: dict[str, list[Any]] = {"Overview": drawn}
+    figures = [block for block in blocks if not block["missing"]]
+    topics: dict[str, list[Any]] = {"Overview": figures}
     if "cards" in content:  # of a run: the mesh force, or the picture of the machine
-        forces = [block for block in drawn if block["name"] == "mesh_force"]
-        topics["Overview"] = forces or drawn[:1]
+        forces = [block for block in figures if block["name"] == "mesh_force"]
+        topics["Overview"] = forces or figures[:1]
         for block in blocks:
             topics.setdefault(block["topic"], []).append(block)
     for topic, head, rows, *title in content.get("tables", []):

@@ -143,9 +143,9 @@ def _overlay(order: Mapping[str, Any], folder: Path, tell: Tell) -> None:
 
     results = [load_result(place) for place in order["results"]]
     comparison = compare_results(*results, names=order["names"])
-    drawn = comparison.plot()
+    chart = comparison.plot()
     figure: Any = FIGURES[comparison.results[0]._COMPARISON]
-    block = block_of_figure(figure.name, figure.heading, drawn, figure.caption_of(comparison))
+    block = block_of_figure(figure.name, figure.heading, chart, figure.caption_of(comparison))
     rows = list(difference_rows(comparison.values, comparison.figures))
     content = {
         "sentences": [] if rows else ["The results are equal."],
