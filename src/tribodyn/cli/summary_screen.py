@@ -81,8 +81,8 @@ def _side_by_side(first: list[str], columns: list[list[str]]) -> Iterator[str]:
             used += widths[end]
             end += 1
         for number, label in enumerate(first):
-            shown = zip(columns[start:end], widths[start:end], strict=True)
-            cells = "".join(column[number].rjust(width) for column, width in shown)
+            fitting = zip(columns[start:end], widths[start:end], strict=True)
+            cells = "".join(column[number].rjust(width) for column, width in fitting)
             yield label.ljust(label_width) + cells
         start = end
 

@@ -183,8 +183,8 @@ def new(
     from tribodyn.study.machine.housing_files import copy_housing
     from tribodyn.study.pipeline.save import write_file
 
-    asked = {"from": from_, "machine": machine, "stage": stage, "hypoid": hypoid}
-    options = [name for name, value in asked.items() if value]
+    templates = {"from": from_, "machine": machine, "stage": stage, "hypoid": hypoid}
+    options = [name for name, value in templates.items() if value]
     if len(options) > 1:
         what = f"{' and '.join(f'--{name}' for name in options)} are both given"
         raise InputError(what, "tribodyn new", "A file has one beginning", "Keep one of them")
