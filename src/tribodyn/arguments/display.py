@@ -31,5 +31,5 @@ def one_line(kind: type, values: Iterable[tuple[str, Any]]) -> str:
 
 def fields_in_one_line(self: Any) -> str:
     """One line."""
-    shown = (each.name for each in fields(self) if each.repr)
-    return one_line(type(self), ((name, getattr(self, name)) for name in shown))
+    names = (each.name for each in fields(self) if each.repr)
+    return one_line(type(self), ((name, getattr(self, name)) for name in names))

@@ -94,9 +94,9 @@ def without_units(value: Any, unit: str | None, inside: bool = True) -> Any:
     if quantity_in(value) is not None:
         return magnitude(value, unit)
     if isinstance(value, Mapping):
-        held = dict(value) if inside else {}  # a data set makes new arrays at each access
-        new = {key: without_units(item, unit) for key, item in held.items()}
-        return new if any(new[key] is not held[key] for key in new) else value
+        entries = dict(value) if inside else {}  # a data set makes new arrays at each access
+        new = {key: without_units(item, unit) for key, item in entries.items()}
+        return new if any(new[key] is not entries[key] for key in new) else value
     if kind is np.ndarray:
         has_units = any(quantity_in(item) is not None for item in value.flat)
         return np.array(without_units(value.tolist(), unit)) if has_units else value

@@ -155,8 +155,8 @@ def _unit(documented: Any, name: str) -> str | None:
     if other and not _BRACKETS.search(entry.kind):
         page = ".".join(getattr(documented, "__module__", "").split(".")[:2])
         home, _, target = other[1].rpartition(".")
-        there = sys.modules.get(home or page)
-        if (unit := _unit(getattr(there, target, None), name)) is not None:
+        module = sys.modules.get(home or page)
+        if (unit := _unit(getattr(module, target, None), name)) is not None:
             return unit
     units = _BRACKETS.findall(entry.kind) or _BRACKETS.findall(entry.text)
     if len(units) > 1 and len(units) != len(entry.names):
