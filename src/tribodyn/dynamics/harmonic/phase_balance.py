@@ -104,10 +104,10 @@ class _Search:
         structure, _ = close_contacts(means, rows.sampled_forces(), start)
         return cls(rows, structure, parts_of(system, frequency, structure, start), start)
 
-    def residual(self, points: Points, known: PhaseResidual | None = None) -> PhaseResidual:
+    def residual(self, points: Points, prior: PhaseResidual | None = None) -> PhaseResidual:
         """Residual on grids with so many points over each phase."""
         grids = [PhaseGrid(shape, self.rows.frequency) for shape in points]
-        return PhaseResidual(self.parts, grids, self.rows.force, known)
+        return PhaseResidual(self.parts, grids, self.rows.force, prior)
 
     def still(self, residual: PhaseResidual) -> Array:
         """Motion of the parts at rest."""
@@ -118,8 +118,8 @@ class _Search:
 
     def linear(self, residual: PhaseResidual) -> Array:
         """Motion with the contacts that are closed at rest."""
-        rest = self.still(residual)
-        return rest + residual.correction(residual.at(rest, closed=True))[0]
+        static = self.still(residual)
+        return static + residual.correction(residual.at(static, closed=True))[0]
 
     def damped(self, residual: PhaseResidual, y: Array, tolerance: float) -> Solution:
         """Newton's method with damping at the contacts that is removed in steps."""
@@ -139,9 +139,9 @@ class _Search:
         self, points: Points, start: PhaseResponse | None, tolerance: float, free: bool
     ) -> tuple[Points, PhaseResidual, Solution]:
         """Motion on the first grids, with more points if they are free and it is not found."""
-        known, followed = None, self.followed()
+        prior, followed = None, self.followed()
         while True:
-            residual = self.residual(points, known)
+            residual = self.residual(points, prior)
             y = self.linear(residual) if start is None else self._resampled(start, residual)
             solution = newton(residual, y, 0.01 * tolerance, patience=_PATIENCE)
             more = doubled(points, np.ones_like(followed))
@@ -152,7 +152,7 @@ class _Search:
                 solution = min(solution, damped, key=lambda each: each.error)
             if last or solution.error <= tolerance:
                 return points, residual, solution
-            points, known = more, residual
+            points, prior = more, residual
 
     def followed(self) -> Mask:
         """Phases that each part follows (parts, phases)."""

@@ -84,8 +84,8 @@ class PhaseGrid:
     def common(self, other: PhaseGrid) -> Index:
         """Numbers of the lines that two grids have (k, phases), the mean first."""
         pairs = zip(self.shape, other.shape, strict=True)
-        both = PhaseGrid(tuple(min(pair) for pair in pairs), self.frequency)
-        return np.asarray(both.numbers[~both.unpaired])
+        shared = PhaseGrid(tuple(min(pair) for pair in pairs), self.frequency)
+        return np.asarray(shared.numbers[~shared.unpaired])
 
     def refined(self, values: Array, finer: PhaseGrid) -> Array:
         """Values (p, c) on another grid: with the lines that both have."""
@@ -185,11 +185,11 @@ def _jumps(rows: PhaseRows, grid: PhaseGrid, mesh: Mesh) -> _Jumps:
     axis = _axis_of(mesh)
     lines = np.arange(grid.size).reshape(grid.shape).take(0, axis).reshape(-1)
     turns, count = mesh.cycles[axis], grid.shape[axis]
-    rest = grid.points[lines] @ mesh.cycles + mesh.offset
+    mesh_phase = grid.points[lines] @ mesh.cycles + mesh.offset
     if rows.system.lead is not None:  # it is a function of other phases
-        rest = rest + rows.rate(mesh.cycles) * rows.system.lead(grid.points[lines])[0]
-    whole = np.arange(int(abs(turns)))
-    at = (mesh.jumps[:, None, None] - rest[:, None] + whole) / turns % 1.0 % 1.0
+        mesh_phase = mesh_phase + rows.rate(mesh.cycles) * rows.system.lead(grid.points[lines])[0]
+    cycles = np.arange(int(abs(turns)))
+    at = (mesh.jumps[:, None, None] - mesh_phase[:, None] + cycles) / turns % 1.0 % 1.0
     place = (at * count).reshape(-1)
     step = np.ceil(place - 1e-6).astype(np.int64) - 1
     start = np.broadcast_to(lines[:, None], at.shape).reshape(-1)

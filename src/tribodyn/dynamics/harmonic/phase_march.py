@@ -117,8 +117,8 @@ class PhaseMarch:
             rate = self.rows.rate(mesh.cycles)
             if mesh.jumps.size and rate:
                 first, last = np.sort((np.array([0.0, self.duration]) + begin) * rate + mesh.offset)
-                whole = np.arange(np.floor(first) - 1.0, np.ceil(last) + 1.0)
-                on_time = ((mesh.jumps[:, None] + whole - mesh.offset) / rate).reshape(-1)
+                cycles = np.arange(np.floor(first) - 1.0, np.ceil(last) + 1.0)
+                on_time = ((mesh.jumps[:, None] + cycles - mesh.offset) / rate).reshape(-1)
                 places.append((self._led(on_time) - begin) / self.duration)
         at = np.unique(np.concatenate(places))
         at = at[(at >= 0.0) & (at < 1.0 - _NEAR)]

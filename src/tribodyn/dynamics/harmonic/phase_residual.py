@@ -116,8 +116,8 @@ class OnGrid(NamedTuple):
         loaded = np.zeros((len(grid.omega), part.along.shape[1]), dtype=complex)
         count = 1 if len(loads) == 1 else len(loaded)
         lines = loads.astype(complex) if count == 1 else grid.spectrum(loads) / grid.size
-        answers = part.receptances(grid.omega[:count], structure.push)
-        loaded[:count] = (answers @ lines[..., None])[..., 0]
+        response = part.receptances(grid.omega[:count], structure.push)
+        loaded[:count] = (response @ lines[..., None])[..., 0]
         loaded[grid.unpaired] = 0.0
         return cls(part, grid, contacts, receptances, slope, loaded)
 
@@ -155,25 +155,25 @@ class PhaseResidual(Residual):
         parts: Sequence[Part],
         grids: Sequence[PhaseGrid],
         force: Callable[[Array], Array],
-        known: PhaseResidual | None = None,
+        prior: PhaseResidual | None = None,
     ) -> None:
         self.structure = parts[0].structure
         self.frequency = 1.0
-        same = {} if known is None else {(id(p.structure), p.grid.shape): p for p in known.parts}
+        same = {} if prior is None else {(id(p.structure), p.grid.shape): p for p in prior.parts}
         self.parts: list[OnGrid] = [
             same.get((id(part), grid.shape)) or OnGrid.of(part, grid, force)
             for part, grid in zip(parts, grids, strict=True)
         ]
-        links = {} if known is None else known.links
-        before = [None] * len(parts) if known is None else known.parts
-        kept = {n for n, part in enumerate(self.parts) if part is before[n]}
+        links = {} if prior is None else prior.links
+        before = [None] * len(parts) if prior is None else prior.parts
+        reused = {n for n, part in enumerate(self.parts) if part is before[n]}
         self.links = {
-            pair: links[pair] if kept.issuperset(pair) else self._link(*pair)
+            pair: links[pair] if reused.issuperset(pair) else self._link(*pair)
             for pair in permutations(range(len(parts)), 2)
         }
         widths = [grid.size * part.along.shape[1] for part, grid in zip(parts, grids, strict=True)]
         self.ends = np.cumsum([0, *widths])
-        old = {} if known is None else known.inverses
+        old = {} if prior is None else prior.inverses
         self.inverses = {id(part): old[id(part)] for part in self.parts if id(part) in old}
         self.excess = np.zeros(1)  #: additional damping of all contacts [N*s/m]
 
@@ -265,8 +265,8 @@ class PhaseResidual(Residual):
                     continue
                 rows = np.flatnonzero(beyond.any(axis=1))
                 rows = np.concatenate(([0], rows))
-                answers = to.structure.receptances(by.grid.omega[rows], by.structure.push)
-                size = np.abs((answers @ lines[rows][..., None])[1:, :, 0]).max(axis=1)
+                receptances = to.structure.receptances(by.grid.omega[rows], by.structure.push)
+                size = np.abs((receptances @ lines[rows][..., None])[1:, :, 0]).max(axis=1)
                 mean = to.structure.contact_stiffness
                 varies = np.abs(mean - moving.law.stiffness).max() / np.abs(mean).max()
                 for axis in np.flatnonzero(beyond.any(axis=0)):

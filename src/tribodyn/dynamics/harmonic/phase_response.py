@@ -271,8 +271,8 @@ def marched_response(motion: PhaseResponse, structure: ClosedStructure) -> Phase
         lines.append(np.where((orders < 0)[:, None], spectrum.conj(), spectrum) * turned)
     values = np.concatenate(lines, axis=1)
     values[~numbers.any(axis=1)] /= 2.0
-    whole = replace(motion, fine=fine, engine="modal", _all_lines=(numbers, values), _march=march)
-    return _recorded(whole)
+    motion = replace(motion, fine=fine, engine="modal", _all_lines=(numbers, values), _march=march)
+    return _recorded(motion)
 
 
 def phase_response(
@@ -296,23 +296,23 @@ def phase_response(
     widths = zip(_QUANTITIES, (size, size, size, count, count), strict=True)
     none: dict[str, Any] = {name: np.zeros((0, width)) for name, width in widths}
     fastest = max(float((part.grid.frequency * part.grid.shape).max()) for part in residual.parts)
-    whole = PhaseResponse(
+    response = PhaseResponse(
         time=empty, phase=empty, names=tuple(system.names), mesh_frequency=float(frequency[0]),
         periods=1, fine=FineSamples(empty, empty, empty, **none),
         step_number=structure.rate / fastest, frequencies=frequency, turns=closed_line(frequency),
         _rows=rows, _all_lines=_cosines(numbers, lines, frequency), **none, **facts,
     )  # fmt: skip
-    return _recorded(replace(whole, fine=_along(whole.turns, whole)))
+    return _recorded(replace(response, fine=_along(response.turns, response)))
 
 
-def _recorded(whole: PhaseResponse) -> PhaseResponse:
+def _recorded(response: PhaseResponse) -> PhaseResponse:
     """Motion with a record: a cycle of the slowest phase if that is short enough."""
-    fastest = _RECORDED * float(whole.frequencies.max())
-    count = min(int(np.ceil(fastest / float(whole.frequencies.min()))), _MOST)
-    history = whole.at(np.arange(count) / fastest)
+    fastest = _RECORDED * float(response.frequencies.max())
+    count = min(int(np.ceil(fastest / float(response.frequencies.min()))), _MOST)
+    history = response.at(np.arange(count) / fastest)
     names = ("time", "phase", "position", "velocity", "acceleration", "deflection", "contact_force")
     columns = {name: getattr(history, name) for name in names}
-    return replace(whole, **columns, periods=history.periods)
+    return replace(response, **columns, periods=history.periods)
 
 
 def _all_forces(
@@ -322,21 +322,21 @@ def _all_forces(
     structure, count = residual.structure, len(rows.system.contacts)
     listed, forces, others = [], [], []
     for part, each in zip(residual.parts, state.parts, strict=True):
-        kept, grid = ~part.grid.unpaired, part.grid
-        listed.append(grid.numbers[kept])
-        lines = (grid.spectrum(each.force) / grid.size)[kept]
+        paired, grid = ~part.grid.unpaired, part.grid
+        listed.append(grid.numbers[paired])
+        lines = (grid.spectrum(each.force) / grid.size)[paired]
         forces.append(lines @ (part.structure.push.T @ structure.push))
         columns = np.zeros((len(lines), 2 * count), dtype=complex)
         members = part.structure.members
-        columns[:, members] = (grid.spectrum(each.law.compression) / grid.size)[kept]
-        columns[:, count + members] = (grid.spectrum(each.law.contact) / grid.size)[kept]
+        columns[:, members] = (grid.spectrum(each.law.compression) / grid.size)[paired]
+        columns[:, count + members] = (grid.spectrum(each.law.contact) / grid.size)[paired]
         others.append(columns)
     grid = max((part.grid for part in residual.parts), key=lambda grid: min(grid.shape))
     loads = rows.force(grid.points) @ structure.coordinates.inverse.T @ structure.push
     if len(loads) > 1:
-        kept = ~grid.unpaired
-        listed.append(grid.numbers[kept])
-        forces.append((grid.spectrum(loads) / grid.size)[kept])
+        paired = ~grid.unpaired
+        listed.append(grid.numbers[paired])
+        forces.append((grid.spectrum(loads) / grid.size)[paired])
     else:
         listed.append(np.zeros((1, len(grid.shape)), dtype=np.int64))
         forces.append(loads.astype(complex))
