@@ -54,9 +54,9 @@ def _sense(pair: SpurPair, name: str) -> int:
 
 def _gears(pair: SpurPair, touching: float) -> list[Trace]:
     traces = []
-    placed = list(zip(_gears_and_centers(pair), tooth_angles(pair, touching), strict=True))
+    positions = list(zip(_gears_and_centers(pair), tooth_angles(pair, touching), strict=True))
     # A ring is a disc with a white hole, on which the pinion is drawn.
-    for (gear, name, center, color), angle in placed[:: pair.wheel.sign]:
+    for (gear, name, center, color), angle in positions[:: pair.wheel.sign]:
         role = "drives" if pair.driver == name else "is driven"
         name = "ring" if gear.is_ring else name
         label = f"{name}, {abs(gear.teeth)} teeth, {role}"
@@ -157,12 +157,12 @@ def _window(pair: SpurPair, path: PathOfContact) -> Trace:
     middle = ends.mean(axis=1)
     half = 0.75 * float(np.hypot(*(ends[:, 1] - ends[:, 0])))
     x, y = (axis(axis_label("center_distance", name), **BARE) for name in "xy")
-    near = [[at - half, at + half] for at in middle]
+    zoom = [[at - half, at + half] for at in middle]
     return {
         "xaxis": {**x, "domain": [0.0, 0.62], "constrain": "domain"},
         "yaxis": {**y, "scaleanchor": "x", "constrain": "domain"},
-        "xaxis2": {**x, "domain": [0.7, 1.0], "anchor": "y2", "range": near[0]},
-        "yaxis2": {**BARE, "anchor": "x2", "scaleanchor": "x2", "range": near[1]},
+        "xaxis2": {**x, "domain": [0.7, 1.0], "anchor": "y2", "range": zoom[0]},
+        "yaxis2": {**BARE, "anchor": "x2", "scaleanchor": "x2", "range": zoom[1]},
     }
 
 

@@ -225,7 +225,7 @@ def _teeth(sides: list[HypoidFlanks], gear: str, color: str) -> Trace:
     i, j, k = np.hstack([[a, b, c], [a, c, d]])
     if _faces_inwards(skin):
         j, k = k, j
-    x, y, z = _placed(points.reshape(-1, 3), sides[0], gear).T
+    x, y, z = _in_fixed_frame(points.reshape(-1, 3), sides[0], gear).T
     light = {"ambient": 0.6, "diffuse": 0.7, "specular": 0.1}
     light |= {"facenormalsepsilon": 0.0, "vertexnormalsepsilon": 0.0}
     lamp = {"x": -1e4, "y": 2e4, "z": -3e4}
@@ -245,7 +245,7 @@ def _faces_inwards(skin: Array) -> bool:
     return bool(facing @ out < 0.0)
 
 
-def _placed(points: Array, flanks: HypoidFlanks, gear: str) -> Array:
+def _in_fixed_frame(points: Array, flanks: HypoidFlanks, gear: str) -> Array:
     """Points of a gear [mm] in the fixed frame, where the axis of the wheel is z."""
     if gear == "wheel":
         return points
@@ -263,7 +263,7 @@ def _body(flanks: HypoidFlanks, gear: str) -> Trace:
         place = np.zeros(3)
         place[axis], place[(axis + 1) % 3] = along[end], share * radius[end]
         rows.append(_rotated(place, axis, np.linspace(0.0, 2.0 * np.pi, _ROUND)))
-    x, y, z = np.moveaxis(_placed(np.array(rows), flanks, gear), -1, 0)
+    x, y, z = np.moveaxis(_in_fixed_frame(np.array(rows), flanks, gear), -1, 0)
     plain = {"showscale": False, "colorscale": [[0.0, MUTED], [1.0, MUTED]], "hoverinfo": "skip"}
     return {"type": "surface", "x": x, "y": y, "z": z, **plain}
 

@@ -158,7 +158,7 @@ def power_flow(rig: RigPowerFlow) -> Sketch:
         for name, p in zip(names, power, strict=True)
     ]
     nodes = sorted({end for source, target, *_ in links for end in (source, target)})
-    flows = [(nodes.index(source), nodes.index(target), *rest) for source, target, *rest in links]
+    flows = [(nodes.index(source), nodes.index(target), *flow) for source, target, *flow in links]
     label, color = ([each[k] for k in nodes] for each in (labels, colors))
     style: Trace = {"pad": 34, "thickness": 16, "line": {"width": 0}}
     trace = sankey(flows, "%{value:.5g} W", "%{label}", label=label, color=color, **style)

@@ -274,10 +274,10 @@ def machine_ensemble(study: MachineEnsemble) -> Sketch:
     for number, (quantity, label, names, parts) in enumerate(_by_kind(columns)):
         middle = np.array([columns[name][0] for name in names])
         low, high = np.quantile([columns[name][1:] for name in names], (0.025, 0.975), axis=1)
-        shown = [displayed(quantity, each) for each in (middle, low, high)]
+        values = [displayed(quantity, each) for each in (middle, low, high)]
         color, name = COLORS[number % len(COLORS)], "median of all inputs"
-        marks = marked(parts, shown[0], name, color, 9)
-        bars = {"array": shown[2] - shown[0], "arrayminus": shown[0] - shown[1]}
+        marks = marked(parts, values[0], name, color, 9)
+        bars = {"array": values[2] - values[0], "arrayminus": values[0] - values[1]}
         marks["error_y"] = {"type": "data", "symmetric": False, "width": 8, **bars}
         rows.append(Row("", Panel(axis_label(quantity, label), [marks], FROM_ZERO)))
         for name, centre, a, b in zip(names, middle, low, high, strict=True):

@@ -130,17 +130,17 @@ _SAMPLES, _PARTS, _HEIGHT = 30_000, 8, 0.42
 
 
 def _force_caption(motion: MachineMotion) -> str:
-    drawn = (("meshes", motion.mesh), ("bearings", motion.bearing))
+    groups = (("meshes", motion.mesh), ("bearings", motion.bearing))
     left_out = [
         f"{len(names) - _PARTS} of {len(names)} {kind}"
-        for kind, names in drawn
+        for kind, names in groups
         if len(names) > _PARTS
     ]
-    rest = f" Left out: {' and '.join(left_out)} with smaller variations." if left_out else ""
+    omitted = f" Left out: {' and '.join(left_out)} with smaller variations." if left_out else ""
     bearings = ", and the radial force on each bearing" if motion.bearing else ""
     return (
         f"Force of each mesh along its line of action{bearings}, without its mean, each to its own "
-        "scale; those that vary most come first. " + _period(motion) + rest
+        "scale; those that vary most come first. " + _period(motion) + omitted
     )
 
 
@@ -215,9 +215,9 @@ def kinematic_frequencies(lines: KinematicFrequencies) -> Sketch:
         mine = [k for k, name in enumerate(lines.part) if name == part]
         first = {float(lines.frequency[k]): k for k in reversed(mine)}
         named = [k in first.values() and "GMF " not in lines.symbol[k] for k in mine]
-        text = [lines.symbol[k] * shown for k, shown in zip(mine, named, strict=True)]
-        words = [f"{lines.symbol[k]}, {lines.meaning[k]}" for k in mine]
-        style: Trace = {"textposition": "top center", "customdata": words, "showlegend": False}
+        text = [lines.symbol[k] * labelled for k, labelled in zip(mine, named, strict=True)]
+        meanings = [f"{lines.symbol[k]}, {lines.meaning[k]}" for k in mine]
+        style: Trace = {"textposition": "top center", "customdata": meanings, "showlegend": False}
         style["hovertemplate"] = "%{x:.6g} Hz: %{customdata}<extra></extra>"
         place = (lines.frequency[mine], [part] * len(mine), part, COLORS[number % len(COLORS)])
         trace = marked(*place, 8, "line-ns-open", text=text, **style)

@@ -93,8 +93,8 @@ def _not_drawn(result: MachineResult | MachineCase) -> str:
 )
 def planetary_stage(result: MachineResult | MachineCase) -> Sketch:
     """Draw the first planetary stage of a machine with moving planets."""
-    whole: Any = result
-    case: MachineCase = getattr(whole, "case", whole)
+    source: Any = result
+    case: MachineCase = getattr(source, "case", source)
     parts = next(s for s in case.stages.values() if s.table.planet_type == "single")
     machine, table = case.machine(), parts.table
     pairs = {mesh: parts.gear_pair(mesh) for mesh in ("sun", "ring")}

@@ -68,8 +68,8 @@ def mode_shapes(modes: NaturalModes) -> Sketch:
     first, unit = modes.rigid, display_unit("frequency")
     hertz = displayed("frequency", modes.frequency[first:])
     # Modes can have the same frequency: the mode number makes the labels unique.
-    apart = ": " if len(hertz) < _MANY else "<br>"
-    labels = [f"{first + k}{apart}{significant(v, 4)}" for k, v in enumerate(hertz)]
+    separator = ": " if len(hertz) < _MANY else "<br>"
+    labels = [f"{first + k}{separator}{significant(v, 4)}" for k, v in enumerate(hertz)]
     moving = {body: share[first:] for body, share in modes.body_share().items()}
     strained = _strained(modes)
     share = modes.contact_share[first:]

@@ -61,9 +61,9 @@ def turning_motion(motion: TurningMotion) -> Sketch:
     rest_step = -(-static.size // _POINTS)
     frequency, lines = motion.harmonics("transmission_error")
     order = frequency / motion.rotation_frequency("pinion")
-    shown = (order > 0.0) & (order <= _HARMONICS * teeth)
+    in_range = (order > 0.0) & (order <= _HARMONICS * teeth)
     place, size = strongest_lines(
-        order[shown], displayed("static_transmission_error", np.abs(lines[shown]))
+        order[in_range], displayed("static_transmission_error", np.abs(lines[in_range]))
     )
     top = float(size.max())
     floor = top * 10.0**-_DECADES

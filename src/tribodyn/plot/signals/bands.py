@@ -109,8 +109,8 @@ def surrogate(result: Surrogate) -> Sketch:
                 traces.append(line(ends, ends + edge, f"{result.level:.0%} band", MUTED, **style))
         label = label_with(str(name).replace("_", " "), unit)
         rows.append(Row(f"Computed {label}", Panel("Predicted", traces)))
-        words = str(name).replace("_", " ")
-        qualities.append(f"{words} {result.errors[str(name)].determination:.4f}")
+        quantity = str(name).replace("_", " ")
+        qualities.append(f"{quantity} {result.errors[str(name)].determination:.4f}")
     title = f"R² over {result.true.shape[1]} held-out rows: {', '.join(qualities[:3])}"
     return stack_rows(title, rows, {"hovermode": "closest"})
 

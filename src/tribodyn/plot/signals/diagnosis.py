@@ -258,8 +258,8 @@ def sideband_cursors(cursors: SidebandCursors) -> Sketch:
     """Draw the orders around a carrier with the cursors of its sidebands."""
     low, high = (cursors.order[k] + s * cursors.spacing for k, s in ((0, -0.7), (-1, 0.7)))
     spectrum, unit = cursors.orders, readable(cursors.unit)
-    shown = (spectrum.orders >= low) & (spectrum.orders <= high)
-    order, size = strongest_lines(spectrum.orders[shown], spectrum.amplitudes[shown])
+    in_range = (spectrum.orders >= low) & (spectrum.orders <= high)
+    order, size = strongest_lines(spectrum.orders[in_range], spectrum.amplitudes[in_range])
     least = 0.1 * max(cursors.floor, 1e-6 * float(cursors.amplitude.max()))
     size = np.maximum(size, least)
     curves = [

@@ -263,9 +263,9 @@ def run_up_map(
         frequency = np.linspace(0.1 * run.profile.lowest, top, _ROWS)
         amplitude = _over_frequency(orders, frequency)[:, order]
         factor = 1e6 if unit == "m" else 1.0
-        place, shown = (displayed("speed", speed), frequency), "um" if unit == "m" else unit
+        place, level_unit = (displayed("speed", speed), frequency), "um" if unit == "m" else unit
         hover = "%{y:.5g} Hz at %{x:.4g}"
-        surface = amplitude_heatmap(*place, factor * amplitude, shown, hover)
+        surface = amplitude_heatmap(*place, factor * amplitude, level_unit, hover)
         surfaces.append((float(amplitude.max()) or 1.0, surface))
         line_number, block = orders.strongest()
         if orders.amplitude[line_number, block] > loudest[0]:

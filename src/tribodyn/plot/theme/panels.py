@@ -83,13 +83,13 @@ def _covered(traces: Sequence[Trace]) -> dict[str, str]:
     """Names of curves that lie on one before them, and the name of that."""
     curves = [(np.asarray(t.get("x")), _heights(t), t.get("name")) for t in traces]
     spans = [np.ptp(y[np.isfinite(y)]) for _, y, _ in curves if np.isfinite(y).any()]
-    near, covered = _COVERED * max(spans, default=0.0), dict[str, str]()
+    tolerance, covered = _COVERED * max(spans, default=0.0), dict[str, str]()
     for number, (x, y, name) in enumerate(curves):
         for x0, y0, first in curves[:number]:
             same = y.size > 1 and y.shape == y0.shape and first not in covered
             if same and name and first and name != first and np.array_equal(x, x0):
-                apart = np.abs(y - y0)
-                if np.isfinite(apart).any() and np.nanmax(apart) <= near:
+                distance = np.abs(y - y0)
+                if np.isfinite(distance).any() and np.nanmax(distance) <= tolerance:
                     covered[name] = first
                     break
     return covered
@@ -126,7 +126,7 @@ def _suffix(number: int) -> str:
     return str(number + 1) if number else ""
 
 
-def _placed(
+def _stacked(
     panels: Sequence[Panel], gap: int, alone: bool
 ) -> tuple[list[Trace], Trace, list[Trace]]:
     """Traces, layout and notes of stacked panels; ``alone`` with a horizontal axis each."""
@@ -145,7 +145,7 @@ def _placed(
 
 def stack(title: str, x_label: str, panels: Sequence[Panel], layout: Trace | None = None) -> Sketch:
     """Stack panels over one common horizontal axis, each with a legend to its right."""
-    more, (traces, merged, notes) = dict(layout or {}), _placed(panels, _GAP, alone=False)
+    more, (traces, merged, notes) = dict(layout or {}), _stacked(panels, _GAP, alone=False)
     x_axis = axis(x_label, anchor=f"y{_suffix(len(panels) - 1)}")
     merged["xaxis"] = {**x_axis, **more.pop("xaxis", {})}
     notes = [*more.pop("annotations", ()), *notes]
@@ -155,7 +155,7 @@ def stack(title: str, x_label: str, panels: Sequence[Panel], layout: Trace | Non
 def stack_rows(title: str, rows: Sequence[Row], layout: Trace | None = None) -> Sketch:
     """Stack panels, each over its own horizontal axis and with its own legend."""
     more = dict(layout or {})
-    traces, merged, notes = _placed([row.panel for row in rows], _WIDE_GAP, alone=True)
+    traces, merged, notes = _stacked([row.panel for row in rows], _WIDE_GAP, alone=True)
     shapes, notes = list(more.pop("shapes", ())), [*more.pop("annotations", ()), *notes]
     for number, row in enumerate(rows):
         suffix, marks = _suffix(number), event_lines(row.marks)

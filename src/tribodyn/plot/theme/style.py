@@ -106,8 +106,8 @@ def choice(
 ) -> Trace:
     """Describe a menu; each entry shows its title and some of the traces."""
     entries = [
-        {"label": label, "method": "update", "args": [{"visible": shown}, {"title.text": title}]}
-        for label, title, shown in zip(labels, titles, visible, strict=True)
+        {"label": label, "method": "update", "args": [{"visible": flags}, {"title.text": title}]}
+        for label, title, flags in zip(labels, titles, visible, strict=True)
     ]
     place = {"x": 1.0, "xanchor": "right", "y": 1.12, "yanchor": "top", "bgcolor": "white"}
     return {"buttons": entries, "active": first, **place}
