@@ -21,6 +21,8 @@ def test_figure_is_a_method_of_the_result(load: Load, tmp_path: Path) -> None:
     result = td.run(path)
     figure = result.plot_force_over_compression()
     assert len(figure.data[0].x) == result.response.time.size
+    report = result.save(tmp_path / "r") / "report.html"
+    assert "force_over_compression" in report.read_text(encoding="utf-8")
 
 
 def test_summary_figure_is_in_every_summary(

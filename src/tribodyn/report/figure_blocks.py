@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from tribodyn import plot
-from tribodyn.drawing import Sketch
+from tribodyn.drawing import Sketch, figures_of
 from tribodyn.errors import InputError
 from tribodyn.gear import Misalignment
 from tribodyn.plot import FIGURES, Drawing
@@ -77,6 +77,8 @@ _OTHER_TOPICS = {
 
 #: Margin above the panels for marks and buttons [px].
 _MARGIN = 44
+#: Height of a figure that states none [px].
+_HEIGHT = 420
 
 
 def topic_of(name: str) -> str:
@@ -108,8 +110,10 @@ def block_of_figure(name: str, heading: str, plotted: Any, caption: str) -> Bloc
     """Build a section with a figure; the page prints its title as text, which can wrap."""
     sketch = plotted if isinstance(plotted, Sketch) else Sketch(**plotted.to_plotly_json())
     layout, saved = dict(sketch.layout), TOP - _MARGIN
-    title, margin = layout.pop("title")["text"], layout["margin"]
-    layout |= {"margin": {**margin, "t": margin["t"] - saved}, "height": layout["height"] - saved}
+    # A figure of somebody else may have neither title nor size.
+    title, height = layout.pop("title", {}).get("text", ""), layout.get("height", _HEIGHT)
+    margin = {"t": TOP, **layout.get("margin", {})}
+    layout |= {"margin": {**margin, "t": margin["t"] - saved}, "height": height - saved}
     text = script_json(replace(sketch, layout=layout).to_json())
     return Block(name, heading, caption, title=title, height=round(layout["height"]), json=text)
 
@@ -165,8 +169,17 @@ def figure_blocks(result: Any) -> list[Block]:
     """Draw every figure of the report of any kind of case."""
     # Missing figures of a pair are merged by reason; parts have the figures that they need.
     if kind_of(result.case) in PAIRS:
-        return _joined(place.block() for place in _of_pair(result))
-    return [block for place in _of_parts(result) if not (block := place.block()).missing]
+        return _joined(place.block() for place in (*_of_pair(result), *_of_others(result)))
+    places = (*_of_parts(result), *_of_others(result))
+    return [block for place in places if not (block := place.block()).missing]
+
+
+def _of_others(result: Any) -> Iterator[_Place]:
+    """Figures that other packages and scripts have registered for this kind of result."""
+    for name in figures_of(result):
+        figure = FIGURES[name]
+        if isinstance(figure, Drawing) and not figure.draw.__module__.startswith("tribodyn."):
+            yield _Place(figure, result)
 
 
 def _of_pair(result: Result) -> Iterator[_Place]:

@@ -89,6 +89,8 @@ def _all_entries() -> list[tuple[tuple[str, ...], dict[str, Any]]]:
 
 def _entries_by_name(query: str) -> Entries:
     """Return entries with this name: as written, or else ignoring case, hyphens and underscores."""
+    from tribodyn.study.pipeline.summary_figures import split_key
+
     candidates = _all_entries()
     term_entries = [_of_word(meant)] if (meant := find_term(query)) else []
     exact = [entry for names, entry in candidates if query in names]
@@ -99,6 +101,8 @@ def _entries_by_name(query: str) -> Entries:
         for names, entry in candidates
         if key and names[0].startswith(f"{group}.NAME") and names[0].endswith(name)
     ]
+    if not exact and (figure := split_key(query)[3]) != query:  # a key of a summary
+        exact = [entry for names, entry in candidates if figure in names and "figure" in entry]
     plain_query = _plain_form(query)
     matches = exact or [e for names, e in candidates if plain_query in map(_plain_form, names)]
     return [*term_entries, *matches]

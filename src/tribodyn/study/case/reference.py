@@ -31,9 +31,9 @@ def default_of(option: Option, declared: bool = True) -> str:
     """Format the default of a declared key, or of an option of a model."""
     if option.required and declared:
         return "required"
-    if option.default is None or not declared:
+    if option.default is None or option.default is ... or (option.basis and not declared):
         return f"from {option.basis}" if option.basis else "none"
-    return option.show(option.default)
+    return option.show(option.default) + ("" if declared else ", of its model")
 
 
 def reference_tables() -> str:

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from tribodyn.machine.plane_law import mean_in_space
-from tribodyn.study.pipeline.summary_figures import Figures, figure_of
+from tribodyn.study.pipeline.summary_figures import Figures, figure_of, split_key
 from tribodyn.study.planetary.machine_stages import stage_figures
 
 if TYPE_CHECKING:
@@ -42,7 +42,8 @@ def summary_of(result: LoadResult) -> Figures:
 
 def without_rounding(figures: Mapping[str, float]) -> dict[str, float]:
     """Figures with an exact zero for those that are rounding of the largest one of their unit."""
-    units = {key: figure_of(key).unit for key in figures}
+    # Pure numbers are compared with those of their own name.
+    units = {key: figure_of(key).unit or split_key(key)[3] for key in figures}
     size: dict[str, float] = {}
     for key, value in figures.items():
         size[units[key]] = max(size.get(units[key], 0.0), abs(value))
