@@ -26,7 +26,7 @@ _CUTTING = ("hand_pinion", "process", "wheel_generation", "blade_groups")
 
 
 @contextmanager
-def _placed_in(table: str) -> Iterator[None]:
+def _located_in(table: str) -> Iterator[None]:
     """Map the arguments named by input errors to keys of a table of the case."""
     try:
         yield
@@ -54,7 +54,7 @@ def torque_problem(key: str, problem: Problem, inputs: UserInput) -> Problem:
 def blank_of(data: Section, teeth: tuple[int, int]) -> HypoidBlank:
     """Build the blanks of pinion and wheel from the keys of a table."""
     values = {name: getattr(data, name) for name in (*MEANINGS, *_CUTTING)}
-    with _placed_in(""):
+    with _located_in(""):
         return hypoid_blank(*teeth, **values)
 
 
@@ -82,10 +82,10 @@ def _built(gears: Gears) -> tuple[HypoidFlanks, tuple[ModelWarning, ...]]:
 
     eased = {name: getattr(gears.ease_off, name) for name, _ in EaseOffData.specs()}
     with collected() as warnings:
-        with _placed_in("ease_off."):
+        with _located_in("ease_off."):
             ease_off = EaseOff(**eased)
         blank = blank_of(gears, (gears.pinion.teeth, gears.wheel.teeth))
-        with _placed_in(""):
+        with _located_in(""):
             flanks = flanks_of(blank, gears.side, ease_off)
     return flanks, tuple(warnings)
 

@@ -275,17 +275,17 @@ def rating_problems(case: CaseData) -> Iterator[tuple[str, Problem]]:
             "and temperature_viscosity_coefficient"
         )
         yield "rating", Problem(what, "", why, remedy)
-    used = [getattr(case.gears, role).material for role in ("pinion", "wheel")]
-    for name in (name for name in names if name not in used):
+    materials = [getattr(case.gears, role).material for role in ("pinion", "wheel")]
+    for name in (name for name in names if name not in materials):
         what, remedy = f"{name} has no effect here", "Name it as material of a gear, or remove it"
         yield f"materials.{name}", Problem(what, "", "No gear names it", remedy)
-    for role, name in (("pinion", used[0]), ("wheel", used[1])):
+    for role, name in (("pinion", materials[0]), ("wheel", materials[1])):
         if name is not None and name not in names:
             what, why = f'there is no material "{name}"', f"Known: {', '.join(names) or 'none'}"
             remedy = did_you_mean(name, names, f"Add [materials.{name}]")
             yield f"gears.{role}.material", Problem(what, "", why, remedy)
             continue
-        if role == "wheel" and name == used[0]:
+        if role == "wheel" and name == materials[0]:
             continue  # reported with the pinion
         try:
             gear_material(case, role)

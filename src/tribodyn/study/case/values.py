@@ -261,9 +261,9 @@ def read_value(spec: Option, name: str, value: Any) -> Any:
         return _name(spec, name, value)
     if spec.kind == "numbers":
         return _list(spec, name, value, as_text)
-    wanted = bool if spec.kind == "flag" else str
-    if not isinstance(value, wanted):
-        remedy = "Write true or false" if wanted is bool else "Write it in quotes"
+    expected_type = bool if spec.kind == "flag" else str
+    if not isinstance(value, expected_type):
+        remedy = "Write true or false" if expected_type is bool else "Write it in quotes"
         raise FaultError(f"{name} = {written(value)}", f"{name} must be {spec.allowed()}", remedy)
     return str(Path(str(value)).absolute()) if spec.kind == "file" else value
 

@@ -70,6 +70,6 @@ def with_lifted_forces(
     """Motion whose forces of loose bearings are those of the lifted seats."""
     forces = motion.bearing_force.copy()
     for name, seat in seats.items():
-        away = np.minimum(response.fine.position @ seat.row - seat.lifted, 0.0)
-        forces[:, motion.bearing.index(name), :3] -= np.outer(seat.lost * away, seat.direction)
+        lift = np.minimum(response.fine.position @ seat.row - seat.lifted, 0.0)
+        forces[:, motion.bearing.index(name), :3] -= np.outer(seat.lost * lift, seat.direction)
     return replace(motion, bearing_force=forces)

@@ -160,12 +160,12 @@ class MachinePhaseMotion(MachineTurningMotion):
         seat, position, contact = self.seats[place.part], self._position, self._contact
         first = sum(max(len(each.contacts), 1) for each in self.machine.meshes.values())
         number = first + [*self.seats].index(place.part)
-        away = seat.lost * (position.amplitude @ seat.row)
-        away[0] -= seat.lost * seat.lifted
+        lift = seat.lost * (position.amplitude @ seat.row)
+        lift[0] -= seat.lost * seat.lifted
         share = float(seat.direction @ place.direction)
         return joined(
             force,
-            SensedLines(position.frequency, -share * away, position.numbers),
+            SensedLines(position.frequency, -share * lift, position.numbers),
             SensedLines(contact.frequency, share * contact.amplitude[:, number], contact.numbers),
         )
 

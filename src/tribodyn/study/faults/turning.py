@@ -146,11 +146,11 @@ def signal_lines(values: Array, period: float) -> tuple[Array, ComplexArray]:
     return np.arange(lines.size) / period, lines
 
 
-def refuse_long_period(cycles: int, seconds: float, most: int, remedy: str) -> None:
+def refuse_long_period(cycles: int, seconds: float, limit: int, remedy: str) -> None:
     """Refuse a motion that would need more memory than a notebook has."""
-    if cycles > most:
+    if cycles > limit:
         what = f"all repeats only after {cycles} mesh cycles, {seconds:.4g} s"
-        raise InputError(what, "faults", f"At most {most} mesh cycles are computed", remedy)
+        raise InputError(what, "faults", f"At most {limit} mesh cycles are computed", remedy)
 
 
 def repeated(response: Response, frequency: float, slower: float) -> Response:

@@ -150,8 +150,8 @@ def pair_case(
         if name in inner or (name in data and not (crossed and name in _OF_CYLINDRICAL))
     }
     if "materials" in tables:
-        used = {data["gears"][name].get("material") for name in names}
-        tables["materials"] = {k: v for k, v in tables["materials"].items() if k in used}
+        materials = {data["gears"][name].get("material") for name in names}
+        tables["materials"] = {k: v for k, v in tables["materials"].items() if k in materials}
     shared_dynamics = {k: v for k, v in data.get("dynamics", {}).items() if k in MESH_KEYS}
     mesh_dynamics = {k: v for k, v in body.items() if k in MESH_KEYS}
     pair = {k: v for k, v in body.items() if k in gears.Gears.fields and k not in inner}

@@ -227,15 +227,15 @@ def steps_of(case: Case, system: System, mesh_frequency: float) -> int:
     from tribodyn.dynamics.equations.step_limit import LIMIT, accurate_steps, rate_on_grid
 
     spec = Solver.spec(_STEPS)
-    most = spec.high if spec else float("inf")
+    high = spec.high if spec else float("inf")
     rate = rate_on_grid(system)
     needed = rate / (LIMIT * mesh_frequency)
-    if needed > most:
-        raise InputError(_too_slow(case, needed, most))
+    if needed > high:
+        raise InputError(_too_slow(case, needed, high))
     return case.solver.steps_per_mesh_cycle or accurate_steps(rate, mesh_frequency)
 
 
-def _too_slow(case: Case, needed: float, most: float) -> Problem:
+def _too_slow(case: Case, needed: float, high: float) -> Problem:
     from tribodyn import units
 
     def rpm(speed: float) -> str:
@@ -245,7 +245,7 @@ def _too_slow(case: Case, needed: float, most: float) -> Problem:
     return Problem(
         f"speed = {rpm(speed)} needs {needed:.3g} steps per mesh cycle",
         f"argument {GEARS[0]}_speed",
-        f"The structure vibrates so fast within one slow mesh cycle; {most:.0f} steps are the most",
-        f"The least speed that works is {rpm(_MARGIN * speed * needed / most)}; slower gears carry "
+        f"The structure vibrates so fast within one slow mesh cycle; {high:.0f} steps are the most",
+        f"The least speed that works is {rpm(_MARGIN * speed * needed / high)}; slower gears carry "
         "their load statically",
     )

@@ -160,7 +160,7 @@ def _mesh_figures(mesh: MeshTable) -> dict[str, Any]:
         "mean_mesh_stiffness": mesh.mean_mesh_stiffness,
         "mean_mesh_stiffness_secant": mesh.mean_mesh_stiffness,
         "mean_mesh_stiffness_tangent": mesh.mean_mesh_stiffness_tangent,
-        **_stiffness_apart(mesh),
+        **_stiffness_parts(mesh),
         "contact_ratio_under_load": mesh.contact_ratio_under_load,
         **_face_figures(mesh),
         "maximum_single_pair_stiffness": mesh.maximum_single_pair_stiffness,
@@ -178,7 +178,7 @@ def _face_figures(mesh: MeshTable) -> dict[str, Any]:
     return {"face_load_factor": mesh.face_load_factor, "load_face_position_range": travel}
 
 
-def _stiffness_apart(mesh: MeshTable) -> dict[str, Any]:
+def _stiffness_parts(mesh: MeshTable) -> dict[str, Any]:
     """Mean stiffness of the teeth and of the oil films, if these are in series."""
     if mesh.tooth_transmission_error is None:
         return {}
@@ -189,7 +189,7 @@ def _stiffness_apart(mesh: MeshTable) -> dict[str, Any]:
     return figures
 
 
-def _error_apart(mesh: MeshTable) -> dict[str, Any]:
+def _error_parts(mesh: MeshTable) -> dict[str, Any]:
     """Transmission error at rest of the teeth alone, and its change by oil films in series."""
     teeth = mesh.tooth_transmission_error
     if teeth is None:
@@ -226,7 +226,7 @@ def _static_error_figures(result: Result) -> dict[str, Any]:
         error, grid = result.transmission_error_at_rest(), result.mesh.grid
         figures = (grid.mean(error), np.ptp(error), grid._harmonics(error, _HARMONICS))
     mean, most, amplitudes = figures
-    parts = _error_apart(result.mesh)
+    parts = _error_parts(result.mesh)
     if parts and pair is not None and pair.teeth_differ:
         # The loaded contact of all teeth has no film.
         parts |= {f"mean_{name}_teeth": mean, f"peak_to_peak_{name}_teeth": most}
@@ -321,12 +321,12 @@ def _friction_power(result: Result, phase: Array, force: Array) -> Array:
     names = "friction_moment_pinion", "friction_moment_wheel"
     if result.friction is None:
         moments = (getattr(mesh.functions(), name).values for name in names)
-        return PhaseFunction(mesh.grid, _less(speeds, moments))(phase) * force
+        return PhaseFunction(mesh.grid, _power_difference(speeds, moments))(phase) * force
     moments = (result.friction.value(name, phase, force) for name in names)
-    return _less(speeds, moments) * force
+    return _power_difference(speeds, moments) * force
 
 
-def _less(speeds: tuple[float, float], moments: Iterable[Array]) -> Array:
+def _power_difference(speeds: tuple[float, float], moments: Iterable[Array]) -> Array:
     """Power of a moment on the pinion less that of one on the wheel."""
     pinion, wheel = (speed * moment for speed, moment in zip(speeds, moments, strict=True))
     return pinion - wheel

@@ -79,7 +79,7 @@ class CaseStage:
         body = dict(self.data["planets"][self.name])
         if mesh == "ring" and self.table.ring_normal_module is not None:
             body["normal_module"] = Plain(self.table.ring_normal_module)
-        distance = self._given_distance(mesh)
+        distance = self._stated_distance(mesh)
         if mesh == "ring" and self.table.planet_type != "meshed":
             distance = self.center_distance
         body.pop("center_distance", None)
@@ -87,7 +87,7 @@ class CaseStage:
             body["center_distance"] = Plain(abs(float(distance)))
         return {**self.data, "planets": {self.name: body}}
 
-    def _given_distance(self, mesh: str) -> float | None:
+    def _stated_distance(self, mesh: str) -> float | None:
         names = {"sun": "center_distance", "planet": "pair_center_distance"}
         value: float | None = getattr(self.table, names.get(mesh, "ring_center_distance"))
         return value

@@ -117,8 +117,8 @@ def lanes_of(case: Case, values: Mapping[str, Array], progress: Progress = SILEN
         else:
             members = [built(case)] * count
     frequency = speed * np.array([member.mesh.mesh_frequency for member in members])
-    used = {name: column for name, column in factors.items() if np.any(column != 1.0)}
-    return Lanes(members, frequency, used, _steps(members, frequency, factors))
+    varied_factors = {name: column for name, column in factors.items() if np.any(column != 1.0)}
+    return Lanes(members, frequency, varied_factors, _steps(members, frequency, factors))
 
 
 def check_spread_key(case: Case | MachineCase, key: str, column: Array) -> None:

@@ -143,8 +143,8 @@ def sobol_indices(
     if factors := [key for key in spread if key in SCALES]:
         what, why = f"{', '.join(factors)} cannot be spread", "Every variant is a case of its own"
         raise InputError(what, Argument("distributions"), why, "Spread keys of the case")
-    wanted = [figures] if isinstance(figures, str) else list(figures or ())
-    for name in wanted:
+    requested = [figures] if isinstance(figures, str) else list(figures or ())
+    for name in requested:
         if not is_figure(name):
             why, remedy = "Figures are those of the summary", "See summary.json of a run"
             remedy = did_you_mean(name, list(SUMMARY), remedy)
@@ -153,7 +153,7 @@ def sobol_indices(
     progress.start("Variants", require_whole("size", size, 2) * (len(spread) + 2))
     first = indices_of(runs.numbers, runs.distributions, size, seed=seed)
     progress.finish()
-    names = _varying(runs, wanted)
+    names = _varying(runs, requested)
     shares = [
         indices_of(runs.figure(name), runs.distributions, size, seed=seed, level=_LEVEL)
         for name in names
@@ -209,7 +209,7 @@ def _rows(values: dict[str, Array]) -> list[tuple[float, ...]]:
     return [tuple(map(float, row)) for row in zip(*values.values(), strict=True)]
 
 
-def _varying(runs: _Runs, wanted: Sequence[str]) -> list[str]:
+def _varying(runs: _Runs, requested: Sequence[str]) -> list[str]:
     """Figures that were requested; otherwise those of a sweep that vary, or all that do."""
     summaries = list(runs.summaries.values())
     shared = [name for name in in_order(summaries[0]) if all(name in s for s in summaries)]
@@ -218,13 +218,13 @@ def _varying(runs: _Runs, wanted: Sequence[str]) -> list[str]:
         name for name, each in values.items()
         if np.all(np.isfinite(each)) and np.ptp(each) > _STILL * float(np.abs(each).max())
     ]  # fmt: skip
-    for name in wanted:
+    for name in requested:
         if name not in vary:
             kind = "does not vary" if name in shared else "is not in every summary"
             why = f"Figures that vary: {', '.join(vary)}"
             raise ComputationError(f"{name} {kind}", "", why, "Choose one of these")
     parts = [name for name in vary if name.rpartition(".")[2] in OF_PARTS]
-    names = list(wanted) or [name for name in SHOWN if name in vary] or parts or vary
+    names = list(requested) or [name for name in SHOWN if name in vary] or parts or vary
     if not names:
         what, why = "no figure of the summary varies", "Shares of a variance need one above zero"
         raise ComputationError(what, "", why, "Widen the tolerances, or spread other keys")
