@@ -147,9 +147,9 @@ def root_stress_by_elements(
     for tooth in range(load.shape[1]):
         stress = np.zeros((*load[:, tooth].shape, unit.position.shape[0]))
         for other in range(load.shape[1]):
-            away = np.rint((radii[:, other] - radii[:, tooth]) / pair.base_pitch)
+            shift = np.rint((radii[:, other] - radii[:, tooth]) / pair.base_pitch)
             for number in NEIGHBOURS:
-                pressed = np.where((away == number) & (load[:, tooth] > 0.0), load[:, other], 0.0)
+                pressed = np.where((shift == number) & (load[:, tooth] > 0.0), load[:, other], 0.0)
                 if pressed.any():
                     unit_stress = at_places(unit, number, radii[:, other] / share)
                     stress += pressed[..., None] * unit_stress

@@ -158,10 +158,10 @@ def cutter_section(gear: CylindricalGear, cutter: ShaperCutter) -> RootSection:
 
     envelope = _Envelope(gear, cutter)
     tangent = _tangent_angle(gear)
-    wanted = tangent - math.pi / 2.0 if gear.is_ring else -math.pi / 2.0 - tangent
+    target_angle = tangent - math.pi / 2.0 if gear.is_ring else -math.pi / 2.0 - tangent
 
     def difference(normal_angle: float) -> float:
-        return math.remainder(envelope.point(normal_angle)[2] - wanted, 2.0 * math.pi)
+        return math.remainder(envelope.point(normal_angle)[2] - target_angle, 2.0 * math.pi)
 
     last = 0.5 * math.pi - gear.normal_pressure_angle  # where the flank of the cutter begins
     reaches = envelope.center > envelope.cutter_pitch

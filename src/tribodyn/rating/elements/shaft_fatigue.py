@@ -148,8 +148,8 @@ class ShaftNotch:
         require_between("surface_factor", self.surface_factor, 1.0, 3.0)
         needed = {"notch_factors": self.kind == "given"}
         needed |= dict.fromkeys(("large_diameter", "radius"), self.kind in _SHAPES)
-        for name, wanted in needed.items():
-            if wanted and getattr(self, name) is None:
+        for name, required in needed.items():
+            if required and getattr(self, name) is None:
                 why = f"A notch of kind {self.kind} is described by it"
                 raise InputError(f"{name} is missing", Argument(name), why, f"Give {name}")
         if self.kind in _SHAPES:
@@ -334,7 +334,7 @@ def rate_shaft(
     axial = stress.means[0] + stress.means[1]
     mean = math.sqrt(axial**2 + 3.0 * stress.means[2] ** 2)
     strength = factors["K_1"] * material.tensile_strength
-    used = []
+    utilization = []
     for index, kind in enumerate(_KINDS):
         amplitude = abs(stress.amplitudes[index])
         mean_stress = mean / math.sqrt(3.0) if index == 2 else mean
@@ -351,6 +351,6 @@ def rate_shaft(
         branch = "yield strength" if bound < allowed else "mean stress"
         allowed = max(min(allowed, bound), 0.0)
         allowed = factors.record(f"sigma_ADK_{kind}", allowed, SOURCE, unit="Pa", branch=branch)
-        used.append(amplitude / allowed if amplitude else 0.0)
-    safety = 1.0 / math.hypot(used[0] + used[1], used[2])
+        utilization.append(amplitude / allowed if amplitude else 0.0)
+    safety = 1.0 / math.hypot(utilization[0] + utilization[1], utilization[2])
     return ShaftRating(factors.record("S", safety, f"{SOURCE}, at least 1.2"), factors)

@@ -113,8 +113,8 @@ def pressed_stress(
     """
     step = place[1] - place[0]
     edges = np.append(place, place[-1] + step) - 0.5 * step
-    away, z = position[..., None] - edges, np.broadcast_to(depth, position.shape)[..., None]
-    angle, distance = np.arctan2(z, away), np.hypot(z, away)
+    offset, z = position[..., None] - edges, np.broadcast_to(depth, position.shape)[..., None]
+    angle, distance = np.arctan2(z, offset), np.hypot(z, offset)
     of_edges = angle, 0.5 * np.sin(2.0 * angle), 0.5 * np.cos(2.0 * angle), np.log(distance)
     turn, sine, cosine, log = (np.diff(each) @ pressure / np.pi for each in of_edges)
     along, shear = -turn - sine, cosine
