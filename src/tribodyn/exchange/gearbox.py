@@ -184,7 +184,7 @@ class GearboxModel:
         self.remarks = [remark] if (remark := version_remark(file)) else []
         self.stages = [self._stage(component) for component in file.of_kind("cylindrical_stage")]
         self.loads = [self._load(number) for number in sorted(file.load_cases)] or [self._load(0)]
-        self._remark_on_rest()
+        self._remark_on_unread()
 
     def __repr__(self) -> str:
         count = sum(self.components.values())
@@ -428,7 +428,7 @@ class GearboxModel:
                 f"distance has no backlash at {stage.shift_sum:.4f}",
             )
 
-    def _remark_on_rest(self) -> None:
+    def _remark_on_unread(self) -> None:
         for kind in _OTHER_STAGES:
             if kind in self.components:
                 add_remark(self, f"{self.components[kind]} {kind}: not computed, and not read")

@@ -258,5 +258,5 @@ def _support(bearing: Component) -> tuple[dict[str, Any], str]:
         notes.append(f"{_STIFF:g} N/m where the file has no stiffness")
     if max(radial or 0.0, axial or 0.0) > _STIFF or tilting > _TILTING:
         notes.append(f"rigid in the file: {_STIFF:g} N/m, {_TILTING:g} N*m/rad against tilting")
-    used = {k: value for k, value in table.items() if value or k == "radial_stiffness"}
-    return used, "; ".join(notes)
+    filled = {k: value for k, value in table.items() if value or k == "radial_stiffness"}
+    return filled, "; ".join(notes)

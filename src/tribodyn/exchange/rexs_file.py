@@ -296,12 +296,12 @@ def model_of(tree: dict[str, Any], place: str) -> RexsFile:
         _id(item, place): _components(item.get("components"), place)
         for item in _dicts(spectrum, "load_cases", place)
     }
-    _require_known(components, relations, cases, place)
+    _refuse_missing(components, relations, cases, place)
     application = f"{tree.get('applicationId', '')} {tree.get('applicationVersion', '')}".strip()
     return RexsFile(str(tree.get("version", "")), application, components, relations, cases)
 
 
-def _require_known(
+def _refuse_missing(
     components: dict[int, Component],
     relations: list[Relation],
     cases: dict[int, dict[int, Component]],
