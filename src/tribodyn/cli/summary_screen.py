@@ -76,9 +76,9 @@ def _side_by_side(first: list[str], columns: list[list[str]]) -> Iterator[str]:
     label_width = max(map(len, first))
     start = 0
     while start < len(columns):
-        end, used = start, label_width
-        while end < len(columns) and (end == start or used + widths[end] <= _WIDTH):
-            used += widths[end]
+        end, width_used = start, label_width
+        while end < len(columns) and (end == start or width_used + widths[end] <= _WIDTH):
+            width_used += widths[end]
             end += 1
         for number, label in enumerate(first):
             fitting = zip(columns[start:end], widths[start:end], strict=True)

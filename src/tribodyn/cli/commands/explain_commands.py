@@ -43,7 +43,7 @@ def explain(symbol: str, /, *more: str, json: Flag = False) -> None:
     if query.lower() == "friction":
         _friction_laws(json)
         return
-    entries = _entries_by_name(query) or _entries_with_words(query)
+    entries = _entries_by_name(query) or _entries_by_text(query)
     if not entries:
         raise InputError(_unknown(query))
     if json:
@@ -92,7 +92,7 @@ def _entries_by_name(query: str) -> Entries:
     from tribodyn.study.pipeline.summary_figures import split_key
 
     candidates = _all_entries()
-    term_entries = [_of_word(meant)] if (meant := find_term(query)) else []
+    term_entries = [_term_entry(meant)] if (meant := find_term(query)) else []
     exact = [entry for names, entry in candidates if query in names]
     group, _, key = query.partition(".")
     name = f".{key.rpartition('.')[2]}"  # of bearings.A.clearance
@@ -108,7 +108,7 @@ def _entries_by_name(query: str) -> Entries:
     return [*term_entries, *matches]
 
 
-def _entries_with_words(query: str) -> Entries:
+def _entries_by_text(query: str) -> Entries:
     """Return entries with the words in their names (full words first), or else in their meaning."""
     candidates, plain_query = _all_entries(), _plain_form(query)
     ranks: list[Entries] = [[], [], []]
@@ -123,7 +123,7 @@ def _entries_with_words(query: str) -> Entries:
     return [*ranks[0], *ranks[1]] or ranks[2]
 
 
-def _of_word(meant: Term) -> dict[str, Any]:
+def _term_entry(meant: Term) -> dict[str, Any]:
     return {"answer": meant.meaning, "meaning": "", "see": meant.key, "page": f"docs/{meant.page}"}
 
 

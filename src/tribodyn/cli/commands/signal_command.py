@@ -319,9 +319,9 @@ def _list(file: Path, recording: Recording, json: bool) -> None:
 def _analysis(recording: Recording, name: str, options: Channel, turning: Shaft) -> SignalAnalysis:
     from tribodyn.measurement import analyse_signal
 
-    _known_channel(recording, name, "--channel")
+    _check_channel(recording, name, "--channel")
     if turning.tacho is not None:
-        _known_channel(recording, turning.tacho, "--tacho")
+        _check_channel(recording, turning.tacho, "--tacho")
         if turning.tacho == name:
             why = "Pulses are not what is analysed"
             raise InputError(f"{name} is both", "--channel and --tacho", why, "Name two channels")
@@ -354,7 +354,7 @@ def _analysis(recording: Recording, name: str, options: Channel, turning: Shaft)
         raise type(error)([_by_option(each) for each in error.problems]) from None
 
 
-def _known_channel(recording: Recording, name: str, option: str) -> None:
+def _check_channel(recording: Recording, name: str, option: str) -> None:
     if name not in recording.channels:
         names = list(recording.channels)
         why = f"The recording has {', '.join(names[:20])}"
