@@ -34,9 +34,9 @@ def _exaggeration(meshes: Sequence[BentMesh], module: float) -> float:
     largest = max(
         float(np.abs(mesh.displacement[name]).max()) for mesh in meshes for name, _ in _GEARS
     )
-    wanted = _LARGEST_DISPLACEMENT * module / largest
-    power = 10.0 ** math.floor(math.log10(wanted))
-    return power * max(digit for digit in (1.0, 2.0, 5.0) if digit * power <= wanted)
+    target = _LARGEST_DISPLACEMENT * module / largest
+    power = 10.0 ** math.floor(math.log10(target))
+    return power * max(digit for digit in (1.0, 2.0, 5.0) if digit * power <= target)
 
 
 def _trace(points: ComplexArray, name: str, **more: Any) -> Trace:
@@ -100,8 +100,8 @@ def _window(contact: LoadedContact) -> Trace:
     pair = contact.gear_pair
     ends = on_line_of_action(pair, np.array(pair.path_limits))
     # High enough for the path of contact and the arrows.
-    wanted = 0.5 * abs(ends[1, 1] - ends[1, 0]) + _ARROW * pair.pinion.normal_module
-    scale = max(1.0, wanted / (_WINDOW[1] * pair.pinion.normal_module))
+    half_height = 0.5 * abs(ends[1, 1] - ends[1, 0]) + _ARROW * pair.pinion.normal_module
+    scale = max(1.0, half_height / (_WINDOW[1] * pair.pinion.normal_module))
     middle = displayed("center_distance", ends.mean(axis=1))
     half = displayed("center_distance", scale * np.array(_WINDOW) * pair.pinion.normal_module)
     x, y = (

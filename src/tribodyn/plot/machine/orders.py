@@ -212,14 +212,14 @@ def kinematic_frequencies(lines: KinematicFrequencies) -> Sketch:
     rows = list(dict.fromkeys(lines.part))
     traces = []
     for number, part in enumerate(rows):
-        mine = [k for k, name in enumerate(lines.part) if name == part]
-        first = {float(lines.frequency[k]): k for k in reversed(mine)}
-        named = [k in first.values() and "GMF " not in lines.symbol[k] for k in mine]
-        text = [lines.symbol[k] * labelled for k, labelled in zip(mine, named, strict=True)]
-        meanings = [f"{lines.symbol[k]}, {lines.meaning[k]}" for k in mine]
+        index = [k for k, name in enumerate(lines.part) if name == part]
+        first = {float(lines.frequency[k]): k for k in reversed(index)}
+        named = [k in first.values() and "GMF " not in lines.symbol[k] for k in index]
+        text = [lines.symbol[k] * labelled for k, labelled in zip(index, named, strict=True)]
+        meanings = [f"{lines.symbol[k]}, {lines.meaning[k]}" for k in index]
         style: Trace = {"textposition": "top center", "customdata": meanings, "showlegend": False}
         style["hovertemplate"] = "%{x:.6g} Hz: %{customdata}<extra></extra>"
-        place = (lines.frequency[mine], [part] * len(mine), part, COLORS[number % len(COLORS)])
+        place = (lines.frequency[index], [part] * len(index), part, COLORS[number % len(COLORS)])
         trace = marked(*place, 8, "line-ns-open", text=text, **style)
         traces.append({**trace, "mode": "markers+text"})
     title = f"{len(rows)} parts, input at {lines.input_frequency:.4g} Hz"

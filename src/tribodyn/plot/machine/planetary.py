@@ -170,10 +170,10 @@ def planetary_forces(motion: PlanetaryMotion) -> Sketch:
     panels.append(replace(panel, size=float(displayed("deflection", size))))
     peak = float(motion.sun_mesh_force.max())
     load = float(motion.mean(motion.sun_mesh_force).mean())
-    still = np.ptp(sun, axis=0).max() <= ROUNDING * size
+    is_constant = np.ptp(sun, axis=0).max() <= ROUNDING * size
     title = (
         f"Sun meshes carry {rounded('mesh_force', load)} in the mean and "
-        f"{rounded('mesh_force', peak)} at most{'; the sun does not move' if still else ''}"
+        f"{rounded('mesh_force', peak)} at most{'; the sun does not move' if is_constant else ''}"
     )
     return stack(
         title, f"Phase of the mesh cycle, 1 = {1e3 / motion.mesh_frequency:.4g} ms", panels

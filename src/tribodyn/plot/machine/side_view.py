@@ -196,9 +196,9 @@ def _cone(machine: Machine, name: str) -> tuple[list[float], list[float]] | None
     inner, outer = (
         getattr(pair.blank, f"{end}_cone_distance_{role}") - mean for end in ("inner", "outer")
     )
-    away = float((pair.crossing[number] - pair.nodes[number]) @ pair.frames[number][0])
+    apex_offset = float((pair.crossing[number] - pair.nodes[number]) @ pair.frames[number][0])
     distance = getattr(pair.blank, f"calculation_point_{role}")
-    middle = machine.gears[name].node_position + away - pair.apex[number] * distance
+    middle = machine.gears[name].node_position + apex_offset - pair.apex[number] * distance
     x = [middle - pair.apex[number] * d * math.cos(angle) for d in (inner, outer)]
     radius = [pair.working_radii[number] + d * math.sin(angle) for d in (inner, outer)]
     corners = [radius[0], radius[1], -radius[1], -radius[0], radius[0]]

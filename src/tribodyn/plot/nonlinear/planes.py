@@ -165,8 +165,8 @@ def _range(rms: Any) -> dict[str, float]:
     finite = rms[np.isfinite(rms)]
     if not finite.size:
         return {}
-    most, usual = float(finite.max()), float(np.quantile(finite, _USUAL))
-    return {"zmin": 0.0, "zmax": usual} if 0.0 < 2.0 * usual < most else {}
+    largest, usual = float(finite.max()), float(np.quantile(finite, _USUAL))
+    return {"zmin": 0.0, "zmax": usual} if 0.0 < 2.0 * usual < largest else {}
 
 
 def _periods(survey: ParameterMap, x: Any, y: Any) -> Trace:

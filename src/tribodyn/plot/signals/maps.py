@@ -94,11 +94,11 @@ def spectrogram(result: Spectrogram) -> Sketch:
 
 def strongest_orders(result: OrderMap) -> list[float]:
     """Find the three orders that reach the largest amplitudes."""
-    most = np.sqrt(np.mean(result.amplitude**2, axis=1))
+    rms = np.sqrt(np.mean(result.amplitude**2, axis=1))
     main_lobe = 3  # lines: main lobe of the window
-    most[:main_lobe] = 0.0
-    above = (most >= np.append(0.0, most[:-1])) & (most > np.append(most[1:], 0.0))
-    peak = np.flatnonzero(above & (most > 0.01 * float(most.max())))
+    rms[:main_lobe] = 0.0
+    above = (rms >= np.append(0.0, rms[:-1])) & (rms > np.append(rms[1:], 0.0))
+    peak = np.flatnonzero(above & (rms > 0.01 * float(rms.max())))
     lines: list[int] = []
     reach = result.amplitude.max(axis=1)
     for number in peak[np.argsort(reach[peak])[::-1]]:
