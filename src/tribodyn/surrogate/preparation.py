@@ -59,8 +59,8 @@ class Scaling:
 
     def outliers(self, columns: Array, limit: float) -> Mask:
         """Rows with a value further than so many standard deviations from the mean."""
-        away = np.abs(columns - self.mean) > limit * self.deviation
-        return np.asarray(np.any(away & (self.deviation > 0.0), axis=1))
+        is_outlier = np.abs(columns - self.mean) > limit * self.deviation
+        return np.asarray(np.any(is_outlier & (self.deviation > 0.0), axis=1))
 
     @property
     def span(self) -> Array:
