@@ -151,14 +151,14 @@ class Plan:
     def __init__(self, layout: Layout, stages: Sequence[Mapping[str, Any]]) -> None:
         self.layout, self.chunks = layout, list[Chunk]()
         orders: list[Index] = []
-        placed_members = np.zeros(layout.count if len(stages) > 1 else 0, dtype=bool)
+        ordered_members = np.zeros(layout.count if len(stages) > 1 else 0, dtype=bool)
         begin = 0
         for number, facts in enumerate(stages):
             size = layout.count
             if len(stages) > 1:
                 places = layout.places(facts)
-                orders.append(places[~placed_members[places]])
-                placed_members[places] = True
+                orders.append(places[~ordered_members[places]])
+                ordered_members[places] = True
                 size = orders[-1].size
             for n, first in enumerate(range(0, size, facts["chunk"])):
                 last = min(first + facts["chunk"], size)
