@@ -246,8 +246,8 @@ def _on_clock(
     progress.finish()
     fine = count if steps is not None else min(samples // (2 * system.cycles), _RECORDED)
     grid = prepared.grid(max(fine, min(prepared.grids)))
-    wanted = stability and solution.error <= tolerance
-    multipliers = _multipliers(prepared, residual, solution) if wanted else np.zeros(0, complex)
+    assessed = stability and solution.error <= tolerance
+    multipliers = _multipliers(prepared, residual, solution) if assessed else np.zeros(0, complex)
     error = max(solution.error, float(np.finfo(float).eps))
     facts = {"error": error, "step_error": step_error, "floquet_multipliers": multipliers}
     converged = bool(np.isfinite(error) and error <= tolerance)

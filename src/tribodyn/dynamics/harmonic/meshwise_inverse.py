@@ -115,8 +115,8 @@ class _OnePhase:
         receptances = receptances.reshape(*omega.shape, *receptances.shape[1:])
         receptances[unpaired] = 0.0
         rate = np.where(unpaired, 0.0, 1j * omega)
-        still = receptances @ (mean[0] + rate[..., None, None] * mean[1])
-        self.base = np.linalg.inv(np.eye(still.shape[-1]) - still)
+        mean_gain = receptances @ (mean[0] + rate[..., None, None] * mean[1])
+        self.base = np.linalg.inv(np.eye(mean_gain.shape[-1]) - mean_gain)
         varying = [varying[0], varying[1] * np.abs(omega).max()]
         varying = [part.reshape(self.teeth, -1, *part.shape[1:]).mean(axis=0) for part in varying]
         push, self.along = _bases(varying)
