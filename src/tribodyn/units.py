@@ -96,7 +96,7 @@ _SCALES: dict[str, dict[str, str | int | Fraction]] = {
     "kg": {"g": "1e-3"},
     "kg*m^2": {"kg*mm^2": "1e-6", "kg*cm^2": "1e-4", "g*mm^2": "1e-9"},
     "kg/m^3": {"g/cm^3": 1000, "kg/dm^3": 1000, "kg/l": 1000},
-    "s": {"ms": "1e-3", "us": "1e-6", "min": 60},
+    "s": {"ms": "1e-3", "us": "1e-6", "min": 60, "h": 3600},
     "Hz": {"kHz": 1000},
     "rad": {"deg": _PI / 180},
     "rad/s": {"rpm": _PI / 30},

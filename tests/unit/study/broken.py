@@ -161,7 +161,7 @@ BROKEN = (
     Broken("helix-angle", _MODULE, _MODULE + '\nhelix_angle = "-15 deg"', "helix_angle",
            ("Allowed: 0 deg to 60 deg (the hand gives its sign)", "without its sign")),
     Broken("worm", 'driver = "pinion"', 'driver = "pinion"\nworm = 3', "worm",
-           ("Worm gears and racks are not in it",)),
+           ("Not in this version: worm gears",)),
     Broken("gear-of-the-torque", _SPEED, _SPEED + '\ntorque_of = "wheel"', "torque_of",
            ("speed_of names the gear whose speed and torque are given", "Write speed_of")),
     Broken("support-of-one-gear", _DYNAMICS, 'bearing_stiffness_pinion = "1e9 N/m"',

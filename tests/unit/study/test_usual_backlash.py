@@ -179,4 +179,5 @@ def test_teeth_of_a_stage_that_touch_early_are_named():
     early = {"dynamics.backlash": 1e-6, f"gears.{sun}.modification.lead_slope": 20e-6}
     fault = problem(rehearse_machine, stage.replace(early))
     assert fault == problem(run_machine, stage.replace(early))
-    assert fault[1].startswith(f'stage "{part.name}", gears {sun} and {planet}: a pair touches')
+    who = f'mesh {part.name}_sun1: stage "{part.name}", gears {sun} and {planet}: a pair touches'
+    assert fault[1].startswith(who)

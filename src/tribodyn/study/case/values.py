@@ -315,7 +315,7 @@ def read_fields(
     for name, field in options.items():
         key = f"{path}.{name}" if path else name
         if isinstance(field, Table):
-            values[name] = _read_inner(field, data, key, chosen, problems)
+            values[name] = _read_inner(field, data.get(name), key, chosen, problems)
         elif model and name == cls.selector:
             values[name] = model.name
         elif name in data:
@@ -336,18 +336,18 @@ def read_fields(
 
 
 def _read_inner(
-    table: Table, data: Mapping[str, Any], key: str, chosen: Chosen, problems: KeyedProblems
+    table: Table, value: Any, key: str, chosen: Chosen, problems: KeyedProblems
 ) -> Section | None:
-    name = key.rpartition(".")[2]
-    if name not in data:
+    if value is None:
         if table.default == "none":
             return None
         if table.default == "required":
             problems.append((key, _missing_table(table.kind, key)))
             return None
-    inner = dict(named_rows(data.get(name))) or data.get(name, {})
+    inner = dict(named_rows(value)) or ({} if value is None else value)
     if isinstance(inner, Mapping):
         return read_table(table.kind, inner, key, chosen, problems)
+    name = key.rpartition(".")[2]
     what = f"{name} = {written(inner)}"
     problems.append((key, Problem(what, "", f"{name} is a table", f"Write [{key}]")))
     return None
