@@ -103,7 +103,7 @@ LINES: dict[str, int] = {
     "scope": 55,
     "signals": 1788,
     "stiffness": 5161,
-    "study": 18565,
+    "study": 18569,
     "surrogate": 777,
     "types": 7,
     "uncertainty": 290,

@@ -188,6 +188,10 @@ def _factor(name: str, factor: Any) -> tuple[str, ...]:
 def sentences(rating: CaseRating) -> list[str]:
     """What limits the design and what would help, the life of the bearings, what is not rated."""
     lines = [limits_in_words(rating)] if rating.verdicts() else []
+    for mode in ("scuffing", "micropitting"):
+        name = f"{mode}_safety{'_flash' if mode == 'scuffing' else ''}"
+        if rating.ratings and all(getattr(r.standard, name) is None for r in rating.ratings):
+            lines.append(f"{mode.capitalize()} is not rated: state rating.{mode}_load_stage.")
     if (life := rating.system_life) is not None:
         rated = [each for each in rating.parts.bearings if each.life is not None]
         lines.append(f"Life of {len(rated)} bearings together: {_hours(life)} h.")

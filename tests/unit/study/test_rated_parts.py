@@ -13,6 +13,7 @@ from tribodyn.cli import main
 from tribodyn.errors import InputError
 from tribodyn.rating import ShaftMaterial, ShaftNotch, ShaftStress, rate_shaft
 from tribodyn.study import MachineCase, failure_probability, sobol_indices
+from tribodyn.study.pipeline.summary_figures import is_figure
 
 MACHINE: dict[str, Any] = {
     "shafts": {
@@ -117,6 +118,13 @@ def test_safeties_and_lives_are_figures_of_the_summary(result):
     assert figures["bearings.A.basic_life"] == rating.bearings["A"].basic_life
     assert figures["shafts.in.fatigue_safety"] == rating.shafts["in"]["step"].safety
     assert "bearings.C.basic_life" not in figures
+    assert all(map(is_figure, figures))
+
+
+def test_a_rated_machine_is_saved_with_its_report(result, tmp_path):
+    report = (result.save(tmp_path / "r") / "report.html").read_text(encoding="utf-8")
+    assert "Load capacity" in report
+    assert td.load_result(tmp_path / "r").summary() == result.summary()
 
 
 @pytest.mark.slow

@@ -327,10 +327,15 @@ def test_bevel_and_hypoid_gears_are_refused_with_the_reason(name):
         td.load_case(name).replace({"rating.required_life": "20000 h"})
 
 
-def test_an_idler_of_a_machine_is_bent_both_ways_and_its_load_cases_add_up():
+def test_an_idler_of_a_machine_is_bent_both_ways_and_its_load_cases_add_up(tmp_path):
     from tribodyn.study import MachineCase
+    from tribodyn.study.pipeline.summary_figures import is_figure
 
-    rating = td.run(MachineCase(**MACHINE)).rating
+    result = td.run(MachineCase(**MACHINE))
+    rating, figures = result.rating, result.summary()
+    assert any(key.endswith("meshes.first.pitting_safety") for key in figures)
+    assert all(map(is_figure, figures))
+    result.save(tmp_path / "r")
     factors = {mesh: gears["z2"] for mesh, gears in _by_gear(rating).items()}
     assert all(gear.factors["Y_M"] < 1.0 for gear in factors.values())
     assert _by_gear(rating)["first"]["z1"].factors["Y_M"] == 1.0
