@@ -228,10 +228,10 @@ class Drawing:
 
     def _check_options(self, options: Iterable[str]) -> None:
         """Refuse options that the figure does not have."""
-        known = _options(self.draw)
-        if any(each.kind is each.VAR_KEYWORD for each in known):
+        declared = _options(self.draw)
+        if any(each.kind is each.VAR_KEYWORD for each in declared):
             return
-        names = [each.name for each in known]
+        names = [each.name for each in declared]
         for name in options:
             if name not in names:
                 why = f"It has {', '.join(names) or 'none'}"

@@ -58,7 +58,7 @@ def test_what_is_not_modelled_is_not_there(feature, capsys) -> None:
     options = {f"{key}={name}" for key, spec in KEYS.items() if spec.names for name in spec.names()}
     for word in feature.absent:
         assert [name for name in {*KEYS, *options} if word in name] == []
-    for word in feature.words:
+    for word in feature.terms:
         assert feature.text in find_term(word).meaning
         assert call(["explain", *word.split(), "--json"]) == 0
         (first, *_) = json.loads(capsys.readouterr().out)
@@ -75,7 +75,7 @@ def test_the_check_sees_what_is_wrong() -> None:
 
 def denials(text: str) -> list[str]:
     """Lines that deny what is modelled."""
-    words = "|".join(word for each in MODELLED for word in each.words)
+    words = "|".join(word for each in MODELLED for word in each.terms)
     hand_written = re.sub(r"<!-- scope \w+ -->.*?<!-- end -->", "", text, flags=re.DOTALL)
     known = [each.text for each in MISSING]
     for each in known:

@@ -33,7 +33,7 @@ class Command(NamedTuple):
 COMMANDS = (
     Command("cases", "case_commands:cases", "List the built-in cases.", takes_case=False),
     Command(
-        "app", "app_command:app", "Serve a page in the browser for the whole job.", "fzg-roughness"
+        "app", "run_command:app", "Serve a page in the browser for the whole job.", "fzg-roughness"
     ),
     Command("run", "run_command:run", "Compute a case and write its report.", "fzg-roughness"),
     Command(

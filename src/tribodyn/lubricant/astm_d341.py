@@ -139,8 +139,8 @@ def viscosity_from_slope(temperature: float, point: TemperaturePoint, slope: flo
 
     The slope is the fall of ln(viscosity) per kelvin at the point [1/K].
     """
-    there, viscosity = point[0], 1e6 * point[1]
+    reference, viscosity = point[0], 1e6 * point[1]
     shifted = viscosity + _SHIFT
-    steepness = slope * viscosity * there / (shifted * math.log(shifted))
-    ordinate = math.log10(math.log10(shifted)) - steepness * math.log10(temperature / there)
+    steepness = slope * viscosity * reference / (shifted * math.log(shifted))
+    ordinate = math.log10(math.log10(shifted)) - steepness * math.log10(temperature / reference)
     return float(1e-6 * (10.0**10.0**ordinate - _SHIFT))

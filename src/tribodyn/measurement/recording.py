@@ -297,14 +297,14 @@ def _aligned(
     samples: dict[str, Array], data: RecordingData, rate: float, path: Any
 ) -> dict[str, Array]:
     """Samples of channels that start at different times, cut to the time that all of them have."""
-    known = {name: start for name in samples if (start := data.start(name)) is not None}
-    first = min(known.values(), default=0.0)
-    late = {name: (start - first) * rate for name, start in known.items()}
+    times = {name: start for name in samples if (start := data.start(name)) is not None}
+    first = min(times.values(), default=0.0)
+    late = {name: (start - first) * rate for name, start in times.items()}
     if max(late.values(), default=0.0) <= _SAME_START:
         return samples
-    starts = ", ".join(f"{name} {start - first:.7g} s" for name, start in list(known.items())[:20])
+    starts = ", ".join(f"{name} {start - first:.7g} s" for name, start in list(times.items())[:20])
     what, remedy = "its channels start at different times", "Select others with channels=[...]"
-    unknown = [name for name in samples if name not in known]
+    unknown = [name for name in samples if name not in times]
     if unknown or (rate == 1.0 and not (data.rates or data.times)):
         why = f"They are {starts}; that of {unknown[0]} is not known" if unknown else (
             f"They are {starts}, and the sampling rate is not known"

@@ -20,8 +20,8 @@ class Feature:
     page: str = ""  #: page of the documentation; empty: not modelled
     evidence: tuple[str, ...] = ()  #: what exists because of it
     absent: tuple[str, ...] = ()  #: words that no key has, because it is not modelled
-    words: tuple[str, ...] = ()  #: terms by which users look for it
-    there: dict[str, str] = field(default_factory=dict)  #: its names in other programs
+    terms: tuple[str, ...] = ()  #: terms by which users look for it
+    elsewhere: dict[str, str] = field(default_factory=dict)  #: its names in other programs
 
     @property
     def modelled(self) -> bool:
@@ -43,7 +43,7 @@ def statement(name: str) -> str:
 def features() -> tuple[Feature, ...]:
     """All features, in the order of the page."""
     rows: list[dict[str, object]] = _table()["features"]  # type: ignore[assignment]
-    lists = ("evidence", "absent", "words")
+    lists = ("evidence", "absent", "terms")
     return tuple(
         Feature(**{k: tuple(v) if k in lists else v for k, v in row.items()})  # type: ignore[arg-type]
         for row in rows
@@ -53,10 +53,10 @@ def features() -> tuple[Feature, ...]:
 def not_modelled() -> dict[str, str]:
     """Terms that users look for in vain, with the answer."""
     return {
-        word: f"Not in this version: {each.text}"
+        term: f"Not in this version: {each.text}"
         for each in features()
         if not each.modelled
-        for word in each.words
+        for term in each.terms
     }
 
 
@@ -75,9 +75,9 @@ def program_table(program: str) -> str:
     """Table "there | here" for users of another program."""
     lines = [f"| in {program} | here |", "|---|---|"]
     for each in features():
-        if program in each.there:
-            here = _linked(each) if each.modelled else "not in this version"
-            lines.append(f"| {each.there[program]} | {here} |")
+        if program in each.elsewhere:
+            answer = _linked(each) if each.modelled else "not in this version"
+            lines.append(f"| {each.elsewhere[program]} | {answer} |")
     return "\n".join(lines)
 
 

@@ -1,8 +1,9 @@
-"""``tribodyn run``, and ``tribodyn warm-up``, which compiles kernels ahead of the first run."""
+"""``tribodyn run``, ``app``, and ``warm-up``, which compiles kernels ahead of the first run."""
 
 from __future__ import annotations
 
 import warnings
+from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
@@ -18,6 +19,7 @@ from tribodyn.cli.settings import (
     changed_any_case,
     check_place,
 )
+from tribodyn.errors import InputError
 
 if TYPE_CHECKING:
     from tribodyn.study import MachineResult, Result
@@ -131,3 +133,47 @@ def warm_up(
         say(f"already cached: {name}")
     what = "runs of the built-in cases compile" if case is None else "a run of this case compiles"
     say(f"Done in {report['seconds']:.0f} s; {what} nothing more")
+
+
+def app(
+    case: str = "",
+    /,
+    *,
+    folder: Path = Path(),
+    host: str = "127.0.0.1",
+    port: int = 8050,
+    no_browser: Flag = False,
+) -> None:
+    """Serve a page for the whole job, on this machine alone, until Ctrl-C.
+
+    Parameters
+    ----------
+    case : str
+        Built-in case, or path of a case file in the folder; without it a short one to fill in.
+    folder : Path
+        Folder that the page reads and writes, and nothing beyond it; by default this one.
+    host : str
+        Address to serve at. Any but 127.0.0.1 lets other machines reach it, who need the token.
+    port : int
+        Port to serve at; 0 takes one that is free.
+    no_browser : bool
+        Write the address only, and open no browser.
+    """
+    import webbrowser
+    from importlib.util import find_spec
+
+    if find_spec("dash") is None:
+        why, remedy = "The page is drawn by Dash", 'Install it with pip install "tribodyn[app]"'
+        raise InputError("Dash is not installed", "tribodyn app", why, remedy)
+    if not 0 <= port <= 65535:
+        raise InputError(f"port = {port}", "--port", "Ports are 0 to 65535")
+    from tribodyn.app.server import Page
+
+    page = Page(folder, case, host, port)
+    tell(f"The page is at {page.address}")
+    tell("It belongs to whoever has this address. Ctrl-C ends it.")
+    if not no_browser and not webbrowser.open(page.address):
+        tell("No browser could be opened: open the address in one yourself.")
+    with suppress(KeyboardInterrupt):
+        page.serve()
+    tell("The page has ended.")

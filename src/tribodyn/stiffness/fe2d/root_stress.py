@@ -61,8 +61,8 @@ def computed_root_stress(
     """Stress along the fillet of a spur gear whose fillet radius is known in modules."""
     first, side = fillet_radius / (_ELEMENTS * refined), ToothSide(gear)
     size = MeshSize(flank=0.15, largest=1.01 * first, growth=1.0 + 0.25 / refined)
-    near = side.form_length - _FINEST * side.foot_length, first
-    mesh = tooth_mesh(gear, held_radius(gear), size, near)
+    ends = side.form_length - _FINEST * side.foot_length, first
+    mesh = tooth_mesh(gear, held_radius(gear), size, ends)
     ring, radii = Ring(mesh, plane_stress(1.0, poissons_ratio)), _places(gear)[0]
     solution = ring.solve(flank_loads(gear, mesh, radii, _HALF_WIDTH, inside=True).forces)
     line, shape = _fillet(mesh, side), (len(mesh.nodes), 2, radii.size)
@@ -80,9 +80,9 @@ def root_stress(
     """Stress along the fillet, kept in the folder of computed arrays."""
     size = MeshSize(largest=round(fillet_radius / _ELEMENTS, 12))
     name = _file_name(gear, poissons_ratio, 1, size)
-    kept = load_arrays(name, "root")
-    if kept is not None and set(kept) == set(RootUnitStress._fields):
-        return RootUnitStress(**kept)
+    cached = load_arrays(name, "root")
+    if cached is not None and set(cached) == set(RootUnitStress._fields):
+        return RootUnitStress(**cached)
     unit = computed_root_stress(gear, fillet_radius, poissons_ratio=poissons_ratio)
     store_arrays(name, unit._asdict(), "root")
     return unit
