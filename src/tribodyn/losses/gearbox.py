@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping
+from collections import Counter
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import ClassVar, NamedTuple
 
@@ -14,7 +15,7 @@ from tribodyn.checks import one_or_more
 from tribodyn.contact import gear_loss_factor as integrated
 from tribodyn.contact import path_of_contact
 from tribodyn.errors import Argument, InputError, require_between, warn
-from tribodyn.gear import HypoidFlanks, SpurPair
+from tribodyn.gear import HypoidBlank, HypoidFlanks, SpurPair
 from tribodyn.losses.bearings import RollingBearing, bearing_moments
 from tribodyn.losses.no_load import churning_loss, seal_loss, windage_loss
 from tribodyn.lubricant import Lubricant
@@ -375,18 +376,20 @@ def gearbox_losses(
     lost: dict[str, Array] = {part: np.zeros(shape) for part in PARTS}
     lost["gear"] = np.array(np.broadcast_to(teeth, shape))
     for name, body in turning_bodies(pair).items():
-        _require_oil(getattr(gearbox, name), lubricant, name)
+        require_oil(getattr(gearbox, name), lubricant, name)
         for row, column in np.ndindex(shape):
             turning = body.speed_ratio * float(speed[column])
-            force = (float(torque[row]) * body.radial, float(torque[row]) * body.axial)
-            parts = _shaft_losses(getattr(gearbox, name), turning, force, lubricant)
-            parts |= _oil_losses(body, gearbox, name, turning, lubricant)
+            shaft, force = getattr(gearbox, name), float(torque[row])
+            loads = shared_loads(shaft.bearings, force * body.radial, force * body.axial)
+            parts = shaft_losses(shaft, turning, loads, lubricant)
+            parts |= oil_losses(body, gearbox, shaft.immersion, turning, lubricant)
             for part, power in parts.items():
                 lost[part][row, column] += power
     return GearboxLosses(torque, speed, **lost, torque_balance=torque_balance)
 
 
-def _require_oil(shaft: ShaftParts, lubricant: Lubricant | None, gear: str) -> None:
+def require_oil(shaft: ShaftParts, lubricant: Lubricant | None, gear: str) -> None:
+    """Refuse bearings and an oil bath without oil."""
     for name in ("bearing", "immersion"):
         if lubricant is None and getattr(shaft, name):
             why = "Bearings and an oil bath lose by the viscosity of the oil"
@@ -396,6 +399,7 @@ def _require_oil(shaft: ShaftParts, lubricant: Lubricant | None, gear: str) -> N
 class TurningBody(NamedTuple):
     """A gear as its bearings and the oil see it."""
 
+    name: str
     speed_ratio: float  #: its speed over that of the pinion
     radial: float  #: force across its axis over the torque on the pinion [1/m]
     axial: float  #: force along its axis over the torque on the pinion [1/m]
@@ -414,9 +418,15 @@ def turning_bodies(pair: SpurPair | HypoidFlanks) -> dict[str, TurningBody]:
     widths = pair.pinion.face_width, pair.wheel.face_width
     turns = 1.0, 1.0 / abs(pair.ratio)
     return {
-        name: TurningBody(turn, force, 0.0, radius / turn, width, module)
+        name: TurningBody(name, turn, force, 0.0, radius / turn, width, module)
         for name, turn, width in zip(GEARS, turns, widths, strict=True)
     }
+
+
+def outer_pitch_radius(blank: HypoidBlank, gear: str) -> float:
+    """Pitch radius of pinion or wheel at the heel [m]."""
+    cone, angle = (getattr(blank, f"{n}_{gear}") for n in ("outer_cone_distance", "pitch_angle"))
+    return float(cone * math.sin(angle))
 
 
 def _hypoid_bodies(flanks: HypoidFlanks) -> dict[str, TurningBody]:
@@ -426,35 +436,36 @@ def _hypoid_bodies(flanks: HypoidFlanks) -> dict[str, TurningBody]:
     normal, axes = touch.contact.wheel.normal, (flanks.conjugate.axes.axis, np.eye(3)[2])
     for name, turn, axis in zip(GEARS, (1.0, 1.0 / blank.ratio), axes, strict=True):
         thrust = abs(float(normal @ axis))
-        outer = getattr(blank, f"outer_cone_distance_{name}")
         bodies[name] = TurningBody(
+            name,
             turn,
             force * math.sqrt(1.0 - thrust**2),
             force * thrust,
-            outer * math.sin(getattr(blank, f"pitch_angle_{name}")),
+            outer_pitch_radius(blank, name),
             getattr(blank, f"face_width_{name}"),
             blank.mean_normal_module,
         )
     return bodies
 
 
-def _shaft_losses(
-    shaft: ShaftParts, speed: float, load: tuple[float, float], lubricant: Lubricant | None
+def shaft_losses(
+    shaft: ShaftParts,
+    speed: float,
+    loads: Sequence[tuple[float, float]],
+    lubricant: Lubricant | None,
 ) -> dict[str, float]:
-    """Power of bearings and seals [W] at a speed [rad/s] under radial and axial force [N]."""
+    """Power of seals and of a bearing under each radial and axial load [N], at a speed [W]."""
     losses = {}
     if shaft.seal_diameter:
         losses["seal"] = shaft.seals * float(seal_loss(shaft.seal_diameter, speed))
     if shaft.bearing is not None and lubricant is not None:
         viscosity, bath = lubricant.kinematic_viscosity, shaft.bearing_oil_level
-        radial, thrust = load[0] / shaft.bearings, load[1]
-        for count, axial in ((1, thrust), (shaft.bearings - 1, 0.0)):
+        for load, count in Counter(loads).items():
             moments = bearing_moments(
                 shaft.bearing,
                 speed,
                 viscosity,
-                radial,
-                axial,
+                *load,
                 drag_factor=shaft.bearing_drag_factor,
                 oil_level=bath,
             )
@@ -464,15 +475,20 @@ def _shaft_losses(
     return losses
 
 
-def _oil_losses(
-    body: TurningBody, gearbox: Gearbox, name: str, speed: float, lubricant: Lubricant | None
+def shared_loads(count: int, radial: float, thrust: float) -> list[tuple[float, float]]:
+    """Loads of the bearings of a shaft, which share the radial force; the first has the thrust."""
+    return [(radial / count, thrust), *[(radial / count, 0.0)] * (count - 1)]
+
+
+def oil_losses(
+    body: TurningBody, gearbox: Gearbox, depth: float, speed: float, lubricant: Lubricant | None
 ) -> dict[str, float]:
-    """Churning and windage of one gear [W]."""
-    depth, losses = getattr(gearbox, name).immersion, {}
+    """Churning at a depth in the bath, and windage, of one gear [W]."""
+    losses = {}
     radius, width = body.pitch_radius, body.face_width
     if depth > radius:
         why = f"The gear is immersed to at most its pitch radius, {1e3 * radius:.4g} mm"
-        what, where = f"immersion = {1e3 * depth:.4g} mm", Argument("immersion", name)
+        what, where = f"immersion = {1e3 * depth:.4g} mm", Argument("immersion", body.name)
         raise InputError(what, where, why, "Give the depth of the lowest point of its pitch circle")
     if depth and lubricant is not None:
         module, volume = body.module, gearbox.oil_volume

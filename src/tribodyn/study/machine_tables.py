@@ -4,12 +4,14 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
+from dataclasses import replace
 from typing import Any
 
 from tribodyn.model import REQUIRED, Option, choice, integer, number, numbers, text
 from tribodyn.study.case.case_data import CaseData
 from tribodyn.study.case.rating_tables import BearingCatalogue, PartRating, RatingTable
 from tribodyn.study.case.section import NamedTables, Section, Table, table
+from tribodyn.study.case.sections import Losses, ShaftData
 from tribodyn.study.faults.section import PartFaultTable
 from tribodyn.study.machine.tables import (
     MESH_KEYS,
@@ -140,6 +142,24 @@ class MachineRating(RatingTable):
     fields = {**RatingTable.fields, **PartRating.fields}  # noqa: RUF012
 
 
+class BearingLosses(Section):
+    """A ``[losses.bearings.NAME]`` table: a bearing that is unlike the others of its shaft."""
+
+    fields = {  # noqa: RUF012
+        name: replace(option, default=REQUIRED) if name == "bearing" else option
+        for name, option in ShaftData.specs()
+        if name.startswith("bearing") and name != "bearings"
+    }
+
+
+class MachineLosses(Section):
+    """The ``[losses]`` table of a machine: power losses other than those of the teeth."""
+
+    fields = dict(Losses.specs())  # noqa: RUF012
+    shafts: Section = _parts(ShaftData, "a shaft with its bearings, seals and gears")
+    bearings: Section = _parts(BearingLosses, "a bearing that is unlike the others of its shaft")
+
+
 class MachineTables(Section):
     """All tables of a case of a machine."""
 
@@ -161,4 +181,5 @@ class MachineTables(Section):
 
 MachineTables.fields["load_cases"].kind.listed = True  # type: ignore[union-attr]
 MachineTables.fields |= {name: CaseData.fields[name] for name in SHARED}
+MachineTables.fields["losses"] = table(MachineLosses, "power losses of other parts", "none")
 MachineTables.fields["rating"] = table(MachineRating, "load capacity of gears and parts", "none")

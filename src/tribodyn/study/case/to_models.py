@@ -20,7 +20,7 @@ from tribodyn.study.case.sections import Dynamics, Losses, LubricantData, Materi
 if TYPE_CHECKING:
     from tribodyn.dynamics import MeshForce
     from tribodyn.gear import FlankModification, Material, ProfileMap, SpurPair
-    from tribodyn.losses import Gearbox
+    from tribodyn.losses import Gearbox, ShaftParts
     from tribodyn.lubricant import Lubricant
     from tribodyn.mesh.table_file import TableFile
     from tribodyn.study.case.case_data import CaseData
@@ -229,27 +229,27 @@ def lubricant(data: LubricantData, temperature: float | None = None) -> Lubrican
 
 def gearbox(data: Losses) -> Gearbox:
     """Build shafts, seals and oil bath."""
-    from tribodyn.losses import BEARINGS, Gearbox, ShaftParts
+    from tribodyn.losses import Gearbox
 
-    shafts = {}
-    for name, shaft in (("pinion", data.pinion), ("wheel", data.wheel)):
-        bearing = None if shaft.bearing is None else BEARINGS[shaft.bearing]
-        shafts[name] = ShaftParts(**{**vars(shaft), "bearing": bearing})
-    return Gearbox(**shafts, oil_volume=data.oil_volume, windage=data.windage)
+    shafts = {name: shaft_parts(getattr(data, name)) for name in ("pinion", "wheel")}
+    return Gearbox(**{**vars(data), **shafts})
+
+
+def shaft_parts(data: Any) -> ShaftParts:
+    """Build what turns with a shaft and loses."""
+    from tribodyn.losses import BEARINGS, ShaftParts
+
+    return ShaftParts(**{**vars(data), "bearing": data.bearing and BEARINGS[data.bearing]})
 
 
 def _gearbox_losses(case: CaseData) -> object:
     """Compute the losses of the case without those of its teeth, to find input errors."""
     from tribodyn.losses import gearbox_losses
 
-    return case.gearbox and gearbox_losses(
-        case.gear_pair if case.hypoid_flanks is None else case.hypoid_flanks,
-        case.gearbox,
-        0.0,
-        pinion_torque=case.pinion_torque,
-        pinion_speed=case.pinion_speed,
-        lubricant=case.lubricant_properties,
-    )
+    gears = case.gear_pair if case.hypoid_flanks is None else case.hypoid_flanks
+    point: Any = {"pinion_torque": case.pinion_torque, "pinion_speed": case.pinion_speed}
+    oil = case.lubricant_properties
+    return case.gearbox and gearbox_losses(gears, case.gearbox, 0.0, **point, lubricant=oil)
 
 
 def mesh_law_of(case: CaseData) -> MeshForce:

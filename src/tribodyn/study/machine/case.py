@@ -62,6 +62,7 @@ from tribodyn.study.machine.unused_keys import unused_keys
 from tribodyn.study.machine.user_tables import PartsBase, default_assumptions, stated_assumptions
 from tribodyn.study.machine_tables import MachineTables
 from tribodyn.study.mesh_inputs import MeshInputs
+from tribodyn.study.part_losses import loss_problems
 from tribodyn.study.planetary.machine_stages import (
     MEMBERS,
     CaseStage,
@@ -145,8 +146,9 @@ class MachineCase(PartsBase):
             groups["couplings"], read_coupling, problems
         )
         self.housing: Housing | None = read_housing(tables.housing, problems)
-        oil = tables.lubricant
-        self.heat: LubricantData | None = oil if getattr(oil, "heat_transfer", None) else None
+        self.losses, self.oil = tables.losses, tables.lubricant
+        heated = getattr(self.oil, "heat_transfer", None)
+        self.heat: LubricantData | None = self.oil if heated else None
         self.rated_parts = read_rated_parts(tables.rating, groups, self.shafts, problems)
         self.motion, self.solver = tables.dynamics, tables.solver
         self.faults: dict[str, Any] = groups["faults"]
@@ -169,9 +171,7 @@ class MachineCase(PartsBase):
                 inputs_under(self, name, self.operating_point)
         except InputError as error:
             raise InputError(self._located(error)) from None
-        if problems := impossible_faults(self):
-            raise InputError(origin.place(problems))
-        if problems := self._spread_faults():
+        if problems := [*impossible_faults(self), *loss_problems(self), *self._spread_faults()]:
             raise InputError(origin.place(problems))
         self._read_records(data)
 

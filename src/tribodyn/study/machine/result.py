@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Iterable, Mapping
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, field
 from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -120,6 +120,8 @@ class LoadResult:
         Motion of all coordinates over one period of the clock, where it is at hand.
     heat : HeatBalance, optional
         Heat balance of gears and oil, if ``lubricant.heat_transfer`` is given.
+    losses : mapping of str to float
+        Power that bearings, seals, oil bath and air take, by ``[losses]`` [W].
     """
 
     load: LoadCase
@@ -131,6 +133,7 @@ class LoadResult:
     motion: MachineMotion
     steady: Response | None = None
     heat: HeatBalance | None = None
+    losses: Mapping[str, float] = field(default_factory=dict)
 
     @cached_property
     def response(self) -> Response:

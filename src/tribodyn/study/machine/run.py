@@ -46,6 +46,7 @@ from tribodyn.study.machine.result import (
     steady_motion,
 )
 from tribodyn.study.mesh_inputs import MeshInputs, named_mesh
+from tribodyn.study.part_losses import part_losses
 from tribodyn.study.pipeline.assembly import mesh_contacts, mesh_damping
 from tribodyn.study.pipeline.store import Stored, StoredLoad, figures_of_load
 from tribodyn.study.pipeline.stored_motion import read_passes
@@ -129,9 +130,10 @@ def run_load(
     response = steady_motion(structure, system, start)
     progress.finish()
     motion = machine_motion(structure, response)
+    losses = part_losses(case, state.load, state.static)
     return LoadResult(
         *(state.load, structure, state.static, state.tables, state.misalignment),
-        *(system, motion, response, state.heat),
+        *(system, motion, response, state.heat, losses),
     )
 
 
@@ -161,10 +163,15 @@ def balanced_machine(
         state = _coupled(case, warm, progress, state)
         return state, sum(power_with_friction(state.static.machine, state.tables)[1].values())
 
+    def loss(solved: Balanced, to: Temperatures) -> float:
+        parts = part_losses(case, replace(load, temperature=to.oil), solved.static)
+        friction = power_with_friction(solved.static.machine, solved.tables)[1]
+        return sum((*friction.values(), *parts.values()))
+
     pairs = [read_teeth(case, n, teeth_under(case, n, load))[0] for n in case.meshes_with_teeth]
     try:
         oils = [pair.lubricant for pair in pairs if pair.lubricant is not None]
-        warm_state, at, heat = balanced(case.heat, oils, solve)
+        warm_state, at, heat = balanced(case.heat, oils, solve, loss)
     except ComputationError as error:
         raise ComputationError(case._located(error)) from None
     warm = replace(load, temperature=at.oil, gear_temperature=at.gears)
@@ -376,7 +383,8 @@ def _restored_load(case: MachineCase, load: LoadCase, stored: StoredLoad) -> Loa
     phases = over_phases(case.solver, structure.machine)
     system, motion = system_of(structure, phases=phases), motion_from(data)
     at_rest = load, structure, static, tables, misalignment
-    return LoadResult(*at_rest, system, motion, heat=heat)
+    losses = part_losses(case, load, static)
+    return LoadResult(*at_rest, system, motion, heat=heat, losses=losses)
 
 
 def _balance(

@@ -65,7 +65,19 @@ def _of_machine(result: LoadResult) -> Mapping[str, float | None]:
         "output_torque": abs(run.torque / ratio) * losses,
         "oil_temperature": result.load.temperature,
         "gear_temperature": result.load.gear_temperature,
+        **_losses(result, power),
     }
+
+
+def _losses(result: LoadResult, power: float) -> Mapping[str, float]:
+    """Losses of all parts and the efficiency with them, if the case has ``[losses]``."""
+    if not result.losses:
+        return {}
+    total = sum((*result.friction_power.values(), *result.losses.values()))
+    efficiency = (
+        1.0 - total / power if result.machine.operation.torque >= 0.0 else power / (power + total)
+    )
+    return {**result.losses, "total_power_loss": total, "total_efficiency": efficiency}
 
 
 def _of_mesh(result: LoadResult, name: str) -> Mapping[str, float | None]:

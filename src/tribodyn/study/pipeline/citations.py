@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from functools import lru_cache
 from typing import TYPE_CHECKING, Any
 
@@ -22,6 +23,8 @@ STYLES = ("text", "bibtex")
 
 #: Methods of the solver and the papers behind them.
 _METHODS = {"steady": ("anderson",)}
+#: Keys of what loses power, and the papers behind them.
+_LOSSES = {"bearing": "skf", "seal_diameter": "iso-14179", "immersion": "changenet-velex"}
 #: Changed values that a citation names.
 _NAMED = 12
 
@@ -66,7 +69,8 @@ def _papers_of_pair(case: Case, tables: tuple[str, ...]) -> dict[str, dict[str, 
             keys.append("evans-johnson")
     if case.friction.variant == "he-singh":
         keys.append("he-gunda-singh")
-    keys += _loss_papers(case)
+    shafts = [getattr(case.losses, gear) for gear in GEARS] if case.losses else []
+    keys += _loss_papers(case.lubricant, case.losses, shafts)
     return (
         _package()
         | _data_sources(case)
@@ -87,20 +91,18 @@ def _papers_of_parts(case: MachineCase) -> list[str]:
     keys += ["cowper"] if any(not shaft.is_rigid for shaft in case.shafts.values()) else []
     keys += ["craig-bampton"] if case.motion.frequency_limit is not None else []
     rolling = any(bearing.rolling is not None for bearing in case.bearings.values())
-    return [*keys, *(["harris-kotzalas", "iso-16281"] if rolling else [])]
+    keys += ["harris-kotzalas", "iso-16281"] if rolling else []
+    groups = () if case.losses is None else (case.losses.shafts, case.losses.bearings)
+    parts = [part for group in groups for part in vars(group).values()]
+    return [*keys, *_loss_papers(case.heat, case.losses, parts)]
 
 
-def _loss_papers(case: Case) -> list[str]:
-    """Keys of the papers behind the losses of bearings, seals and oil of a case."""
-    box, oil, used = case.gearbox, case.lubricant, list[str]()
-    used += ["changenet-oviedo-velex"] if oil and oil.gear_heat_transfer else []
-    if box is None:
-        return used
-    shafts = [getattr(box, gear) for gear in GEARS]
-    used += ["skf"] if any(each.bearing for each in shafts) else []
-    used += ["iso-14179"] if any(each.seal_diameter for each in shafts) else []
-    used += ["changenet-velex"] if any(each.immersion for each in shafts) else []
-    return [*used, "anderson-loewenthal"] if box.windage else used
+def _loss_papers(oil: Any, losses: Any, parts: Iterable[Any]) -> list[str]:
+    """Keys of the papers behind a heat balance, and behind the losses of some parts."""
+    names = {k for part in parts for k, value in vars(part).items() if value}
+    used = ["changenet-oviedo-velex"] if oil and oil.gear_heat_transfer else []
+    used += [paper for name, paper in _LOSSES.items() if losses and name in names]
+    return [*used, "anderson-loewenthal"] if losses and losses.windage else used
 
 
 def _is_built_in(model: Model) -> bool:
