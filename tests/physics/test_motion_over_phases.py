@@ -9,7 +9,14 @@ import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 
-from tribodyn.dynamics import Contact, LoadFriction, System, harmonic_balance, simulate
+from tribodyn.dynamics import (
+    Contact,
+    LoadFriction,
+    Response,
+    System,
+    harmonic_balance,
+    simulate,
+)
 from tribodyn.errors import InputError
 
 
@@ -218,6 +225,15 @@ def test_eccentric_gears_turn_with_their_shafts():
     clock = harmonic_balance(replace(system, contacts=[whole]), frequency / 12)
     at = shafts.at(clock.time)
     assert at.contact_force == pytest.approx(clock.contact_force, rel=1e-7)
+    # On one clock the run-outs are a part of the error, and the motion is an ordinary one.
+    turned = replace(contact, cycles=12, turning_cycles=[(4,), (3,)])
+    common = replace(system, contacts=[turned])
+    motion = harmonic_balance(common, frequency / 12)
+    assert type(motion) is Response
+    assert shafts.at(motion.time).contact_force == pytest.approx(motion.contact_force, rel=1e-7)
+    start = motion.position[0], motion.velocity[0]
+    marched = simulate(common, frequency / 12, 1, start, steps=12 * 256)
+    assert marched.position[-1] == pytest.approx(motion.position[0], rel=1e-3)
     # Alone, the wheel's run-out is a line of one cycle of its shaft.
     lines = shafts.lines("deflection")
     strongest = np.abs(lines.amplitude[:, 0]) * (np.abs(lines.numbers).sum(axis=1) == 1)

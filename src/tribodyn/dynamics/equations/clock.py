@@ -84,6 +84,32 @@ def on_clock(part: T, names: tuple[str, ...], cycles: int, offset: float) -> T:
     return replace(part, **entries, events=events_on_clock(part.events, cycles, offset), **clock)
 
 
+class _TurnedError:
+    """Error of a contact over the clock, with those that turn with shafts."""
+
+    def __init__(self, contact: Contact) -> None:
+        self.error: Any = contact.error
+        self.turning = contact.turning
+
+    def __call__(self, clock: Array) -> Any:
+        """Values at phases of the clock."""
+        fixed = self.error(clock) if callable(self.error) else self.error
+        turned = (each.error(each.cycles[0] * clock % 1.0) for each in self.turning)
+        return sum(turned, np.asarray(fixed, dtype=float))
+
+    def __getattr__(self, name: str) -> Any:
+        if name == "event_phases":  # as of a ClockEntry
+            return self.error.event_phases
+        raise AttributeError(name)
+
+
+def with_turning_error(contact: Contact) -> Contact:
+    """A contact over the clock whose error contains those that turn with shafts."""
+    if not contact.turning:
+        return contact
+    return replace(contact, error=_TurnedError(contact), turning_error=(), turning_cycles=())
+
+
 def refuse_several_clocks(friction: LoadFriction, contacts: Sequence[Contact], where: str) -> None:
     """Refuse a friction that follows contacts with different mesh cycles or offsets."""
     clocks = {(contacts[j].cycles, contacts[j].offset) for j in friction.contacts}

@@ -57,8 +57,8 @@ def read_turning(error: Any, cycles: Any) -> tuple[Turning, ...]:
     return tuple(terms)
 
 
-def count_phases(contacts: Sequence[Contact]) -> int:
-    """Number of independent phases; 0 for the one clock of contacts with whole numbers."""
+def count_phases(contacts: Sequence[Contact], *, led: bool = False) -> int:
+    """Number of independent phases; 0 for one clock, unless a lead is a function of its phase."""
     counts = [contact.cycles for contact in contacts]
     counts += [term.cycles for contact in contacts for term in contact.turning]
     phases = {len(count) for count in counts if isinstance(count, tuple)}
@@ -69,7 +69,8 @@ def count_phases(contacts: Sequence[Contact]) -> int:
         what, why = f"cycles = {listed}", "All contacts of a system have the same phases"
         remedy = "Give every contact one whole number for each phase"
         raise InputError(what, "Contact.cycles", why, remedy)
-    return phases.pop()
+    clocked = phases == {1} and all(isinstance(each.cycles, int) for each in contacts)
+    return 0 if clocked and not led else phases.pop()
 
 
 def on_one_clock(system: System) -> list[Any]:
@@ -81,7 +82,7 @@ def on_one_clock(system: System) -> list[Any]:
             "Contact.cycles",
             "This computation needs the period of one clock, which such phases do not have",
             "Use harmonic_balance with one frequency for each phase, or give whole numbers of "
-            "cycles in the period of one clock and no turning_error",
+            "cycles in the period of one clock",
         )
     return list(system.contacts)
 

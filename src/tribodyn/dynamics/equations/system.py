@@ -20,7 +20,11 @@ from numpy.typing import ArrayLike
 
 from tribodyn.arrays.memory import Memo
 from tribodyn.checks import require_flag, require_number, require_whole
-from tribodyn.dynamics.equations.clock import on_clock, refuse_several_clocks
+from tribodyn.dynamics.equations.clock import (
+    on_clock,
+    refuse_several_clocks,
+    with_turning_error,
+)
 from tribodyn.dynamics.equations.entry import Entry, read_events, varies
 from tribodyn.dynamics.equations.phases import (
     Cycles,
@@ -71,9 +75,10 @@ class Contact:
         functions return (p, m). Harmonic balance and the modal engine take them.
     turning_error : function or sequence of function
         Errors that turn with a shaft and add to ``error``, such as that of an eccentric gear:
-        functions of the phase of that shaft [m]. Harmonic balance takes them.
+        functions of the phase of that shaft [m].
     turning_cycles : tuple of int or sequence of these
-        For each turning error, the turns of its shaft in one period of each phase.
+        For each turning error, the turns of its shaft in one period of each phase; of one clock a
+        tuple of one number.
     name : str
         Name of the mesh or support in messages; its number by default.
     period : int
@@ -316,7 +321,7 @@ class System:
         object.__setattr__(self, "names", names)
         _inverse_of(matrices["mass"], names)
         _refuse_missing_contacts(self)
-        if not count_phases(self.contacts) and self.lead is not None:
+        if not self.phases and self.lead is not None:
             what, why = "a lead without phases", "It is a function of the phases of the contacts"
             remedy = (
                 "Give cycles for each phase, or entries over the clock of the unsteady rotation"
@@ -359,7 +364,7 @@ class System:
     @property
     def phases(self) -> int:
         """Number of independent phases; 0 where all contacts follow one clock."""
-        return count_phases(self.contacts)
+        return count_phases(self.contacts, led=self.lead is not None)
 
     @cached_property
     def cycles(self) -> int:
@@ -369,7 +374,9 @@ class System:
     @cached_property
     def clocked_contacts(self) -> tuple[Contact, ...]:
         """Contacts whose entries and events are over the clock."""
-        return tuple(on_clock(c, CONTACT_ENTRIES, c.cycles, c.offset) for c in on_one_clock(self))
+        contacts = on_one_clock(self)
+        clocked = (on_clock(c, CONTACT_ENTRIES, c.cycles, c.offset) for c in contacts)
+        return tuple(map(with_turning_error, clocked))
 
     @cached_property
     def clocked_frictions(self) -> tuple[LoadFriction, ...]:
