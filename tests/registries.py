@@ -16,7 +16,7 @@ from tribodyn.friction.benedict_kelly import VARIANTS
 from tribodyn.machine import COUPLINGS
 from tribodyn.stiffness import MODELS
 from tribodyn.study import SUMMARY
-from tribodyn.study.pipeline.summary import MEASURES
+from tribodyn.study.pipeline.summary import MEASURES, PARTS
 
 __all__ = ["as_before"]
 
@@ -35,7 +35,7 @@ def as_before() -> Iterator[None]:
         MEASURES,
     ]
     before = [dict(registry.all()) for registry in registries]
-    figures = dict(SUMMARY)
+    figures, parts = dict(SUMMARY), {kind: dict(PARTS[kind]["figures"]) for kind in PARTS}
     try:
         yield
     finally:
@@ -45,3 +45,5 @@ def as_before() -> Iterator[None]:
             registry.version += 1
         SUMMARY.clear()
         SUMMARY.update(figures)
+        for kind, each in parts.items():
+            PARTS[kind]["figures"] = each

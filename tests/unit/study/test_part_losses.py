@@ -1,4 +1,4 @@
-"""Losses of bearings, seals and oil in machines: those of a pair, and those of its parts by hand."""
+"""Losses of bearings, seals and oil in machines: as of a pair, and of each part by hand."""
 
 from __future__ import annotations
 

@@ -12,8 +12,10 @@ from tests.unit.study.test_machine_run import GEARED
 import tribodyn as td
 from tribodyn.cli import main
 from tribodyn.study import SUMMARY
+from tribodyn.study.machine.first_look import kinematic_figures
 from tribodyn.study.machine.read import read_any_case
 from tribodyn.study.machine.summary import peak_over_mean, without_rounding
+from tribodyn.study.pipeline.assembly import geometry
 from tribodyn.study.pipeline.response_series import measured, mesh_force
 from tribodyn.study.pipeline.summary_figures import figure_of, part_figures
 from tribodyn.study.studies.sweep_result import level_keys
@@ -156,3 +158,38 @@ def test_older_files_name_the_level_as_before() -> None:
     old = ["meshes.a.rms_mesh_force", "meshes.a.peak_mesh_force"]
     assert level_keys(old, RMS) == old[:1]
     assert level_keys([*old, f"meshes.a.{RMS}"], RMS) == [f"meshes.a.{RMS}"]
+
+
+@pytest.mark.parametrize(
+    "name",
+    ["two-stage-helical", "planetary-stage",
+     pytest.param("wind-turbine-gearbox", marks=pytest.mark.slow)],
+)  # fmt: skip
+def test_meshes_have_the_geometry_of_their_pairs(name: str) -> None:
+    """What check shows of a mesh is what it shows of the pair of its gears."""
+    case = td.load_case(name)
+    figures = kinematic_figures(case)
+    for mesh in case.meshes:
+        pair = geometry(case.pair(mesh, case.operating_point))
+        for key in ("center_distance", "operating_pressure_angle", "transverse_contact_ratio"):
+            assert figures[f"meshes.{mesh}.{key}"] == pytest.approx(pair[key], rel=1e-12), key
+        if pair.get("overlap_ratio"):
+            overlap = figures[f"meshes.{mesh}.overlap_ratio"]
+            assert overlap == pytest.approx(pair["overlap_ratio"], rel=1e-12)
+
+
+def test_a_mesh_of_constant_stiffness_has_its_place_without_teeth() -> None:
+    case = td.load_case("two-stage-spur")
+    first = case.replace({"meshes.first.stiffness": 5e8, "load_cases": None})
+    before, after = kinematic_figures(case), kinematic_figures(first)
+    for key in ("center_distance", "operating_pressure_angle"):
+        name = f"meshes.second.{key}"
+        assert after[name] == before[name]
+        assert f"meshes.first.{key}" in after
+    assert "meshes.first.transverse_contact_ratio" not in after
+    reduced = first.replace({"meshes.second.stiffness": 5e8, "film": None, "friction": None,
+                             "lubricant": None, "stiffness": None})  # fmt: skip
+    summary = td.run(reduced).summary()
+    for name, value in kinematic_figures(reduced).items():
+        if name.endswith(("center_distance", "pressure_angle")):
+            assert summary[name] == value

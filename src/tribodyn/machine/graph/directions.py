@@ -109,6 +109,12 @@ def center_distance(mesh: Mesh, gears: tuple[Gear, Gear]) -> float:
     return math.copysign(mesh.center_distance, reference)
 
 
+def working_pressure_angle(mesh: Mesh, gears: tuple[Gear, Gear]) -> float:
+    """Transverse pressure angle at the working pitch circles [rad]."""
+    ratio = reference_center_distance(mesh, gears) / center_distance(mesh, gears)
+    return math.acos(ratio * math.cos(mesh.transverse_pressure_angle))
+
+
 def mesh_direction(
     mesh: Mesh, gears: tuple[Gear, Gear], sense: int, senses: tuple[int, int]
 ) -> MeshDirection:
@@ -117,9 +123,8 @@ def mesh_direction(
         return _crossed_direction(mesh.crossing, sense, senses)
     teeth = [gear.teeth for gear in gears]
     distance = center_distance(mesh, gears)
-    reference = reference_center_distance(mesh, gears)
     radii = tuple(distance * z / sum(teeth) for z in teeth)
-    angle = math.acos(reference * math.cos(mesh.transverse_pressure_angle) / distance)
+    angle = working_pressure_angle(mesh, gears)
     side = math.copysign(1.0, distance)
     toward = side * np.array([0.0, math.cos(mesh.angle), math.sin(mesh.angle)])
     tangent = np.cross(_X, toward)

@@ -10,7 +10,8 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 from tribodyn.errors import ComputationError, Problem, warn
 from tribodyn.machine import machine_structure
 from tribodyn.study.machine.motion import phase_names
-from tribodyn.study.machine.summary import helix_figures
+from tribodyn.study.machine.pair_cases import inputs_under
+from tribodyn.study.machine.summary import geometry_figures
 from tribodyn.study.planetary.machine_stages import motion_of_stage
 
 if TYPE_CHECKING:
@@ -170,7 +171,7 @@ def kinematic_figures(case: MachineCase) -> dict[str, float]:
     """Speeds, torques and power of shafts and meshes, in SI by dotted key."""
     machine = case.machine()
     flow, run = machine.kinematics, machine.operation
-    values = {
+    values: dict[str, float | None] = {
         "machine.clock_frequency": machine.clock.frequency,
         "machine.input_power": abs(run.speed * run.torque),
         "machine.output_torque": abs(flow.shafts[run.output].torque),
@@ -178,7 +179,11 @@ def kinematic_figures(case: MachineCase) -> dict[str, float]:
     for name, mesh in flow.meshes.items():
         values[f"meshes.{name}.mesh_frequency"] = mesh.mesh_frequency
         values[f"meshes.{name}.static_mesh_force"] = mesh.force
-        for key, value in helix_figures(machine, name, mesh.force).items():
+        ratio = None
+        if name in case.meshes_with_teeth:
+            pair = inputs_under(case, name, case.operating_point).cylindrical
+            ratio = None if pair is None else pair.transverse_contact_ratio
+        for key, value in geometry_figures(machine, name, mesh.force, ratio).items():
             values[f"meshes.{name}.{key}"] = value
     for name, shaft in flow.shafts.items():
         values[f"shafts.{name}.speed"] = shaft.speed
@@ -187,4 +192,4 @@ def kinematic_figures(case: MachineCase) -> dict[str, float]:
     for name, stage in machine.planets.items():
         for key, value in motion_of_stage(machine, name, stage, flow).items():
             values[f"planets.{name}.{key}"] = value
-    return {key: float(value) for key, value in values.items()}
+    return {key: float(value) for key, value in values.items() if value is not None}

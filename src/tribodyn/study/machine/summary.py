@@ -9,7 +9,9 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from tribodyn.machine.graph.directions import center_distance, working_pressure_angle
 from tribodyn.machine.plane_law import mean_in_space
+from tribodyn.study.pipeline.summary import MEASURES
 from tribodyn.study.pipeline.summary_figures import Figures, figure_of, split_key
 from tribodyn.study.planetary.machine_stages import stage_figures
 
@@ -25,6 +27,7 @@ _ROUNDING = 1e-11
 def summary_of(result: LoadResult) -> Figures:
     """All figures of a machine under one load, in SI, by dotted key."""
     values: dict[str, float | None] = {}
+    measures = [(*key.rpartition("."), each) for key, each in MEASURES.all().items()]
     for group, parts in (
         ("machine", {"": _of_machine(result)}),
         ("meshes", {name: _of_mesh(result, name) for name in result.motion.mesh}),
@@ -34,8 +37,9 @@ def summary_of(result: LoadResult) -> Figures:
         ("housing", {name: _of_node(result, name) for name in result.motion.node}),
     ):
         for name, figures in parts.items():
-            prefix = f"{group}.{name}" if name else group
-            values |= {f"{prefix}.{key}": value for key, value in figures.items()}
+            prefix, of = (f"{group}.{name}", (result, name)) if name else (group, (result,))
+            added = {key: each(*of) for kind, _, key, each in measures if kind == group}
+            values |= {f"{prefix}.{key}": value for key, value in {**figures, **added}.items()}
     finite = {key: float(v) for key, v in values.items() if v is not None and np.isfinite(v)}
     return Figures(without_rounding(finite))
 
@@ -98,7 +102,7 @@ def _of_mesh(result: LoadResult, name: str) -> Mapping[str, float | None]:
         "transmission_error_peak_to_peak": float(np.ptp(error)),
         **_mounting(balance),
         "face_load_factor": balance.face_load_factor,
-        **helix_figures(result.machine, name, mean),
+        **geometry_figures(result.machine, name, mean, _contact_ratio(table)),
         **_of_table(result, name, table),
         "friction_power": result.friction_power.get(name),
     }
@@ -119,17 +123,29 @@ def _mounting(balance: MeshBalance) -> dict[str, float]:
     return {f"{each.name}_error": getattr(errors, each.name) for each in fields(errors)}
 
 
-def helix_figures(machine: Machine, name: str, force: float) -> dict[str, float]:
-    """Overlap and axial force of a mesh with inclined teeth; nothing of spur gears."""
+def geometry_figures(
+    machine: Machine, name: str, force: float, contact_ratio: float | None
+) -> dict[str, float | None]:
+    """Geometry of a mesh, with the axial force of inclined teeth."""
     mesh = machine.meshes[name]
     if mesh.crossed is not None:
         return {"axial_force": -force * float(mean_in_space(machine, name)[0])}
-    if not mesh.helix_angle:
-        return {}
-    width = min(machine.gears[gear].face_width for gear in mesh.gears)
-    axial_pitch = math.pi * mesh.normal_module / math.sin(mesh.helix_angle)
-    axial = -force * float(machine.directions[name].normal[0])
-    return {"overlap_ratio": width / axial_pitch, "axial_force": axial}
+    gears = machine.gears[mesh.gears[0]], machine.gears[mesh.gears[1]]
+    figures: dict[str, float | None] = {
+        "center_distance": abs(center_distance(mesh, gears)),
+        "operating_pressure_angle": working_pressure_angle(mesh, gears),
+        "transverse_contact_ratio": contact_ratio,
+    }
+    if mesh.helix_angle:
+        axial_pitch = math.pi * mesh.normal_module / math.sin(mesh.helix_angle)
+        figures["overlap_ratio"] = min(gear.face_width for gear in gears) / axial_pitch
+        figures["axial_force"] = -force * float(machine.directions[name].normal[0])
+    return figures
+
+
+def _contact_ratio(table: MeshTable | None) -> float | None:
+    """Transverse contact ratio of computed teeth of cylindrical gears."""
+    return None if table is None or table.gears is None else table.transverse_contact_ratio
 
 
 def _of_table(result: LoadResult, name: str, table: Any) -> dict[str, float | None]:

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from tribodyn.errors import Argument, InputError
 from tribodyn.model import Registry
 from tribodyn.nomenclature import GEARS, QUANTITIES
 from tribodyn.study.pipeline.assembly import geometry, static_error
@@ -38,8 +39,8 @@ if TYPE_CHECKING:
     from tribodyn.study.pipeline.result import Result
 
 
-#: Computes a figure of a result in SI; None leaves it out.
-Measure = Callable[[Any], float | None]
+#: Computes a figure in SI of a result, or of a load and the name of a part; None leaves it out.
+Measure = Callable[..., float | None]
 
 
 @dataclass(frozen=True)
@@ -79,11 +80,13 @@ SUMMARY: dict[str, SummaryFigure] = {
     for topic, rows in _TABLE.items()
     for name, (quantity, meaning) in rows.items()
 }
-#: Figures of third parties: functions of a result, open through the entry points of this group.
+#: Figures of third parties, those of meshes as ``meshes.NAME``, also by entry points of the group.
 MEASURES: Registry[Measure] = Registry("summary figure", "tribodyn.summary")
 
 
-def summary_figure(name: str, *, meaning: str, of: str = "") -> Callable[[Measure], Measure]:
+def summary_figure(
+    name: str, *, meaning: str, of: str = "", part: str = ""
+) -> Callable[[Measure], Measure]:
     """Decorate a function of a result to make it a figure of every summary.
 
     Parameters
@@ -95,12 +98,22 @@ def summary_figure(name: str, *, meaning: str, of: str = "") -> Callable[[Measur
     of : str
         Its quantity in :data:`tribodyn.nomenclature.QUANTITIES`, which knows its unit; empty for a
         pure number.
+    part : str
+        Kind of the parts of a machine or a stage that have it: ``"machine"``, ``"meshes"``,
+        ``"planets"``, ``"shafts"``, ``"bearings"`` or ``"housing"``; of pairs by default.
 
     Returns
     -------
     callable
         Decorator that returns the function unchanged. The function takes a
-        :class:`tribodyn.Result` and returns the figure in SI, or None where there is none.
+        :class:`tribodyn.Result`, for parts a :class:`tribodyn.study.LoadResult` and the name of the
+        part, which the machine itself has not. It returns the figure in SI, or None where there is
+        none.
+
+    Raises
+    ------
+    InputError
+        If there is no such kind of part, or the package has a figure of this name.
 
     Examples
     --------
@@ -108,10 +121,19 @@ def summary_figure(name: str, *, meaning: str, of: str = "") -> Callable[[Measur
     ... def teeth(result):
     ...     return result.case.gears.pinion.teeth + result.case.gears.wheel.teeth
     """
+    if part and part not in PARTS:
+        why = f"Parts: {', '.join(PARTS)}"
+        raise InputError(f'part = "{part}"', Argument("part"), why, "Choose one, or leave it out")
+    key = f"{part}.{name}" if part else name
+    figures: dict[str, Any] = PARTS[part]["figures"] if part else SUMMARY
+    of_package = name in figures or (part and name in PARTS[part].get("of_pairs", ()))
+    if of_package and key not in MEASURES.names():
+        why = "A figure of the package keeps its meaning"
+        raise InputError(f'"{key}" is a figure', Argument("name"), why, "Choose another name")
 
     def keep(measure: Measure) -> Measure:
-        SUMMARY[name] = summary_entry(name, of, meaning)
-        return MEASURES.register(name)(measure)
+        figures[name] = [of, meaning] if part else summary_entry(name, of, meaning)
+        return MEASURES.register(key)(measure)
 
     return keep
 
@@ -148,7 +170,7 @@ def summarize(result: Result) -> dict[str, float]:
     if oil is not None and oil.heat_transfer is not None:
         values["oil_temperature"] = oil.temperature
     values |= load_figures(result.case, result.mesh, values)
-    measures = MEASURES.all().items()
+    measures = [(name, each) for name, each in MEASURES.all().items() if name in SUMMARY]
     values |= {name: measure(result) for name, measure in measures}
     return {n: float(values[n]) for n in SUMMARY if values.get(n) is not None}
 

@@ -68,7 +68,8 @@ def is_chief(key: str) -> bool:
     """Whether a figure belongs to the summary that fits on a screen."""
     load, kind, _, name = split_key(key)
     chief = PARTS[kind]["chief"] if kind else CHIEF
-    return name in (_OF_LOADS if load else chief) or name in MEASURES.names()
+    own = f"{kind}.{name}" if kind else name
+    return name in (_OF_LOADS if load else chief) or own in MEASURES.names()
 
 
 def figure_of(key: str) -> SummaryFigure:
