@@ -7,6 +7,7 @@ import math
 import pytest
 
 from known_ratings import MPA, UM, helical_example, rate_helical, rate_spur, spur_example
+from tribodyn.rating import ShaftMaterial, ShaftNotch, ShaftStress, rate_shaft
 
 #: Factor, value as printed, SI unit of the print; pairs belong to pinion and wheel.
 SPUR = {
@@ -79,3 +80,28 @@ def test_form_factor_of_the_2006_edition():
     assert rating.wheel.factors["Y_F"] == pytest.approx(1.407222, **PRINTED)
     beta = math.radians(20.0)
     assert rating.factors["Y_beta"] == pytest.approx(1.004295 * math.cos(beta) ** 3, **PRINTED)
+
+
+def _nominal(diameter: float, force: float, bending: float, torque: float) -> tuple[float, ...]:
+    """Stresses of a solid section by a force [N] and two moments [N m]."""
+    modulus = math.pi * diameter**3 / 32.0
+    return 4.0 * force / (math.pi * diameter**2), bending / modulus, torque / (2.0 * modulus)
+
+
+def test_shafts_of_an_examination_by_din_743():
+    """Two shafts of 2024 whose solutions are in the tests of github.com/hanslhansl/din743, MIT."""
+    steel = ShaftMaterial(tensile_strength=1100e6, yield_strength=900e6, treated_diameter=0.1)
+    notch = ShaftNotch(diameter=84e-3, large_diameter=0.1, radius=4e-3, roughness=10e-6)
+    means = _nominal(84e-3, 443341.5553, 23275.43165, 13965.25899)
+    stress = ShaftStress(_nominal(84e-3, 0.0, 2909.428956, 0.0), means)
+    rating = rate_shaft(notch, steel, stress, constant_ratio=False)
+    assert rating.safety == pytest.approx(2.373, abs=5e-4)
+    assert rating.yield_safety == pytest.approx(1.464, abs=5e-4)
+    steel = ShaftMaterial(
+        tensile_strength=750e6, yield_strength=520e6, treated_diameter=0.08, hard_surface=True
+    )
+    key = ShaftNotch(diameter=60e-3, kind="key", roughness=25e-6)
+    bent, twisted = _nominal(60e-3, 0.0, 1402.294, 0.0), _nominal(60e-3, 0.0, 0.0, 1336.902)
+    rating = rate_shaft(key, steel, ShaftStress(bent, twisted))
+    assert rating.safety == pytest.approx(1.472, abs=5e-4)
+    assert rating.yield_safety / 1.8 == pytest.approx(2.568, abs=5e-4)  # overload of 1.8

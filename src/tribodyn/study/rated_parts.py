@@ -26,6 +26,7 @@ from tribodyn.rating import (
     roller_bearing_life,
     system_life,
 )
+from tribodyn.rating.elements.shaft_fatigue import yield_safety
 from tribodyn.rating.factor import Factor, Factors, check_range
 from tribodyn.rating.mesh_load import PRACTICE
 
@@ -310,9 +311,11 @@ class NotchRating:
     shaft, notch, load : str
         Names.
     safety : float
-        S by DIN 743, pure number; infinite without a stress that changes.
+        S against fatigue by DIN 743, pure number; infinite without a stress that changes.
     factors : mapping of str to Factor
         Factors by the names of the standard, and the nominal stresses.
+    yield_safety : float
+        S against yield by DIN 743, pure number; infinite without a stress.
     """
 
     shaft: str
@@ -320,15 +323,17 @@ class NotchRating:
     load: str
     safety: float
     factors: Mapping[str, Factor]
+    yield_safety: float = math.inf
 
     def to_dict(self) -> dict[str, Any]:
-        """Safety and factors, as JSON has them.
+        """Safeties and factors, as JSON has them.
 
         Returns
         -------
         dict of str
         """
-        return {"safety": _finite(self.safety), "factors": _listed(self.factors)}
+        safeties = {name: _finite(getattr(self, name)) for name in ("safety", "yield_safety")}
+        return {**safeties, "factors": _listed(self.factors)}
 
 
 class SectionLoad(NamedTuple):
@@ -345,7 +350,7 @@ class SectionLoad(NamedTuple):
 def rate_notch(
     names: tuple[str, str, str], notch: ShaftNotch, material: ShaftMaterial, load: SectionLoad
 ) -> NotchRating:
-    """Fatigue of a section: bending turns with the shaft, torque and tension follow the motion."""
+    """Safeties of a section: bending turns with the shaft, torque and tension follow the motion."""
     d, bore = notch.diameter, notch.bore_diameter
     hollow = 1.0 - (bore / d) ** 4
     area = 0.25 * math.pi * (d**2 - bore**2)
@@ -357,9 +362,12 @@ def rate_notch(
     if load.turns:
         means[1], amplitudes[1] = 0.0, load.dynamic * stresses[1]
     shaft, place, name = names
-    if not amplitudes.any():
+    if not stresses.any():
         return NotchRating(shaft, place, name, math.inf, {})
     stress = ShaftStress(tuple(amplitudes.tolist()), tuple(means.tolist()))
+    if not amplitudes.any():
+        static = yield_safety(notch, material, stress)
+        return NotchRating(shaft, place, name, math.inf, {}, static)
     rating = rate_shaft(notch, material, stress)
     record = rating.factors.record
     record("K_A", load.application, "application factor")
@@ -369,7 +377,7 @@ def rate_notch(
     ):
         for end, value in zip("am", values, strict=True):
             record(f"{symbol}{end}", value, _LOAD, unit="Pa")
-    return NotchRating(shaft, place, name, rating.safety, rating.factors)
+    return NotchRating(shaft, place, name, rating.safety, rating.factors, rating.yield_safety)
 
 
 @dataclass(frozen=True)
@@ -398,10 +406,11 @@ class PartRatings:
                 required = self.minimum_safety or 1.0
                 yield Verdict("bearing life", each.bearing, load, safety, required, None)
         for notch in self.notches:
-            if math.isfinite(notch.safety):
-                values = notch.safety, self.minimum_safety or SHAFT_SAFETY, None
-                place = f"notch {notch.notch}"
-                yield Verdict("shaft fatigue", notch.shaft, notch.load, *values, place)
+            modes = {"shaft fatigue": notch.safety, "shaft yield": notch.yield_safety}
+            for mode, safety in modes.items():
+                if math.isfinite(safety):
+                    values = safety, self.minimum_safety or SHAFT_SAFETY, None
+                    yield Verdict(mode, notch.shaft, notch.load, *values, f"notch {notch.notch}")
 
     def to_dict(self) -> dict[str, Any]:
         """Lives and safeties by part, as JSON has them."""

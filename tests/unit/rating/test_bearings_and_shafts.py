@@ -165,3 +165,22 @@ def test_mean_stress_and_yield():
     both = rate_shaft(notch, STEEL, ShaftStress((0.0, 80e6, 40e6))).safety
     alone = rate_shaft(notch, STEEL, ShaftStress((0.0, 0.0, 40e6))).safety
     assert both == pytest.approx((alternating.safety**-2 + alone**-2) ** -0.5, rel=1e-12)
+
+
+def test_yield_of_a_section_under_its_greatest_stress():
+    notch = ShaftNotch(diameter=40e-3, large_diameter=50e-3, radius=2e-3)
+    rating = rate_shaft(notch, STEEL, ShaftStress((0.0, 80e6, 0.0), (20e6, 0.0, 50e6)))
+    zd, b, t = (rating.factors[f"sigma_FK_{kind}"] for kind in ("tension", "bending", "torsion"))
+    expected = math.hypot(20e6 / zd + 80e6 / b, 50e6 / t)
+    assert rating.yield_safety == pytest.approx(1.0 / expected, rel=1e-12)
+    size = 1.0 - 0.34 * math.log10(40.0 / 16.0)
+    assert zd == pytest.approx(800e6 * size * 1.10, rel=1e-12)  # alpha between 2 and 3
+    keyed = rate_shaft(ShaftNotch(diameter=40e-3, kind="key"), STEEL, ShaftStress((1e6, 0.0, 0.0)))
+    assert keyed.factors["sigma_FK_tension"] == pytest.approx(800e6 * size, rel=1e-12)
+    assert keyed.factors["K_F_bending"] == 1.0
+
+
+def test_shapes_beyond_the_range_of_alpha_are_reported():
+    sharp = ShaftNotch(diameter=40e-3, large_diameter=60e-3, radius=0.2e-3)
+    with pytest.warns(ModelWarning, match="r/t = 0.02"):
+        rate_shaft(sharp, STEEL, ShaftStress((0.0, 80e6, 0.0)))

@@ -14,6 +14,7 @@ from tribodyn.errors import InputError
 from tribodyn.rating import ShaftMaterial, ShaftNotch, ShaftStress, rate_shaft
 from tribodyn.study import MachineCase, failure_probability, sobol_indices
 from tribodyn.study.pipeline.summary_figures import is_figure
+from tribodyn.study.rated_parts import SectionLoad, rate_notch
 
 MACHINE: dict[str, Any] = {
     "shafts": {
@@ -95,6 +96,22 @@ def test_a_notch_has_the_stress_of_a_beam_on_two_supports(result, rating):
     assert ours.safety == pytest.approx(rate_shaft(notch, steel, stress).safety, rel=1e-3)
     (verdict,) = (v for v in rating.verdicts() if v.mode == "shaft fatigue")
     assert (verdict.part, verdict.where, verdict.required) == ("in", "notch step", 1.2)
+    (static,) = (v for v in rating.verdicts() if v.mode == "shaft yield")
+    limits = [ours.factors[f"sigma_FK_{kind}"] for kind in ("bending", "torsion")]
+    greatest = math.hypot(dynamic * bending / limits[0], dynamic * torsion / limits[1])
+    assert static.safety == ours.yield_safety == pytest.approx(1.0 / greatest, rel=1e-4)
+    assert result.summary()["shafts.in.yield_safety"] == ours.yield_safety
+
+
+def test_a_section_at_rest_under_a_steady_torque_can_yield_only():
+    notch = ShaftNotch(diameter=0.04, large_diameter=0.05, radius=2e-3)
+    steel = ShaftMaterial(tensile_strength=900e6, yield_strength=700e6)
+    load = SectionLoad(0.0, 0.0, 1000.0, 1.5, 1.0, turns=False)
+    rating = rate_notch(("in", "step", "operation"), notch, steel, load)
+    yielding = 700e6 * (1.0 - 0.34 * math.log10(2.5)) * 1.2 / math.sqrt(3.0)
+    expected = yielding * math.pi * 0.04**3 / 16.0 / 1500.0
+    assert rating.yield_safety == pytest.approx(expected, rel=1e-12)
+    assert math.isinf(rating.safety)
 
 
 @pytest.mark.filterwarnings("ignore")

@@ -1,11 +1,12 @@
-"""Fatigue of notched shafts: DIN 743.
+"""Fatigue and yield of notched shafts: DIN 743.
 
 In N/mm2 and mm: ``sigma_WK = sigma_W K_1/K_s``, ``K_s = (beta/K_2 + 1/K_F - 1)/K_V``, with
 sigma_bW = 0.5 sigma_B, sigma_zdW = 0.4 sigma_B, tau_tW = 0.3 sigma_B. Shoulders and grooves:
 ``alpha = 1 + 1/sqrt(A r/t + 2 B r/d (1 + 2 r/d)^2 + C (r/t)^z d/D)``, ``beta = alpha/n``,
 ``n = 1 + sqrt(G') 10^-(0.33 + sigma_S(d)/712)``. Mean stress by
 ``psi = sigma_WK/(2 K_1 sigma_B - sigma_WK)``; amplitudes are cut at the yield strength sigma_FK;
-``S = 1/sqrt((s_zda/s_zdADK + s_ba/s_bADK)^2 + (t_a/t_ADK)^2)``, at least 1.2.
+``S = 1/sqrt((s_zda/s_zdADK + s_ba/s_bADK)^2 + (t_a/t_ADK)^2)``, at least 1.2. Against yield the
+same sum with the greatest stresses over sigma_zdFK, sigma_bFK and tau_tFK.
 """
 
 from __future__ import annotations
@@ -15,7 +16,7 @@ from dataclasses import dataclass
 from typing import Final, NamedTuple
 
 from tribodyn.errors import Argument, InputError, require_between, require_one_of, require_positive
-from tribodyn.rating.factor import Factors
+from tribodyn.rating.factor import Factors, check_range
 from tribodyn.rating.mesh_load import PRACTICE
 
 SOURCE: Final = "DIN 743"
@@ -49,6 +50,8 @@ class ShaftMaterial:
         ``quenched``, ``structural``, ``carburized CrNiMo`` or ``carburized``.
     hard_surface : bool
         Whether the surface is hardened: notches and yield count otherwise.
+    treated_diameter : float, optional [m]
+        d_eff of the shaft at its heat treatment; by default d of the notch.
 
     Raises
     ------
@@ -65,9 +68,12 @@ class ShaftMaterial:
     yield_strength: float
     kind: str = "quenched"
     hard_surface: bool = False
+    treated_diameter: float | None = None
 
     def __post_init__(self) -> None:
         require_one_of("kind", self.kind, _SIZE)
+        if self.treated_diameter is not None:
+            require_between("treated_diameter", self.treated_diameter, 1e-3, 10.0, "m")
         require_between("tensile_strength", self.tensile_strength, 100e6, 3000e6, "Pa")
         require_between("yield_strength", self.yield_strength, 50e6, 3000e6, "Pa")
 
@@ -77,7 +83,7 @@ class ShaftMaterial:
         Parameters
         ----------
         diameter : float [m]
-            Of the heat-treated shaft.
+            Of the shaft at its heat treatment, where ``treated_diameter`` does not state it.
 
         Returns
         -------
@@ -89,7 +95,7 @@ class ShaftMaterial:
             If the diameter is beyond those for which the factor is known.
         """
         *slopes, largest = _SIZE[self.kind]
-        millimetres = 1e3 * diameter
+        millimetres = 1e3 * (self.treated_diameter or diameter)
         require_between("diameter", millimetres, 0.0, largest, "mm")
         values = []
         for slope, reference in slopes:
@@ -181,10 +187,13 @@ class ShaftRating(NamedTuple):
         S against fatigue, pure number; at least 1.2 is required.
     factors : mapping of str to Factor
         Factors by the names of the standard, those of one kind of stress with its name.
+    yield_safety : float
+        S against yield under mean stress and amplitude together, pure number; at least 1.2 too.
     """
 
     safety: float
     factors: Factors
+    yield_safety: float
 
 
 def _shape_factor(notch: ShaftNotch, index: int) -> tuple[float, float]:
@@ -195,6 +204,8 @@ def _shape_factor(notch: ShaftNotch, index: int) -> tuple[float, float]:
     t = 0.5 * (large - d)
     if t <= 0.0:
         return 1.0, 0.0
+    check_range("r/t", r / t, 0.03, math.inf, f"alpha of {SOURCE}")
+    check_range("d/D", d / large, 0.0, 0.98, f"alpha of {SOURCE}")
     a, b, c, z = _SHAPES[notch.kind][index]
     root = a * r / t + 2.0 * b * r / d * (1.0 + 2.0 * r / d) ** 2 + c * (r / t) ** z * d / large
     phi = 1.0 / (4.0 * math.sqrt(t / r) + 2.0) if d / large > 0.67 else 0.0
@@ -222,9 +233,8 @@ def _notch_factor(notch: ShaftNotch, material: ShaftMaterial, index: int) -> tup
         bending = 2.7 * (strength / 1000.0) ** 0.43
         torsion = 0.65 * bending
     else:
-        bending = 3.0 * (strength / 1000.0) ** 0.38
+        bending = 3.0 * (strength / 1000.0) ** 0.38 * (1.15 if notch.kind == "two keys" else 1.0)
         torsion = 0.56 * bending + 0.1
-        bending *= 1.15 if notch.kind == "two keys" else 1.0
     beta = torsion if index == 2 else bending
     return beta * _size_of_test(beta, notch.diameter), beta
 
@@ -249,9 +259,10 @@ def _strengths(
     millimetres = min(max(1e3 * notch.diameter, 7.5), 150.0)
     size = 1.0 - 0.2 * math.log10(millimetres / 7.5) / math.log10(20.0)
     strength = 1e-6 * k_b * material.tensile_strength
-    rough = 1.0 - 0.22 * math.log10(max(1e6 * notch.roughness, 1.0)) * (
-        math.log10(strength / 20.0) - 1.0
-    )
+    rough, branch = 1.0, "in the notch factor"
+    if notch.kind in _SHAPES or notch.kind == "given":
+        depth, branch = max(1e6 * notch.roughness, 1.0), f"Rz {1e6 * notch.roughness:g} um"
+        rough -= 0.22 * math.log10(depth) * (math.log10(strength / 20.0) - 1.0)
     fatigue, yielding = [], []
     for index, kind in enumerate(_KINDS):
         beta, alpha = _notch_factor(notch, material, index)
@@ -261,7 +272,7 @@ def _strengths(
         beta = record(f"beta_{kind}", beta, source, branch=notch.kind)
         k_2 = record(f"K_2_{kind}", 1.0 if index == 0 else size, f"{SOURCE}, size of the section")
         k_f = 0.575 * rough + 0.425 if index == 2 else rough
-        k_f = record(f"K_F_{kind}", k_f, f"{SOURCE}, roughness")
+        k_f = record(f"K_F_{kind}", k_f, f"{SOURCE}, roughness", branch=branch)
         total = (beta / k_2 + 1.0 / k_f - 1.0) / notch.surface_factor
         total = record(f"K_s_{kind}", total, f"{SOURCE}, total influence")
         limit = (0.4, 0.5, 0.3)[index] * material.tensile_strength * k_b / total
@@ -278,7 +289,7 @@ def _yield_factors(notch: ShaftNotch, material: ShaftMaterial, index: int, alpha
         return 1.0
     hollow = notch.bore_diameter > 0.0
     reserve = (1.0, 1.1 if hollow else 1.2, 1.0 if hollow else 1.2)[index]
-    if index == 2:
+    if index == 2 or notch.kind not in (*_SHAPES, "press fit"):  # keys do not go around
         return reserve
     steps = ((1.5, 1.0), (2.0, 1.05), (3.0, 1.10))
     return reserve * next((value for limit, value in steps if alpha < limit), 1.15)
@@ -291,7 +302,7 @@ def rate_shaft(
     *,
     constant_ratio: bool = True,
 ) -> ShaftRating:
-    """Safety of a notched shaft section against fatigue.
+    """Safeties of a notched shaft section against fatigue and against yield.
 
     Parameters
     ----------
@@ -353,4 +364,21 @@ def rate_shaft(
         allowed = factors.record(f"sigma_ADK_{kind}", allowed, SOURCE, unit="Pa", branch=branch)
         utilization.append(amplitude / allowed if amplitude else 0.0)
     safety = 1.0 / math.hypot(utilization[0] + utilization[1], utilization[2])
-    return ShaftRating(factors.record("S", safety, f"{SOURCE}, at least 1.2"), factors)
+    safety = factors.record("S", safety, f"{SOURCE}, at least 1.2")
+    return ShaftRating(safety, factors, _record_yield(stress, yielding, factors))
+
+
+def _record_yield(stress: ShaftStress, yielding: list[float], factors: Factors) -> float:
+    """S against yield of the greatest stresses."""
+    tension, bending, torsion = (
+        (abs(amplitude) + abs(mean)) / limit
+        for amplitude, mean, limit in zip(*stress, yielding, strict=True)
+    )
+    safety = 1.0 / math.hypot(tension + bending, torsion)
+    return factors.record("S_yield", safety, f"{SOURCE}, against yield, at least 1.2")
+
+
+def yield_safety(notch: ShaftNotch, material: ShaftMaterial, stress: ShaftStress) -> float:
+    """S against yield, also of a stress that does not change."""
+    factors = Factors()
+    return _record_yield(stress, _strengths(notch, material, factors)[1], factors)

@@ -137,7 +137,7 @@ def _required(case: Any, key: str) -> float | None:
     if name in LIVES:
         required_life: float | None = rating.required_life
         return required_life
-    if name == "fatigue_safety":
+    if name in ("fatigue_safety", "yield_safety"):
         return rating.minimum_safety or SHAFT_SAFETY
     mode = name.removeprefix("computed_").partition("_safety")[0]
     default = getattr(RatingConditions(), f"{mode}_safety", None) if "_safety" in name else None
