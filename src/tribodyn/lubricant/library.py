@@ -79,6 +79,11 @@ def from_library(name: str, temperature: float | None = None) -> Lubricant:
     return _as_known(name, record, temperature)
 
 
+def library_base_oil(name: str) -> str:
+    """Base oil of an oil of the library."""
+    return str(_records()[name]["base_oil"]["value"])
+
+
 def temperature_range(name: str) -> tuple[float, float]:
     """Temperatures between which an oil of the library is known [K].
 

@@ -19,6 +19,7 @@ from tribodyn.rating import (
     rate_pair,
     rate_spectrum,
 )
+from tribodyn.rating.factor import check_range
 from tribodyn.record import figure_method
 from tribodyn.study.case.rating_tables import gear_material
 from tribodyn.study.computed_rating import load_sharing_factor
@@ -310,7 +311,7 @@ class CaseRating:
         listed = [each.verdicts() for each in self.ratings]
         listed += [each.verdicts() for each in self.spectra]
         for verdict in chain(*listed, self.parts.verdicts()):
-            place = verdict.where if verdict.mode == "shaft fatigue" else ""  # each notch
+            place = verdict.where if verdict.mode.startswith("shaft") else ""  # each notch
             key = verdict.mode, verdict.part, place
             if key not in least or verdict.margin < least[key].margin:
                 least[key] = verdict
@@ -344,7 +345,11 @@ def conditions_of(case: Case, planets: int) -> dict[str, Any]:
     assert rating is not None
     sharing = rating.mesh_load_factor
     if sharing is None:
-        sharing = PLANET_FACTORS.get(planets, max(PLANET_FACTORS.values()))
+        most = max(PLANET_FACTORS)
+        check_range(
+            "planets", planets, 1, most, "K_gamma, see rating.mesh_load_factor", limited=True
+        )
+        sharing = PLANET_FACTORS[min(planets, most)]
     required = rating.minimum_safety
     names = ("pitting_safety", "bending_safety", "scuffing_safety", "micropitting_safety")
     safeties = {} if required is None else dict.fromkeys(names, required)

@@ -40,6 +40,7 @@ _REMEDIES = {
     "load stage in the micropitting test",
     "bearing life": "a bearing of a higher load rating, cleaner oil, cooler or thicker oil, or a "
     "bearing further from the mesh",
+    "shaft yield": "a larger diameter at the notch, a stronger steel, or a smaller overload",
     "shaft fatigue": "a larger radius or diameter at the notch, a smoother surface, or a stronger "
     "steel",
 }
@@ -63,8 +64,10 @@ def rating_figures(rating: CaseRating) -> dict[str, dict[str, float]]:
         lives = {f"bearings.{bearing.bearing}.{name}": getattr(life, name) for name in LIVES}
         figures.setdefault(life.load, {}).update(lives)
     for notch in rating.parts.notches:
-        table, key = figures.setdefault(notch.load, {}), f"shafts.{notch.shaft}.fatigue_safety"
-        table[key] = min(table.get(key) or math.inf, notch.safety)
+        safeties = {"fatigue_safety": notch.safety, "yield_safety": notch.yield_safety}
+        table = figures.setdefault(notch.load, {})
+        for key, safety in ((f"shafts.{notch.shaft}.{n}", s) for n, s in safeties.items()):
+            table[key] = min(table.get(key) or math.inf, safety)
     return {
         load: {k: float(v) for k, v in table.items() if v is not None and math.isfinite(v)}
         for load, table in figures.items()
@@ -213,9 +216,23 @@ def limits_in_words(rating: CaseRating) -> str:
     lacking = [verdict for verdict in verdicts if verdict.margin < 0.0]
     if not lacking:
         reserve = f"its safety {first.safety:.3f} is {100.0 * first.margin:.1f} % above"
+        text = f"{place}: {reserve} the required one."
         return (
-            f"All safeties suffice. The design is limited by {place}: {reserve} the required one."
+            f"All safeties suffice. The design is limited by {text}{_by_computed_loads(verdicts)}"
         )
     text = f"{len(lacking)} of {len(verdicts)} safeties are too low. The design is limited by "
     text += f"{place}: safety {first.safety:.3f}, required {first.required:g}. It would help: "
     return f"{text}{_REMEDIES[first.mode]}."
+
+
+def _by_computed_loads(verdicts: list[Verdict]) -> str:
+    """Sentence on safeties that the standard finds sufficient and computed loads too low."""
+    lacking = [v for v in verdicts if v.computed is not None and v.computed < v.required]
+    if not lacking:
+        return ""
+    worst = min(lacking, key=lambda v: (v.computed or 0.0) / v.required)
+    return (
+        f" By computed loads {len(lacking)} of {len(verdicts)} are too low: {worst.mode} of "
+        f"{worst.part} under {worst.load} has {worst.computed:.3f}. It would help: "
+        f"{_REMEDIES[worst.mode]}."
+    )

@@ -12,7 +12,11 @@ import pytest
 import tribodyn as td
 from tribodyn.cli import main
 from tribodyn.errors import InputError, ModelWarning
+from tribodyn.lubricant.library import library_base_oil
 from tribodyn.study import Case
+from tribodyn.study.rated_oil import gear_oil
+from tribodyn.study.rating import conditions_of
+from tribodyn.study.rating_summary import limits_in_words
 
 PAIR: dict[str, Any] = {
     "gears": {
@@ -390,3 +394,72 @@ def test_the_command_prints_the_verdict(tmp_path, capsys):
     assert data["meshes"]["mesh"]["factors"]["K_v"]["value"] >= 1.0
     assert command("rate", "fzg-film") == 2
     assert "[rating]" in capsys.readouterr().err
+
+
+STATED = {
+    "dynamic_viscosity": "30 mPa*s", "density": "860 kg/m^3",
+    "pressure_viscosity_coefficient": "18 1/GPa",
+}  # fmt: skip
+
+
+def of_oil(at_40: str, **oil: Any) -> Any:
+    tables = {"lubricant": {**STATED, **oil}}
+    if at_40:
+        tables["rating"] = {**PAIR["rating"], "kinematic_viscosity_at_40": at_40}
+    return Case(**changed(PAIR, **tables))
+
+
+def test_a_viscosity_at_40_degc_rates_an_oil_without_temperature():
+    """The oil is as warm as the line of viscosity index 95 says where it has its viscosity."""
+    oil = gear_oil(of_oil("150 mm^2/s"))
+    assert oil.kinematic_viscosity_at_40 == pytest.approx(150e-6)
+    assert oil.kinematic_viscosity(oil.temperature) == pytest.approx(0.030 / 860.0, rel=1e-9)
+    at_100 = td.lubricant.viscosity_at_100_degc(150e-6, 95.0)
+    assert oil.kinematic_viscosity(373.15) == pytest.approx(at_100, rel=1e-9)
+    warm = gear_oil(of_oil("150 mm^2/s", temperature="70 degC"))
+    assert warm.temperature == pytest.approx(343.15)
+    assert warm.kinematic_viscosity(343.15) == pytest.approx(0.030 / 860.0, rel=1e-9)
+
+
+@pytest.mark.parametrize(
+    ("at_40", "oil", "message"),
+    [
+        ("", {}, "State it as rating.kinematic_viscosity_at_40"),
+        ("150 mm^2/s", {"temperature": "40 degC"}, "has no effect here"),
+        ("20 mm^2/s", {"temperature": "70 degC"}, "thinner where it is warmer"),
+    ],
+)
+def test_viscosities_that_contradict_each_other_are_refused(at_40, oil, message):
+    with pytest.raises(InputError, match=message):
+        of_oil(at_40, **oil)
+
+
+def test_a_viscosity_that_the_oil_has_at_no_temperature_is_refused():
+    with pytest.raises(InputError, match="nowhere from -40 to 200 degC"):
+        gear_oil(of_oil("10 mm^2/s", dynamic_viscosity="50 Pa*s"))
+
+
+@pytest.mark.parametrize(("name", "factor"), [("ISO VG 220", 1.0), ("PAO", 0.8)])
+def test_an_oil_of_the_library_has_the_lubricant_factor_of_its_base_oil(name, factor):
+    if name == "PAO":
+        (name,) = (n for n in td.lubricant.library() if library_base_oil(n) == "polyalphaolefin")
+    case = Case(**changed(PAIR, lubricant={"name": name, "temperature": "80 degC"}))
+    assert gear_oil(case).lubricant_factor == factor
+
+
+def test_more_planets_than_the_table_has_are_reported():
+    case = Case(**PAIR)
+    with pytest.warns(ModelWarning, match="planets = 9 lies outside"):
+        assert conditions_of(case, 9)["mesh_load_factor"] == 1.47
+
+
+def test_sentences_name_safeties_that_computed_loads_find_too_low(result):
+    (mesh,) = result.rating.ratings
+    torque = 1.02 * 200.0 * mesh.standard.pitting_safety**2 / 1.0
+    changes = {"operation.torque": torque, "rating.application_factor": 1.25}
+    rating = td.run(result.case.replace(changes)).rating
+    verdicts = rating.verdicts()
+    enough = [v for v in verdicts if v.computed is not None and v.computed < v.required <= v.safety]
+    standard = [v for v in verdicts if v.margin < 0.0]
+    text = limits_in_words(rating)
+    assert ("By computed loads" in text) == (not standard and bool(enough))

@@ -105,6 +105,11 @@ class RatingTable(Section):
     )
     flank_roughness: float = _roughness(4e-6, "roughness Rz of the flanks")
     root_roughness: float = _roughness(16e-6, "roughness Rz of the roots")
+    kinematic_viscosity_at_40: float | None = number(
+        None, 7e-6, 0.1, "mineral oils; guards against a wrong unit", unit="m^2/s",
+        display_unit="mm^2/s", symbol="nu_40", meaning="viscosity of the oil at 40 degC where "
+        "lubricant has that of the working temperature alone", example='"220 mm^2/s"',
+    )  # fmt: skip
     scuffing_load_stage: int | None = integer(
         None, 1, 14, "stages of the test A/8.3/90",
         meaning="failure load stage of the oil in the FZG scuffing test", example="12",
@@ -183,6 +188,11 @@ class ShaftStrength(Section):
         meaning="kind of steel, for the influence of size",
     )  # fmt: skip
     hard_surface: bool = flag(False, meaning="whether the surface is hardened")
+    treated_diameter: float | None = number(
+        None, 1e-3, 10.0, "guards against a wrong unit", unit="m", display_unit="mm",
+        symbol="d_eff", meaning="diameter of the shaft at its heat treatment",
+        basis="the diameter of the notch", example='"60 mm"',
+    )  # fmt: skip
 
 
 class NotchTable(Section):
@@ -244,6 +254,28 @@ def has_viscosity_at_40(oil: LubricantData) -> bool:
     return at_40 or oil.temperature_viscosity_coefficient is not None
 
 
+def _viscosity_problems(oil: LubricantData, at_40: float | None) -> Iterator[tuple[str, Problem]]:
+    if has_viscosity_at_40(oil):
+        if at_40 is not None:
+            what, why = "kinematic_viscosity_at_40 has no effect here", "[lubricant] gives it"
+            yield "rating.kinematic_viscosity_at_40", Problem(what, "", why, "Remove it")
+    elif at_40 is None:
+        what = "the viscosity of the oil at 40 degC is not known"
+        why = "Ratings need it, and properties at one other temperature do not give it"
+        remedy = (
+            "State it as rating.kinematic_viscosity_at_40; or give lubricant.name, the figures of "
+            "a data sheet with density_at_15, or temperature and temperature_viscosity_coefficient"
+        )
+        yield "rating", Problem(what, "", why, remedy)
+    elif oil.temperature is not None:
+        known = float(oil.dynamic_viscosity or 0.0) / float(oil.density or 1.0)
+        if (known - at_40) * (oil.temperature - 313.15) >= 0.0:
+            what = f"kinematic_viscosity_at_40 = {1e6 * at_40:g} mm2/s"
+            why = f"The oil has {1e6 * known:.4g} mm2/s at {oil.temperature - 273.15:g} degC"
+            remedy = "An oil is thinner where it is warmer: correct one of them"
+            yield "rating.kinematic_viscosity_at_40", Problem(what, "", why, remedy)
+
+
 def rating_problems(case: CaseData) -> Iterator[tuple[str, Problem]]:
     """Problems of materials and of the rating, by dotted key."""
     names = [] if case.materials is None else [n for n in vars(case.materials) if n[0] != "_"]
@@ -267,14 +299,8 @@ def rating_problems(case: CaseData) -> Iterator[tuple[str, Problem]]:
     if case.lubricant is None:
         what, why = "the table [lubricant] is missing", "Ratings need the viscosity at 40 degC"
         yield "rating", Problem(what, "", why, "Add it with a name, or the figures of a data sheet")
-    elif not has_viscosity_at_40(case.lubricant):
-        what = "the viscosity of the oil at 40 degC is not known"
-        why = "Ratings need it, and properties at one other temperature do not give it"
-        remedy = (
-            "Give lubricant.name, the figures of a data sheet with density_at_15, or temperature "
-            "and temperature_viscosity_coefficient"
-        )
-        yield "rating", Problem(what, "", why, remedy)
+    else:
+        yield from _viscosity_problems(case.lubricant, case.rating.kinematic_viscosity_at_40)
     materials = [getattr(case.gears, role).material for role in ("pinion", "wheel")]
     for name in (name for name in names if name not in materials):
         what, remedy = f"{name} has no effect here", "Name it as material of a gear, or remove it"
