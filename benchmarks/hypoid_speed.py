@@ -15,7 +15,7 @@ from scipy.optimize import brentq, root
 
 from race import Goal, arguments, machine, print_goals, print_table, race
 from tribodyn.gear import EaseOff, HypoidFlanks, Misalignment, hypoid_blank, hypoid_flanks
-from tribodyn.gear.hypoid.contact_lines import ContactLines
+from tribodyn.gear.hypoid.conjugate import ContactLines
 from tribodyn.gear.hypoid.envelope import envelope, turned
 from tribodyn.gear.hypoid.tooth_contact import exact_contact, lightest, start_values
 from tribodyn.mesh import HypoidLoadedContact, hypoid_loaded_contact

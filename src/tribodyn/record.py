@@ -84,6 +84,16 @@ def labels_of(cls: type[Any]) -> dict[str, Labels]:
     return {each.name: each.metadata[_KEY] for each in fields(cls) if _KEY in each.metadata}
 
 
+def from_parts(kind: type[T], /, *parts: object, **values: Any) -> T:
+    """Record of some values; its other fields are those of the first part that has them."""
+    for name in (each.name for each in fields(kind) if each.name not in values):  # type: ignore[arg-type]
+        for part in parts:
+            if hasattr(part, name):
+                values[name] = getattr(part, name)
+                break
+    return kind(**values)
+
+
 class Parts(NamedTuple):
     """Variables, coordinates and attributes of a data set."""
 

@@ -9,7 +9,7 @@ from tribodyn.ehl import (
     solve_line_contact_moes,
     solve_transient_line_contact,
 )
-from tribodyn.ehl.stiffness.frequency import film_compliance, frequency_response
+from tribodyn.ehl.film_stiffness import film_compliance, frequency_response
 from tribodyn.errors import InputError
 from tribodyn.lubricant import Lubricant
 

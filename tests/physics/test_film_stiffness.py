@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from tribodyn.ehl import LineContactSolution, solve_line_contact, solve_line_contact_moes
-from tribodyn.ehl.stiffness.film_stiffness import film_distance
+from tribodyn.ehl.film_stiffness import film_distance
 from tribodyn.errors import InputError, ModelWarning
 from tribodyn.lubricant import Lubricant
 

@@ -19,7 +19,7 @@ from tribodyn.ehl import (
     inlet_heating_factor,
     solve_line_contact,
 )
-from tribodyn.ehl.thermal.surfaces import surface_response
+from tribodyn.ehl.thermal.surface_history import surface_response
 from tribodyn.ehl.traction.shear_models import carreau_shear_stress
 from tribodyn.errors import InputError
 from tribodyn.friction import TribologicalContact

@@ -15,7 +15,7 @@ from tribodyn.gear import EaseOff, hypoid_blank, hypoid_flanks
 from tribodyn.gear.hypoid.kinematics import cell_motion
 from tribodyn.lubricant import from_library
 from tribodyn.mesh import hypoid_loaded_contact
-from tribodyn.mesh.film import fitted_table, sheared_film
+from tribodyn.mesh.film import film_table, sheared_film
 from tribodyn.mesh.hypoid.film import cell_films
 from tribodyn.mesh.hypoid.friction import friction_in_cells
 from tribodyn.mesh.sharing import ToothContact
@@ -46,14 +46,14 @@ def solved(loaded, model, speed=SPEED):
 @pytest.fixture
 def coarse_tables(monkeypatch):
     """Low degree in place of the fourth, and the same places for heated and cold films."""
-    monkeypatch.setattr(fitted_table, "_DEGREE", 2)
+    monkeypatch.setattr(film_table, "_DEGREE", 2)
     monkeypatch.setattr(sheared_film, "_HEATED_LOAD", sheared_film._OF_LOAD)
     monkeypatch.setattr(sheared_film, "_LEAST_SHEARED", sheared_film._LEAST_HEATED)
 
 
 @pytest.mark.slow
 def test_a_heated_cell_has_film_friction_and_heat_of_its_line_contact(monkeypatch):
-    monkeypatch.setattr(fitted_table, "_SAMPLES", 1.5)
+    monkeypatch.setattr(film_table, "_SAMPLES", 1.5)
     loaded = of_1043()
     films, motion = solved(loaded, "thermal")
     load = films.contact.load_per_width

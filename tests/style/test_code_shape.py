@@ -82,5 +82,5 @@ def test_median_sizes(record_property: Callable[[str, object], None]) -> None:
     functions = [f.code_lines for module in modules() for f in module.functions()]
     record_property("median_lines_of_a_file", statistics.median(files))
     record_property("median_lines_of_a_function", statistics.median(functions))
-    assert 60 <= statistics.median(files) <= 200
+    assert 100 <= statistics.median(files) <= 250
     assert statistics.median(functions) <= 16

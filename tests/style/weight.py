@@ -64,6 +64,7 @@ __all__ = ["ANY", "FILES", "LINES", "import_circles", "lines_of_code", "measures
 #: dynamics: turning errors on one clock
 #: study: summary figures of users for every kind of part
 #: rating, study: shafts against yield, oils of one viscosity
+#: record: results are built from what their parts state
 LINES: dict[str, int] = {
     "__init__": 105,
     "__main__": 3,
@@ -80,21 +81,21 @@ LINES: dict[str, int] = {
     "contact": 422,
     "cookbook": 107,
     "drawing": 195,
-    "dynamics": 15257,
-    "ehl": 9781,
+    "dynamics": 15235,
+    "ehl": 9649,
     "errors": 224,
     "exchange": 1903,
     "faults": 1709,
     "files": 247,
-    "friction": 1497,
-    "gear": 3746,
+    "friction": 1464,
+    "gear": 3735,
     "interrupt": 215,
     "losses": 938,
-    "lubricant": 562,
-    "machine": 5667,
+    "lubricant": 556,
+    "machine": 5666,
     "measurement": 3383,
     "members": 3,
-    "mesh": 5698,
+    "mesh": 5639,
     "model": 223,
     "nomenclature": 215,
     "notebook": 57,
@@ -102,11 +103,11 @@ LINES: dict[str, int] = {
     "plot": 8686,
     "progress": 72,
     "rating": 2828,
-    "record": 205,
+    "record": 212,
     "report": 1824,
     "scope": 55,
     "signals": 1788,
-    "stiffness": 5161,
+    "stiffness": 5149,
     "study": 18835,
     "surrogate": 777,
     "types": 7,
@@ -116,7 +117,7 @@ LINES: dict[str, int] = {
     "variants": 1048,
 }
 #: Modules of the package, and its annotations without a type.
-FILES, ANY = 762, 2566
+FILES, ANY = 734, 2569
 
 _NO_CODE = {
     tokenize.COMMENT, tokenize.NL, tokenize.NEWLINE, tokenize.INDENT, tokenize.DEDENT,

@@ -8,7 +8,7 @@
 | ``steady`` | pressure and film of a contact at rest in its frame, one or many |
 | ``transient`` | pressure and film while load, radius and speed change |
 | ``thermal`` | the film with its heat: temperatures and shear across it, friction |
-| ``stiffness`` | stiffness and damping of the film |
+| ``film_stiffness`` | stiffness and damping of the film |
 | ``traction`` | shear of the oil, and its temperature |
 | ``load_share`` | how much of the load the film carries between rough surfaces, and the regime |
 | ``asperities`` | summits of rough flanks from their roughness, and their contact |
@@ -20,12 +20,10 @@
 from __future__ import annotations
 
 from tribodyn.arguments import guard
-from tribodyn.ehl.area.finite_line import solve_finite_line_contact
-from tribodyn.ehl.area.finite_line_solution import FiniteLineSolution
+from tribodyn.ehl.area.finite_line import RollerProfile, solve_finite_line_contact
 from tribodyn.ehl.area.friction import AreaFriction
 from tribodyn.ehl.area.point_contact import solve_point_contact
-from tribodyn.ehl.area.roller_profile import RollerProfile
-from tribodyn.ehl.area.solution import PointContactSolution
+from tribodyn.ehl.area.solution import FiniteLineSolution, PointContactSolution
 from tribodyn.ehl.asperities import Asperities, asperity_integral
 from tribodyn.ehl.flow_factors import (
     FlowFactors,
@@ -40,10 +38,11 @@ from tribodyn.ehl.formulas.elliptic import (
     nijenbanning_central,
     nijenbanning_dimensionless_central,
 )
-from tribodyn.ehl.formulas.moes import moes_central, moes_dimensionless_central
-from tribodyn.ehl.formulas.power_laws import (
+from tribodyn.ehl.formulas.line import (
     dowson_1968_minimum,
     dowson_toyoda_central,
+    moes_central,
+    moes_dimensionless_central,
     pan_hamrock_central,
     pan_hamrock_minimum,
 )

@@ -9,10 +9,11 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from tribodyn.ehl.formulas.moes import moes_central, moes_load_exponent
-from tribodyn.ehl.formulas.power_laws import (
+from tribodyn.ehl.formulas.line import (
     dowson_1968_minimum,
     dowson_toyoda_central,
+    moes_central,
+    moes_load_exponent,
     pan_hamrock_central,
     pan_hamrock_minimum,
 )

@@ -7,10 +7,11 @@
 | `benedict_kelly` | friction of discs, by formula |
 | `discs` | the same: Misharin, Drozdov and Gavrikov, O'Donoghue and Cameron |
 | `xu`, `ehl` | friction of an oil film, by regression or from the solved film |
-| `mixed_ehl`, `matsumoto` | film and asperities share the load, by a fit |
+| `mixed_ehl` | film and asperities share the load, by a fit: Castro and Seabra, Matsumoto |
 | `mixed` | film and asperities share the load, by the gap at which both carry it |
 | `exponential` | sliding and roughness, with numbers to be fitted |
-| `mesh_means` | one mean value for a whole mesh: Schlenk, ISO, Niemann, measured points |
+| `mesh_means`, `iso_14179` | one mean value for a whole mesh: Schlenk, ISO, Niemann |
+| `measured` | the same between measured points |
 """
 
 from __future__ import annotations
@@ -28,15 +29,11 @@ from tribodyn.friction.constant import constant, none
 from tribodyn.friction.discs import drozdov, misharin, odonoghue_cameron
 from tribodyn.friction.ehl import ehl
 from tribodyn.friction.exponential import exponential
-from tribodyn.friction.matsumoto import matsumoto
-from tribodyn.friction.mesh_means.iso_6336_22 import iso_6336_22
-from tribodyn.friction.mesh_means.iso_14179 import iso_14179_1, iso_14179_2
-from tribodyn.friction.mesh_means.measured import measured
-from tribodyn.friction.mesh_means.niemann import niemann
-from tribodyn.friction.mesh_means.pitch_point import PitchPoint, pitch_point
-from tribodyn.friction.mesh_means.schlenk import schlenk
+from tribodyn.friction.iso_14179 import iso_14179_1, iso_14179_2
+from tribodyn.friction.measured import measured
+from tribodyn.friction.mesh_means import PitchPoint, iso_6336_22, niemann, pitch_point, schlenk
 from tribodyn.friction.mixed import mixed, mixed_solved
-from tribodyn.friction.mixed_ehl import mixed_ehl
+from tribodyn.friction.mixed_ehl import matsumoto, mixed_ehl
 from tribodyn.friction.xu import xu_2007
 
 __all__ = [

@@ -18,7 +18,7 @@ from tribodyn.types import Array, Mask
 
 if TYPE_CHECKING:
     from tribodyn.ehl.traction.film_state import FilmState
-    from tribodyn.friction.mesh_means.pitch_point import PitchPoint
+    from tribodyn.friction.mesh_means import PitchPoint
 
 
 #: Thermal contact coefficients of two bodies of gear steel [J/(m^2 K s^0.5)].

@@ -23,7 +23,7 @@ from tribodyn.errors import (
     require_positive,
     warn,
 )
-from tribodyn.friction.mesh_means.measured import FZG_POINTS
+from tribodyn.friction.measured import FZG_POINTS
 from tribodyn.losses.gearbox import gear_loss_factor
 from tribodyn.types import Array
 from tribodyn.units import RPM

@@ -5,30 +5,30 @@
 | `oil` | a lubricating oil at its working temperature |
 | `library` | named oils, each number with its source |
 | `data_sheet` | an oil of a data sheet: two viscosities, or one and a viscosity index |
-| `astm_d341` | viscosity over temperature from two measured points |
-| `astm_d2270` | viscosity index: from two viscosities, and back |
-| `pressure_viscosity` | viscosity under pressure: Barus, Roelands; the coefficient of an oil |
-| `density` | density over temperature and under pressure |
+| `astm` | viscosity over temperature from two points (D341); viscosity index, and back (D2270) |
+| `pressure_laws` | viscosity (Barus, Roelands) and density under pressure and temperature |
 """
 
 from __future__ import annotations
 
 from tribodyn.arguments import guard
-from tribodyn.lubricant.astm_d341 import walther_slope, walther_viscosity
-from tribodyn.lubricant.astm_d2270 import (
+from tribodyn.lubricant.astm import (
     viscosity_at_40_degc,
     viscosity_at_100_degc,
     viscosity_index,
+    walther_slope,
+    walther_viscosity,
 )
 from tribodyn.lubricant.data_sheet import from_data_sheet
-from tribodyn.lubricant.density import density_at_temperature, dowson_higginson_density
 from tribodyn.lubricant.library import from_library, library, temperature_range
 from tribodyn.lubricant.oil import VISCOSITY_LAWS, Lubricant
-from tribodyn.lubricant.pressure_viscosity import (
+from tribodyn.lubricant.pressure_laws import (
     BASE_OILS,
     ROELANDS_PRESSURE,
     agma_925_coefficient,
     barus_viscosity,
+    density_at_temperature,
+    dowson_higginson_density,
     roelands_index,
     roelands_viscosity,
 )

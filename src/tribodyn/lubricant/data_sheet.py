@@ -3,13 +3,15 @@
 from __future__ import annotations
 
 from tribodyn.errors import Argument, InputError, require_between
-from tribodyn.lubricant.astm_d341 import MARGIN, TemperaturePoint, walther_viscosity
-from tribodyn.lubricant.astm_d2270 import (
+from tribodyn.lubricant.astm import (
     GREATEST_AT_100,
     LEAST_AT_100,
+    MARGIN,
+    TemperaturePoint,
     viscosity_at_40_degc,
     viscosity_at_100_degc,
     viscosity_index,
+    walther_viscosity,
 )
 from tribodyn.lubricant.oil import Lubricant
 from tribodyn.units import ZERO_CELSIUS

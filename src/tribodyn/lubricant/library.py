@@ -6,10 +6,10 @@ from functools import lru_cache
 from typing import Any
 
 from tribodyn.errors import Argument, InputError
-from tribodyn.lubricant.astm_d341 import MARGIN, walther_slope, walther_viscosity
+from tribodyn.lubricant.astm import MARGIN, walther_slope, walther_viscosity
 from tribodyn.lubricant.data_sheet import SHEET_RANGE, points_through
 from tribodyn.lubricant.oil import Lubricant
-from tribodyn.lubricant.pressure_viscosity import agma_925_coefficient
+from tribodyn.lubricant.pressure_laws import agma_925_coefficient
 from tribodyn.model import Registry
 from tribodyn.units import ZERO_CELSIUS
 

@@ -8,15 +8,13 @@ from dataclasses import KW_ONLY, dataclass, field
 from numpy.typing import ArrayLike
 
 from tribodyn.errors import InputError, require_between, require_positive
-from tribodyn.lubricant.astm_d341 import TemperaturePoint, walther_slope, walther_viscosity
-from tribodyn.lubricant.density import (
+from tribodyn.lubricant.astm import TemperaturePoint, walther_slope, walther_viscosity
+from tribodyn.lubricant.pressure_laws import (
     DENSITY_FALL,
-    density_at_temperature,
-    dowson_higginson_density,
-)
-from tribodyn.lubricant.pressure_viscosity import (
     agma_925_coefficient,
     barus_viscosity,
+    density_at_temperature,
+    dowson_higginson_density,
     roelands_index,
     roelands_viscosity,
 )

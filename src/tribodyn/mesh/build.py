@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property, lru_cache
+from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
@@ -40,6 +41,7 @@ from tribodyn.mesh.sharing import (
 from tribodyn.mesh.table import MeshTable
 from tribodyn.model import NO_OPTIONS
 from tribodyn.progress import SILENT, Progress
+from tribodyn.record import from_parts
 from tribodyn.stiffness import MODELS
 from tribodyn.stiffness.loaded.face_problem import has_slices
 from tribodyn.types import Array, Mask
@@ -125,25 +127,14 @@ def build(
     ...       composite_roughness=0.0, pinion_speed=100.0, pinion_torque=90.0)  # doctest: +ELLIPSIS
     MeshTable(contact ratio 1.5477, mesh frequency 270.6 Hz, mean stiffness 7.739e+08 N/m, ...)
     """
-    settings = ToothContact(
-        material=material,
-        lubricant=lubricant,
-        stiffness_model=stiffness_model,
-        stiffness_options=stiffness_options,
+    settings = from_parts(
+        ToothContact,
+        SimpleNamespace(**locals()),
         composite_roughness=float(composite_roughness),
-        film_model=film_model,
-        film_options=film_options,
-        friction_law=friction_law,
-        friction_options=friction_options,
     )
+    operation = {"pinion_speed": pinion_speed, "pinion_torque": pinion_torque}
     return mesh_table(
-        pair,
-        settings,
-        pinion_speed=pinion_speed,
-        pinion_torque=pinion_torque,
-        steps=steps,
-        force_law=force_law,
-        progress=progress,
+        pair, settings, **operation, steps=steps, force_law=force_law, progress=progress
     )
 
 
@@ -253,17 +244,12 @@ def table_of(
     columns: Mapping[str, Any],
 ) -> MeshTable:
     """Make a mesh table of its columns."""
-    return MeshTable(
-        grid=cycle.grid,
-        path=cycle.path,
-        in_contact=cycle.in_contact,
+    return from_parts(
+        MeshTable,
+        *(cycle, settings),
         gear_pair=pair,
         pinion_speed=operation[0],
         pinion_torque=operation[1],
-        composite_roughness=settings.composite_roughness,
-        stiffness_model=settings.stiffness_model,
-        friction_law=settings.friction_law,
-        film_model=settings.film_model,
         film_stiffness_kind=settings.film["stiffness"],
         **_face_columns(cycle),
         **columns,

@@ -110,27 +110,16 @@ class PairsInContact:
 
     def some(self, index: Index) -> PairsInContact:
         """A part of these contacts."""
-        return replace(
-            self,
-            length=self.length if np.ndim(self.length) == 0 else np.asarray(self.length)[index],
-            age=self.age[index],
-            equivalent_radius=self.equivalent_radius[index],
-            entrainment_speed=self.entrainment_speed[index],
-            sliding_speed=None if self.sliding_speed is None else self.sliding_speed[index],
-        )
+        columns: dict[str, Any] = {n: v for n, v in vars(self).items() if np.ndim(v)}
+        return replace(self, **{name: column[index] for name, column in columns.items()})
 
     def joined(self, others: PairsInContact) -> PairsInContact:
         """These contacts and others of the same pair."""
-        sliding = self.sliding_speed
-        if sliding is not None and others.sliding_speed is not None:
-            sliding = np.concatenate([sliding, others.sliding_speed])
-        return replace(
-            self,
-            sliding_speed=sliding,
-            age=np.concatenate([self.age, others.age]),
-            equivalent_radius=np.concatenate([self.equivalent_radius, others.equivalent_radius]),
-            entrainment_speed=np.concatenate([self.entrainment_speed, others.entrainment_speed]),
-        )
+        values = {n: v for n, v in vars(self).items() if n != "length" and np.ndim(v)}
+        columns: dict[str, Any] = {
+            name: np.concatenate([value, getattr(others, name)]) for name, value in values.items()
+        }
+        return replace(self, **columns)
 
     def films(self, model: str, load_per_width: Array, **options: Any) -> Films:
         """Films of every one of these contacts."""

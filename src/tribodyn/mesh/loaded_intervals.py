@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from tribodyn.mesh.face.lines import pair_column
+from tribodyn.mesh.face_lines import pair_column
 from tribodyn.mesh.grid import PhaseGrid
 from tribodyn.types import Array
 

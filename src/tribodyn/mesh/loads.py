@@ -32,6 +32,7 @@ from tribodyn.mesh.sharing import (
     ToothContact,
 )
 from tribodyn.progress import Progress
+from tribodyn.record import from_parts
 from tribodyn.types import Array, Mask
 
 
@@ -128,19 +129,15 @@ def tribological_contact(
 ) -> TribologicalContact:
     """Loaded contacts as the friction laws see them."""
     hertz = hertz_line(load_per_width, motion.equivalent_radius, pairs.effective_modulus)
-    return TribologicalContact(
+    return from_parts(
+        TribologicalContact,
+        *(motion, films, pairs.lubricant),
         load_per_width=load_per_width,
         hertz_pressure=hertz.maximum_pressure,
-        sliding_speed=motion.sliding_speed,
-        entrainment_speed=motion.entrainment_speed,
-        slide_to_roll_ratio=motion.slide_to_roll_ratio,
-        equivalent_radius=motion.equivalent_radius,
-        dynamic_viscosity=pairs.lubricant.dynamic_viscosity,
         composite_roughness=composite_roughness,
         oil_density=pairs.lubricant.density,
         film_thickness=smallest_film(films),
         pitch=pitch,
-        central_film=films.central_film,
         bodies=bodies,
     )
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
@@ -16,15 +17,15 @@ from tribodyn.gear import Material
 from tribodyn.lubricant import Lubricant
 from tribodyn.mesh.build import mesh_table
 from tribodyn.mesh.cycle import PathPositions, path_positions
-from tribodyn.mesh.face.lines import along_flank, slice_count
-from tribodyn.mesh.face.operation import films_over_flank
+from tribodyn.mesh.face_lines import along_flank, slice_count
 from tribodyn.mesh.film.film_columns import as_columns, film_places
 from tribodyn.mesh.gears import Gears
+from tribodyn.mesh.operating_points import films_over_flank
 from tribodyn.mesh.sharing import LEAST_SHARE, ToothContact, teeth_of
 from tribodyn.mesh.table import MeshTable
 from tribodyn.model import NO_OPTIONS
 from tribodyn.progress import SILENT, Progress
-from tribodyn.record import Parts, Record, fact, figure_method, quantity, record
+from tribodyn.record import Parts, Record, fact, figure_method, from_parts, quantity, record
 from tribodyn.stiffness import MODELS
 from tribodyn.stiffness.loaded.face_problem import has_slices
 from tribodyn.types import Array, Mask
@@ -164,10 +165,7 @@ def film_over_operation(
     """
     speed, torque = one_or_more(pinion_speed=pinion_speed, pinion_torque=pinion_torque)
     require_between("composite_roughness", composite_roughness, 0.0, 1e-4, "m")
-    settings = ToothContact(
-        material, lubricant, stiffness_model, stiffness_options,
-        composite_roughness, film_model, film_options,
-    )  # fmt: skip
+    settings = from_parts(ToothContact, SimpleNamespace(**locals()))
     if has_slices(pair, MODELS[stiffness_model]):
         fields = films_over_flank(pair, settings, torque, speed, progress)
         return FilmOverOperation(pinion_torque=torque, pinion_speed=speed, **fields)
@@ -398,12 +396,9 @@ def comprehensive_stiffness(
     """
     speeds, torques = one_or_more(pinion_speed=pinion_speed, pinion_torque=pinion_torque)
     _check_kind(film_model, kind)
-    settings = ToothContact(
-        material=material,
-        lubricant=lubricant,
-        stiffness_model=stiffness_model,
-        stiffness_options=stiffness_options,
-        film_model=film_model,
+    settings = from_parts(
+        ToothContact,
+        SimpleNamespace(**locals()),
         film_options={**film_options, "stiffness": kind},
     )
 
@@ -418,11 +413,11 @@ def comprehensive_stiffness(
     path, face = _in_order(table, table.path), table.face_position
     on_face = None if face is None else _in_order(table, np.broadcast_to(face, table.path.shape))
     radius = path if pair.driver == "pinion" else pair.line_of_action_length - path
-    return ComprehensiveStiffness(
+    return from_parts(
+        ComprehensiveStiffness,
+        settings,
         gear_pair=pair,
         kind=kind,
-        stiffness_model=stiffness_model,
-        film_model=film_model,
         pinion_torque=torques,
         pinion_speed=speeds,
         path=path,

@@ -11,8 +11,7 @@ import numpy as np
 
 from tribodyn.errors import InputError
 from tribodyn.mesh.columns import MeshColumns, whole_stiffness
-from tribodyn.mesh.face.lines import SUMMED, slice_count
-from tribodyn.mesh.face.maps import face_load_factor, face_map
+from tribodyn.mesh.face_lines import SUMMED, face_load_factor, face_map, slice_count
 from tribodyn.mesh.force_law import MeshForceLaw
 from tribodyn.mesh.functions import MeshFunctions
 from tribodyn.mesh.gears import load_center, spatial_columns

@@ -17,7 +17,7 @@ import numpy as np
 from tribodyn.errors import Argument, InputError
 from tribodyn.gear import CylindricalGear, CylindricalPair
 from tribodyn.mesh import MeshTable
-from tribodyn.mesh.face.lines import by_pair, slice_count
+from tribodyn.mesh.face_lines import by_pair, slice_count
 from tribodyn.mesh.grid import PhaseFunction
 from tribodyn.rating.bending import form_factor, lever_arm, stress_correction
 from tribodyn.rating.root_section import root_section, virtual_teeth

@@ -31,7 +31,7 @@ _REFERENCE_LOAD = 3e5
 def load_sharing_factor(case: Case, table: MeshTable) -> float:
     """Greatest load of a tooth pair over that of flanks without modification or deviation."""
     from tribodyn.mesh.build import teeth_under_load
-    from tribodyn.mesh.face.lines import by_pair, slice_count
+    from tribodyn.mesh.face_lines import by_pair, slice_count
     from tribodyn.study.mesh_inputs import mesh_inputs
 
     inputs, bare = mesh_inputs(case), FlankModification()

@@ -16,7 +16,7 @@ from tribodyn.study.case.to_models import chosen_options, locate_errors
 
 if TYPE_CHECKING:
     from tribodyn.dynamics import MeshForce
-    from tribodyn.dynamics.structure.pair_contacts import Axes
+    from tribodyn.dynamics.structure.structures import Axes
     from tribodyn.gear import CylindricalPair, HypoidFlanks, Misalignment
     from tribodyn.mesh.sharing import ToothContact
     from tribodyn.mesh.table_file import TableFile

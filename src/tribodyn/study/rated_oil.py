@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 from tribodyn.errors import InputError
 from tribodyn.lubricant import walther_viscosity
-from tribodyn.lubricant.astm_d341 import viscosity_from_slope
+from tribodyn.lubricant.astm import viscosity_from_slope
 from tribodyn.lubricant.library import library_base_oil
 from tribodyn.rating import GearOil
 from tribodyn.study.case.to_models import lubricant

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from tribodyn.ehl import FILM_MODELS, moes_central, solve_line_contact_moes
-from tribodyn.ehl.formulas.moes import moes_load_exponent
+from tribodyn.ehl.formulas.line import moes_load_exponent
 from tribodyn.errors import InputError
 from tribodyn.lubricant import Lubricant
 

@@ -8,7 +8,7 @@ import pytest
 from known_hypoids import eased, h1043, random_blanks
 from tribodyn.errors import InputError
 from tribodyn.gear import EaseOff, Misalignment, hypoid_blank, hypoid_flanks, tooth_contact
-from tribodyn.gear.hypoid.contact_lines import ContactLines
+from tribodyn.gear.hypoid.conjugate import ContactLines
 from tribodyn.gear.hypoid.flank import SIDES
 from tribodyn.gear.hypoid.tooth_contact import exact_contact, lightest, start_values
 

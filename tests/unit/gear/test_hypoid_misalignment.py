@@ -8,7 +8,7 @@ import pytest
 from known_hypoids import eased, h1043
 from tribodyn.errors import InputError
 from tribodyn.gear import Misalignment, misalignment_study, tooth_contact
-from tribodyn.gear.hypoid.contact_lines import ContactLines
+from tribodyn.gear.hypoid.conjugate import ContactLines
 from tribodyn.gear.hypoid.tooth_contact import exact_contact, gap_of, lightest, start_values
 from tribodyn.mesh import hypoid_loaded_contact
 

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from tribodyn.mesh.film.fitted_table import FittedTable
+from tribodyn.mesh.film.film_table import FittedTable
 
 
 def smooth(places):

@@ -8,7 +8,7 @@ import pytest
 from known_hypoids import eased, h1043, random_blanks
 from tribodyn.errors import InputError
 from tribodyn.gear import Misalignment, hypoid_flanks, tooth_contact
-from tribodyn.gear.hypoid.contact_lines import ContactLines
+from tribodyn.gear.hypoid.conjugate import ContactLines
 from tribodyn.gear.hypoid.flank import SIDES
 from tribodyn.mesh import hypoid_loaded_contact
 from tribodyn.mesh.hypoid.cells import CellSprings, contact_cells, first_touch

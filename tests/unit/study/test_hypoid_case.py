@@ -13,7 +13,7 @@ from tribodyn.dynamics import steady_state
 from tribodyn.errors import InputError, ModelWarning, collected
 from tribodyn.exchange import write_tables
 from tribodyn.gear import tooth_contact
-from tribodyn.gear.hypoid.contact_lines import ContactLines, contact_lines
+from tribodyn.gear.hypoid.conjugate import ContactLines, contact_lines
 from tribodyn.losses import BEARINGS, bearing_moments
 from tribodyn.losses.gearbox import PARTS, turning_bodies
 from tribodyn.mesh.hypoid.cells import contact_cells

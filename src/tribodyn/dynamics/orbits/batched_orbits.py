@@ -36,8 +36,8 @@ from tribodyn.dynamics.equations.orbit_coordinates import (
 from tribodyn.dynamics.equations.step_limit import LIMIT
 from tribodyn.dynamics.equations.system import System
 from tribodyn.dynamics.harmonic.harmonic_balance import STEP_LIMIT, TOLERANCE
-from tribodyn.dynamics.orbits.batched_periods import BatchedLanes, march_cycle
 from tribodyn.dynamics.orbits.orbit_map import image_of, take_drift_out
+from tribodyn.dynamics.orbits.periods import BatchedLanes, march_cycle
 from tribodyn.dynamics.orbits.search import APART, GONE, HORIZON, NEWTON_LIMIT
 from tribodyn.dynamics.orbits.steady_state import CLOSE, OTHER, ROUNDS
 from tribodyn.dynamics.time.response import Response, build_response

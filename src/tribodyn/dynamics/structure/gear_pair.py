@@ -2,16 +2,21 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from typing import TYPE_CHECKING, Literal
+from collections.abc import Callable, Sequence
+from typing import TYPE_CHECKING, Literal, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from tribodyn.dynamics.equations.entry import Entry
 from tribodyn.dynamics.equations.system import Contact, System
-from tribodyn.dynamics.structure.force_law import MeshForce, carried, sum_of
-from tribodyn.dynamics.structure.plane_mesh import friction_direction, plane_rows
+from tribodyn.dynamics.structure.force_law import (
+    MeshForce,
+    carried,
+    friction_direction,
+    plane_rows,
+    sum_of,
+)
 from tribodyn.errors import InputError, require_between, require_one_of, require_positive
 from tribodyn.types import Array
 
@@ -55,16 +60,22 @@ def _sign(driver: Driver) -> float:
     return 1.0 if driver == "pinion" else -1.0
 
 
+class ToothGap(NamedTuple):
+    """What a structure states of its teeth, apart from the mesh."""
+
+    mesh_damping: Entry
+    backlash: float
+    error: Entry
+    damping_in_gap: bool
+
+
 def gear_contact(
     mesh: MeshFunctions,
     names: tuple[str, ...],
     *,
     base_radius: Array,
     driver: Driver,
-    mesh_damping: Entry,
-    backlash: float,
-    error: Entry,
-    damping_in_gap: bool,
+    gap: ToothGap,
 ) -> Contact:
     """Build the contact of one gear pair over the coordinates of its structure."""
     rows, supports = plane_rows(names), len(names) > len(TORSIONAL_NAMES)
@@ -78,38 +89,23 @@ def gear_contact(
     # In space the friction follows from its direction; the three sums describe a plane.
     if of_mesh is None and keep != [4, 10] and mesh.friction_sum is not None:
         rub = friction_direction(mesh, rows[1:])
-    return tooth_contact(
-        mesh,
-        towards,
-        rub,
-        mesh_damping=mesh_damping,
-        backlash=backlash,
-        error=error,
-        damping_in_gap=damping_in_gap,
-    )
+    return tooth_contact(mesh, towards, rub, gap)
 
 
 def tooth_contact(
-    mesh: MeshFunctions,
-    direction: Entry,
-    friction: Entry | None,
-    *,
-    mesh_damping: Entry,
-    backlash: float,
-    error: Entry,
-    damping_in_gap: bool,
+    mesh: MeshFunctions, direction: Entry, friction: Entry | None, gap: ToothGap
 ) -> Contact:
     """Build the contact of the teeth of a mesh from its direction and its friction."""
-    require_between("backlash", backlash, 0.0, np.inf, "m")
+    require_between("backlash", gap.backlash, 0.0, np.inf, "m")
     return Contact(
         direction=direction,
         stiffness=mesh.stiffness,
-        damping=mesh_damping,
-        error=with_error_of(mesh, error),
-        gap=0.5 * backlash,
+        damping=gap.mesh_damping,
+        error=with_error_of(mesh, gap.error),
+        gap=0.5 * gap.backlash,
         friction=friction,
         events=tuple(mesh.event_phases),
-        damping_in_gap=damping_in_gap,
+        damping_in_gap=gap.damping_in_gap,
     )
 
 
@@ -152,6 +148,34 @@ def balance_direction(torque_balance: TorqueBalance, driver: Driver) -> Array | 
     what = f'torque_balance = "{torque_balance}"'
     why = '"drive" prescribes the driving torque, "load" the load torque, "both" both'
     raise InputError(what, "argument torque_balance", why, "Choose one of these")
+
+
+def pair_system(
+    names: tuple[str, ...],
+    turning: tuple[str, str],
+    *,
+    mass: Array,
+    damping: Array,
+    stiffness: Array,
+    contacts: Sequence[Contact],
+    drive: tuple[ArrayLike, Driver, TorqueBalance],
+) -> System:
+    """System of one pair from its matrices, or their diagonals, and what turns at two places."""
+    torque, driver, torque_balance = drive
+    pair = pair_of("torque", torque, "N*m", positive=False)
+    rotations = [names.index(name) for name in turning]
+
+    def spread(values: Array) -> Array:
+        out = np.zeros(len(names))
+        out[rotations] = values
+        return out
+
+    mass, damping, stiffness = (
+        each if each.ndim == 2 else np.diag(each) for each in (mass, damping, stiffness)
+    )
+    force, balance = torques(pair, driver), balance_direction(torque_balance, driver)
+    held = None if balance is None else spread(balance)
+    return System(mass, damping, stiffness, spread(force), contacts, names, held)
 
 
 #: Coordinates of a gear pair with 6 degrees of freedom, in their order.
@@ -242,26 +266,21 @@ def spur6(
     inertia = pair_of("moment_of_inertia", moment_of_inertia, "kg*m^2")
     stiffness = pair_of("bearing_stiffness", bearing_stiffness, "N/m")
     damping = pair_of("bearing_damping", bearing_damping, "N*s/m", positive=False)
-    turning = torques(pair_of("torque", torque, "N*m", positive=False), driver)
-    balance = balance_direction(torque_balance, driver)
     contact = gear_contact(
         mesh,
         SPUR6_NAMES,
         base_radius=pair_of("base_radius", base_radius, "m"),
         driver=driver,
-        mesh_damping=mesh_damping,
-        backlash=backlash,
-        error=error,
-        damping_in_gap=damping_in_gap,
+        gap=ToothGap(mesh_damping, backlash, error, damping_in_gap),
     )
-    return System(
-        mass=np.diag([m[0], m[0], inertia[0], m[1], m[1], inertia[1]]),
-        damping=np.diag([damping[0], damping[0], 0.0, damping[1], damping[1], 0.0]),
-        stiffness=np.diag([stiffness[0], stiffness[0], 0.0, stiffness[1], stiffness[1], 0.0]),
-        force=[0.0, 0.0, turning[0], 0.0, 0.0, turning[1]],
+    return pair_system(
+        SPUR6_NAMES,
+        ("pinion_theta", "wheel_theta"),
+        mass=np.array([m[0], m[0], inertia[0], m[1], m[1], inertia[1]]),
+        damping=np.array([damping[0], damping[0], 0.0, damping[1], damping[1], 0.0]),
+        stiffness=np.array([stiffness[0], stiffness[0], 0.0, stiffness[1], stiffness[1], 0.0]),
         contacts=carried(contact, mesh, mesh_force),
-        names=SPUR6_NAMES,
-        balance=None if balance is None else [0.0, 0.0, balance[0], 0.0, 0.0, balance[1]],
+        drive=(torque, driver, torque_balance),
     )
 
 
@@ -319,17 +338,14 @@ def torsional(
         TORSIONAL_NAMES,
         base_radius=pair_of("base_radius", base_radius, "m"),
         driver=driver,
-        mesh_damping=mesh_damping,
-        backlash=backlash,
-        error=error,
-        damping_in_gap=damping_in_gap,
+        gap=ToothGap(mesh_damping, backlash, error, damping_in_gap),
     )
-    return System(
-        mass=np.diag(inertia),
-        damping=np.zeros((2, 2)),
-        stiffness=np.zeros((2, 2)),
-        force=torques(pair_of("torque", torque, "N*m", positive=False), driver),
+    return pair_system(
+        TORSIONAL_NAMES,
+        TORSIONAL_NAMES,
+        mass=inertia,
+        damping=np.zeros(2),
+        stiffness=np.zeros(2),
         contacts=carried(contact, mesh, mesh_force),
-        names=TORSIONAL_NAMES,
-        balance=balance_direction(torque_balance, driver),
+        drive=(torque, driver, torque_balance),
     )

@@ -13,11 +13,11 @@ from tribodyn.dynamics.equations.system import System
 from tribodyn.dynamics.structure.force_law import MeshForce, carried
 from tribodyn.dynamics.structure.gear_pair import (
     Driver,
+    ToothGap,
     TorqueBalance,
-    balance_direction,
     pair_of,
+    pair_system,
     tooth_contact,
-    torques,
 )
 from tribodyn.errors import InputError, require_between
 from tribodyn.nomenclature import GEARS
@@ -30,7 +30,6 @@ if TYPE_CHECKING:
 HELICAL12_NAMES = tuple(
     f"{gear}_{way}" for gear in GEARS for way in ("x", "y", "z", "theta_x", "theta_y", "theta")
 )
-_SPINS = [HELICAL12_NAMES.index(f"{gear}_theta") for gear in GEARS]
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -128,29 +127,16 @@ def helical12(
         pair_of("moment_of_inertia", moment_of_inertia, "kg*m^2"),
         supports or SpatialSupports(),
     )
-    contact = tooth_contact(
-        mesh,
-        direction_in_space(mesh),
-        mesh.spatial_friction,
-        mesh_damping=mesh_damping,
-        backlash=backlash,
-        error=error,
-        damping_in_gap=damping_in_gap,
-    )
-    force, balance = np.zeros(inertia.size), balance_direction(torque_balance, driver)
-    force[_SPINS] = torques(pair_of("torque", torque, "N*m", positive=False), driver)
-    held_torque = None
-    if balance is not None:
-        held_torque = np.zeros(inertia.size)
-        held_torque[_SPINS] = balance
-    return System(
-        mass=np.diag(inertia),
-        damping=np.diag(damping),
-        stiffness=np.diag(stiffness),
-        force=force,
+    gap = ToothGap(mesh_damping, backlash, error, damping_in_gap)
+    contact = tooth_contact(mesh, direction_in_space(mesh), mesh.spatial_friction, gap)
+    return pair_system(
+        HELICAL12_NAMES,
+        ("pinion_theta", "wheel_theta"),
+        mass=inertia,
+        damping=damping,
+        stiffness=stiffness,
         contacts=carried(contact, mesh, mesh_force),
-        names=HELICAL12_NAMES,
-        balance=held_torque,
+        drive=(torque, driver, torque_balance),
     )
 
 

@@ -13,11 +13,11 @@ from tribodyn.dynamics.equations.system import System
 from tribodyn.dynamics.structure.force_law import MeshForce, carried
 from tribodyn.dynamics.structure.gear_pair import (
     Driver,
+    ToothGap,
     TorqueBalance,
-    balance_direction,
     pair_of,
+    pair_system,
     tooth_contact,
-    torques,
 )
 from tribodyn.errors import InputError, require_between, require_positive
 from tribodyn.types import Array
@@ -151,24 +151,16 @@ def hypoid14(
     )
     stiffness, damping = _springs(inertia, bearings)
     along, rubbing = in_space(mesh)
-    contact = tooth_contact(
-        mesh,
-        along,
-        rubbing,
-        mesh_damping=mesh_damping,
-        backlash=backlash,
-        error=error,
-        damping_in_gap=damping_in_gap,
-    )
-    balance = balance_direction(torque_balance, driver)
-    return System(
-        mass=np.diag(inertia),
+    gap = ToothGap(mesh_damping, backlash, error, damping_in_gap)
+    contact = tooth_contact(mesh, along, rubbing, gap)
+    return pair_system(
+        HYPOID14_NAMES,
+        ("engine_theta", "load_theta"),
+        mass=inertia,
         damping=damping,
         stiffness=stiffness,
-        force=_at_the_ends(torques(pair_of("torque", torque, "N*m", positive=False), driver)),
         contacts=carried(contact, mesh, mesh_force),
-        names=HYPOID14_NAMES,
-        balance=None if balance is None else _at_the_ends(balance),
+        drive=(torque, driver, torque_balance),
     )
 
 
@@ -221,10 +213,3 @@ def _springs(inertia: Array, supports: HypoidSupports) -> tuple[Array, Array]:
         critical = 2.0 * np.sqrt(spring * reduced)
         damping[np.ix_(ends, ends)] += supports.shaft_damping_ratio * critical * twist
     return stiffness, damping
-
-
-def _at_the_ends(pair: Array) -> Array:
-    """Apply the torques of the pinion side and the wheel side to engine and load."""
-    out = np.zeros(len(HYPOID14_NAMES))
-    out[[0, -1]] = pair
-    return out

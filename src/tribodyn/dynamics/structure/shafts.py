@@ -11,8 +11,8 @@ from numpy.typing import ArrayLike
 
 from tribodyn.dynamics.equations.entry import Entry
 from tribodyn.dynamics.equations.system import Contact, System
+from tribodyn.dynamics.structure.force_law import friction_direction, plane_rows
 from tribodyn.dynamics.structure.gear_pair import Driver, row_of
-from tribodyn.dynamics.structure.plane_mesh import friction_direction, plane_rows
 from tribodyn.errors import InputError, require_between, require_one_of, require_positive
 from tribodyn.types import Array
 

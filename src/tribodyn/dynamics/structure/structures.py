@@ -9,19 +9,41 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 
+from tribodyn.dynamics.equations.system import Contact
+from tribodyn.dynamics.structure.force_law import MeshForce, carried
 from tribodyn.dynamics.structure.fzg12 import fzg12
-from tribodyn.dynamics.structure.gear_pair import spur6, torsional
-from tribodyn.dynamics.structure.helical12 import SpatialSupports, helical12
-from tribodyn.dynamics.structure.hypoid14 import HypoidSupports, hypoid14
+from tribodyn.dynamics.structure.gear_pair import (
+    SPUR6_NAMES,
+    Driver,
+    ToothGap,
+    gear_contact,
+    pair_of,
+    spur6,
+    tooth_contact,
+    torsional,
+)
+from tribodyn.dynamics.structure.helical12 import (
+    HELICAL12_NAMES,
+    SpatialSupports,
+    direction_in_space,
+    helical12,
+)
+from tribodyn.dynamics.structure.hypoid14 import (
+    HYPOID14_NAMES,
+    HypoidSupports,
+    directions_of_crossed_axes,
+    hypoid14,
+)
 from tribodyn.model import REQUIRED, Model, Option, Registry, number
 
 if TYPE_CHECKING:
     from tribodyn.dynamics.equations.system import System
     from tribodyn.mesh import MeshFunctions
+
 
 Pair = tuple[float, float]
 #: A value for both gears, or one for each.
@@ -405,3 +427,32 @@ def _hypoid14(gears: Gearing, **options: Any) -> System:
         supports=HypoidSupports(**options),
         **gears.contact,
     )
+
+
+#: Where the gears of a mesh move: in their plane, in space, or in space on crossed axes.
+Axes = Literal["plane", "space", "crossed"]
+
+
+def pair_contacts(
+    mesh: MeshFunctions,
+    axes: Axes,
+    *,
+    base_radius: tuple[float, float],
+    driver: Driver,
+    mesh_force: MeshForce,
+    **contact: Any,
+) -> tuple[tuple[str, ...], tuple[Contact, ...]]:
+    """Names of the coordinates of both gears, and the contacts of their teeth over them."""
+    names: tuple[str, ...]
+    gap = ToothGap(**contact)
+    if axes == "plane":
+        names, radii = SPUR6_NAMES, pair_of("base_radius", base_radius, "m")
+        of_teeth = gear_contact(mesh, names, base_radius=radii, driver=driver, gap=gap)
+    elif axes == "space":
+        names = HELICAL12_NAMES
+        entries = direction_in_space(mesh), mesh.spatial_friction
+        of_teeth = tooth_contact(mesh, *entries, gap)
+    else:
+        names = HYPOID14_NAMES[1:-1]
+        of_teeth = tooth_contact(mesh, *directions_of_crossed_axes(mesh), gap)
+    return names, carried(of_teeth, mesh, mesh_force)

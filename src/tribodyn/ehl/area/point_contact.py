@@ -13,6 +13,7 @@ from tribodyn.ehl.area.multigrid import AreaProblem, Outcome, solve_area
 from tribodyn.ehl.area.solution import PointContactSolution
 from tribodyn.errors import ComputationError, InputError, require_between, warn
 from tribodyn.lubricant import Lubricant
+from tribodyn.record import from_parts
 from tribodyn.types import Array
 
 #: Nodes along the lines with which automatic grids begin and end.
@@ -203,7 +204,9 @@ def assemble(
     coarse = outcome.coarse_central_film
     step = (central - coarse) / 3.0
     outside = 1.0 - load / (2.0 * np.pi / 3.0 * case.axes[1] / a)
-    return PointContactSolution(
+    return from_parts(
+        PointContactSolution,
+        *(case, outcome),
         x=x,
         y=y,
         pressure=fields[0],
@@ -218,25 +221,12 @@ def assemble(
         hertz_approach=float(case.hertz.approach),
         maximum_pressure=float(outcome.pressure.max()) * pressure,
         approach=-outcome.offset * unit,
-        moes_load=case.moes_load,
-        moes_viscosity=case.moes_viscosity,
         ellipticity=float(case.hertz.second_semi_axis / case.hertz.first_semi_axis),
         outside_load=outside * case.normal_force,
         load_error=outcome.load_error * (1.0 - outside),
-        residual=outcome.residual,
-        cycles=outcome.cycles,
         nodes_x=x.size,
         nodes_y=y.size,
         attempts=attempts,
-        normal_force=case.normal_force,
-        radius_x=case.radius_x,
-        radius_y=case.radius_y,
-        entrainment_speed=case.entrainment_speed,
-        entrainment_angle=angle,
-        effective_modulus=case.effective_modulus,
-        lubricant=case.lubricant,
-        viscosity_law=case.viscosity_law,
-        compressible=case.compressible,
     )
 
 

@@ -1,4 +1,4 @@
-"""The solved point or elliptical contact: pressure and film over its area."""
+"""Solved contacts over an area: points, ellipses and lines of finite length."""
 
 from __future__ import annotations
 
@@ -6,6 +6,7 @@ from typing import Any
 
 import numpy as np
 
+from tribodyn.contact.hertz import dry_half_width
 from tribodyn.ehl.area.friction import AreaFriction, area_friction
 from tribodyn.ehl.traction.film_temperature import STEEL_THERMAL_CONTACT_COEFFICIENT
 from tribodyn.ehl.traction.shear_models import EYRING_STRESS
@@ -162,4 +163,170 @@ class PointContactSolution(Record):
             f"{self.semi_axis_y * 1e3:.4g} mm half axes, M {self.moes_load:.4g}, "
             f"L {self.moes_viscosity:.4g}, {self.nodes_x} x {self.nodes_y} nodes, "
             f"{self.cycles} cycles)"
+        )
+
+
+#: Deviations of film and pressure from the infinite line up to which it is enough.
+FILM_LIMIT, PRESSURE_LIMIT = 0.02, 0.05
+#: Part of the length at each end that counts as end.
+_END = 0.15
+
+
+@record
+class FiniteLineSolution(Record):
+    """Pressure and film of a lubricated roller of finite length, steady and isothermal.
+
+    Parameters
+    ----------
+    x, y : (nx,), (ny,) arrays [m]
+        Positions in the direction of rolling and along the roller, from its middle.
+    pressure : (ny, nx) array [Pa]
+        Pressure above ambient.
+    film : (ny, nx) array [m]
+        Gap between the bodies.
+    load_per_length : (ny,) array [N/m]
+        Load along the roller.
+    central_film, central_film_error, central_film_extrapolated : float [m]
+        Film in the middle of the roller, its error by the grid, and its extrapolation.
+    minimum_film, maximum_pressure : float [m], [Pa]
+        Least film with pressure, and greatest pressure, anywhere.
+    line_central_film, line_minimum_film, line_maximum_pressure : float [m], [m], [Pa]
+        Those of the infinite line under the load per length of the middle.
+    hertz_pressure, half_width : float [Pa], [m]
+        Those of the dry infinite line under the mean load per length.
+    moes_load, moes_viscosity : float [-]
+        Numbers M and L of Moes of that line.
+    outside_load : float [N]
+        As for :class:`tribodyn.ehl.PointContactSolution`, as the following.
+    load_error, residual : float [1]
+    cycles, nodes_x, nodes_y : int
+    attempts : tuple of str
+    profile : str
+        Shape of the roller.
+    normal_force : float [N]
+        Argument of :func:`tribodyn.ehl.solve_finite_line_contact`, as the following.
+    length, equivalent_radius : float [m]
+    entrainment_speed : float [m/s]
+    effective_modulus : float [Pa]
+    lubricant, viscosity_law, compressible
+        As there.
+    """
+
+    x: Array = quantity("x", unit="m", axis=True)
+    y: Array = quantity("y", unit="m", axis=True)
+    pressure: Array = quantity("y", "x", unit="Pa")
+    film: Array = quantity("y", "x", unit="m")
+    load_per_length: Array = quantity("y", unit="N/m")
+    central_film: float = fact()
+    central_film_error: float = fact()
+    central_film_extrapolated: float = fact()
+    minimum_film: float = fact()
+    maximum_pressure: float = fact()
+    line_central_film: float = fact()
+    line_minimum_film: float = fact()
+    line_maximum_pressure: float = fact()
+    hertz_pressure: float = fact()
+    half_width: float = fact()
+    moes_load: float = fact()
+    moes_viscosity: float = fact()
+    outside_load: float = fact()
+    load_error: float = fact()
+    residual: float = fact()
+    cycles: int = fact()
+    nodes_x: int = fact()
+    nodes_y: int = fact()
+    attempts: tuple[str, ...]
+    profile: str = fact()
+    normal_force: float = fact()
+    length: float = fact()
+    equivalent_radius: float = fact()
+    entrainment_speed: float = fact()
+    effective_modulus: float = fact()
+    lubricant: Lubricant
+    viscosity_law: str = fact()
+    compressible: bool = fact()
+
+    friction = PointContactSolution.friction
+    #: Entrainment runs along x.
+    entrainment_angle = 0.0
+
+    @property
+    def line_half_width(self) -> Array:
+        """Half width of a dry line under the local load, along the roller [m]."""
+        width = dry_half_width(self.load_per_length, self.equivalent_radius, self.effective_modulus)
+        return np.asarray(np.where(self.load_per_length > 0.0, width, 0.0))
+
+    @property
+    def ridge_pressure(self) -> Array:
+        """Greatest pressure at each position along the roller [Pa]."""
+        return np.asarray(self.pressure.max(axis=1))
+
+    @property
+    def ridge_film(self) -> Array:
+        """Least film with pressure at each position along the roller [m]; NaN without pressure."""
+        loaded = np.where(self.pressure > 0.0, self.film, np.inf).min(axis=1)
+        return np.where(np.isfinite(loaded), loaded, np.nan)
+
+    @property
+    def _at_ends(self) -> Array:
+        loaded = self.pressure.max(axis=1) > 0.0
+        return np.asarray((np.abs(self.y) > (0.5 - _END) * self.length) & loaded)
+
+    @property
+    def edge_pressure_ratio(self) -> float:
+        """Greatest pressure in the last 15 % of the length at each end, over that in the middle."""
+        ridge = self.ridge_pressure
+        return float(ridge[self._at_ends].max(initial=0.0) / ridge[self.y.size // 2])
+
+    @property
+    def end_film(self) -> float:
+        """Least film in the last 15 % of the length at each end [m]."""
+        return float(np.nanmin(self.ridge_film[self._at_ends], initial=np.inf))
+
+    @property
+    def line_deviation(self) -> float:
+        """Relative difference of the film at mid length from that of the infinite line."""
+        return self.central_film_extrapolated / self.line_central_film - 1.0
+
+    @property
+    def line_is_enough(self) -> bool:
+        """Whether the infinite line under the mean load describes the roller to a few per cent."""
+        return not self._reasons()
+
+    def _reasons(self) -> list[str]:
+        """Why the infinite line is not enough."""
+        middle = float(self.load_per_length[self.y.size // 2])
+        spread = middle * self.length / self.normal_force - 1.0
+        reasons = []
+        if abs(self.line_deviation) > FILM_LIMIT:
+            reasons.append(f"the film at mid length differs by {self.line_deviation:.1%}")
+        if abs(spread) > PRESSURE_LIMIT:
+            reasons.append(
+                f"the load per length at mid length differs by {spread:.1%} from its mean"
+            )
+        if self.edge_pressure_ratio > 1.0 + PRESSURE_LIMIT:
+            reasons.append(f"the ends carry {self.edge_pressure_ratio:.2f} times the pressure")
+        thinner = self.minimum_film / self.line_minimum_film - 1.0
+        if thinner < -PRESSURE_LIMIT:
+            reasons.append(f"the least film is {-thinner:.0%} thinner than that of the line")
+        return reasons
+
+    def compare_with_line(self) -> str:
+        """Sentence that says whether the infinite line is enough, with figures."""
+        reasons = self._reasons()
+        if not reasons:
+            return (
+                f"The infinite line is enough: film at mid length {self.line_deviation:+.1%}, "
+                f"pressure at the ends {self.edge_pressure_ratio:.2f} times that in the middle"
+            )
+        return f"The infinite line is not enough: {'; '.join(reasons)}"
+
+    def __repr__(self) -> str:
+        """One line with the figures that tell contacts apart."""
+        return (
+            f"FiniteLineSolution({self.length * 1e3:.4g} mm, {self.profile}; film at mid length "
+            f"{self.central_film * 1e6:.4f} um, minimum {self.minimum_film * 1e6:.4f} um, at the "
+            f"ends {self.end_film * 1e6:.4g} um, edge pressure ratio "
+            f"{self.edge_pressure_ratio:.3f}, M {self.moes_load:.4g}, L {self.moes_viscosity:.4g}, "
+            f"{self.nodes_x} x {self.nodes_y} nodes, {self.cycles} cycles)"
         )

@@ -3,7 +3,6 @@
 | module | what it answers |
 |---|---|
 | ``dimensionless_groups`` | which numbers describe a contact, and its regime after Moes |
-| ``power_laws`` | Dowson, Dowson-Toyoda, Pan-Hamrock |
+| ``line`` | Dowson, Dowson-Toyoda, Pan-Hamrock; Moes in all regimes, and how it follows the load |
 | ``elliptic`` | films of points and ellipses: Nijenbanning in all regimes, Hamrock-Dowson |
-| ``moes`` | central film in all regimes, and how it follows the load |
 """

@@ -158,9 +158,7 @@ def line_contact_groups(
     >>> round(float(groups.moes_load), 3), round(float(groups.moes_material), 2)
     (1.654, 19.82)
     """
-    oil = dynamic_viscosity, pressure_viscosity_coefficient
-    groups = _groups(load_per_width, equivalent_radius, entrainment_speed, *oil, effective_modulus)
-    return Groups(*np.broadcast_arrays(*groups))
+    return Groups(*np.broadcast_arrays(*_groups(**locals())))
 
 
 def _groups(
@@ -172,14 +170,7 @@ def _groups(
     effective_modulus: ArrayLike,
 ) -> Groups:
     """The same groups, each of the shape of what it is made of: constants stay numbers."""
-    load, radius, speed, viscosity, coefficient, modulus = positive(
-        load_per_width=load_per_width,
-        equivalent_radius=equivalent_radius,
-        entrainment_speed=entrainment_speed,
-        dynamic_viscosity=dynamic_viscosity,
-        pressure_viscosity_coefficient=pressure_viscosity_coefficient,
-        effective_modulus=effective_modulus,
-    )
+    load, radius, speed, viscosity, coefficient, modulus = positive(**locals())
     stiffness = modulus * radius
     return Groups(
         speed=np.asarray(viscosity * speed / stiffness),

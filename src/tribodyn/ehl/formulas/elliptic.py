@@ -149,15 +149,7 @@ def nijenbanning_central(
     >>> round(float(film) * 1e6, 4)
     0.2953
     """
-    force, radius, side, speed, viscosity, coefficient, modulus = positive(
-        normal_force=normal_force,
-        equivalent_radius=equivalent_radius,
-        side_radius=side_radius,
-        entrainment_speed=entrainment_speed,
-        dynamic_viscosity=dynamic_viscosity,
-        pressure_viscosity_coefficient=pressure_viscosity_coefficient,
-        effective_modulus=effective_modulus,
-    )
+    force, radius, side, speed, viscosity, coefficient, modulus = positive(**locals())
     viscous = 2.0 * viscosity * speed / (modulus * radius)
     load = force / (modulus * radius**2) * viscous**-0.75
     material = coefficient * modulus * viscous**0.25
@@ -213,10 +205,7 @@ def hamrock_dowson_central(
     >>> f"{float(film):.5e}"
     '4.91422e-07'
     """
-    groups = _ellipse_groups(
-        "Hamrock-Dowson central", normal_force, equivalent_radius, side_radius, entrainment_speed,
-        dynamic_viscosity, pressure_viscosity_coefficient, effective_modulus,
-    )  # fmt: skip
+    groups = _ellipse_groups("Hamrock-Dowson central", **locals())
     speed, material, load, ellipticity, radius = groups
     ends = 1.0 - 0.61 * np.exp(-0.73 * ellipticity)
     return np.asarray(2.69 * speed**0.67 * material**0.53 * load**-0.067 * ends * radius)[()]
@@ -280,34 +269,17 @@ def hamrock_dowson_minimum(
     >>> f"{float(film):.5e}"
     '3.87441e-07'
     """
-    groups = _ellipse_groups(
-        "Hamrock-Dowson minimum", normal_force, equivalent_radius, side_radius, entrainment_speed,
-        dynamic_viscosity, pressure_viscosity_coefficient, effective_modulus,
-    )  # fmt: skip
+    groups = _ellipse_groups("Hamrock-Dowson minimum", **locals())
     speed, material, load, ellipticity, radius = groups
     ends = 1.0 - np.exp(-0.68 * ellipticity)
     return np.asarray(3.63 * speed**0.68 * material**0.49 * load**-0.073 * ends * radius)[()]
 
 
 def _ellipse_groups(
-    formula: str,
-    normal_force: ArrayLike,
-    equivalent_radius: ArrayLike,
-    side_radius: ArrayLike,
-    entrainment_speed: ArrayLike,
-    dynamic_viscosity: ArrayLike,
-    pressure_viscosity_coefficient: ArrayLike,
-    effective_modulus: ArrayLike,
+    formula: str, side_radius: ArrayLike, **arguments: ArrayLike
 ) -> tuple[Array, Array, Array, Array, Array]:
     """Groups U, G, W of Hamrock and Dowson, the ellipticity k, and the checked radius [m]."""
-    force, radius, speed, viscosity, coefficient, modulus = positive(
-        normal_force=normal_force,
-        equivalent_radius=equivalent_radius,
-        entrainment_speed=entrainment_speed,
-        dynamic_viscosity=dynamic_viscosity,
-        pressure_viscosity_coefficient=pressure_viscosity_coefficient,
-        effective_modulus=effective_modulus,
-    )
+    force, radius, speed, viscosity, coefficient, modulus = positive(**arguments)
     side = real_numbers(Argument("side_radius"), side_radius)
     require_between("side_radius", np.minimum(side, 1e9), 1e-12, 1e9, "m")
     moving = np.asarray(viscosity * speed / (modulus * radius))

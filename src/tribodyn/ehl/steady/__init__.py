@@ -8,6 +8,6 @@
 | ``contact_case`` | is what the user gave a contact, and what are its dimensionless numbers |
 | ``grid`` | how far the grid reaches, the inlet before it, and how many nodes it has |
 | ``contact_problem`` | problem and outcome of an engine |
-| ``newton_engine``, ``multigrid_engine`` | the two engines |
+| ``engines`` | the two engines: Newton and multigrid |
 | ``fallbacks`` | verification of solutions, and the fallbacks when an engine fails |
 """

@@ -12,10 +12,10 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from tribodyn.checks import require_number
+from tribodyn.ehl.film_stiffness import FilmSlopes, film_distance, film_slopes
 from tribodyn.ehl.steady.contact_case import si_case
 from tribodyn.ehl.steady.line_contact import STATED_LIMIT, SolverOptions, solve_case
 from tribodyn.ehl.steady.solution import LineContactSolution
-from tribodyn.ehl.stiffness.film_stiffness import FilmSlopes, film_distance, film_slopes
 from tribodyn.ehl.thermal.thermal_model import ThermalModel
 from tribodyn.errors import (
     Argument,
@@ -188,18 +188,11 @@ def solve_line_contacts(
 def _gather(
     table: Array, solutions: NDArray[Any], shape: tuple[int, ...], stiffness: bool
 ) -> LineContactBatch:
-    fields, empty = [column.reshape(shape) for column in table], np.empty(0)
-    return LineContactBatch(
-        central_film=fields[0],
-        minimum_film=fields[1],
-        film_stiffness=fields[2] if stiffness else empty,
-        hertz_pressure=fields[3],
-        half_width=fields[4],
-        outlet=fields[5],
-        flux_error=fields[6],
-        central_film_error=fields[7],
-        solutions=solutions.reshape(shape) if solutions.size else solutions,
-    )
+    """Collect results: a column of the table for each field."""
+    fields = [column.reshape(shape) for column in table]
+    if not stiffness:
+        fields[2] = np.empty(0)
+    return LineContactBatch(*[*fields, solutions.reshape(shape) if solutions.size else solutions])
 
 
 def _broadcast(*arguments: ArrayLike) -> tuple[tuple[int, ...], list[Array]]:

@@ -19,7 +19,7 @@ from tribodyn.errors import (
     require_positive,
 )
 from tribodyn.lubricant import Lubricant
-from tribodyn.lubricant.pressure_viscosity import ROELANDS_PRESSURE
+from tribodyn.lubricant.pressure_laws import ROELANDS_PRESSURE
 from tribodyn.types import Array
 
 #: Pressure laws of the viscosity, by the number that the kernels know them by.

@@ -15,7 +15,7 @@ from tribodyn.ehl.formulas.dimensionless_groups import (
     rigid_isoviscous,
     rigid_piezoviscous,
 )
-from tribodyn.ehl.formulas.moes import blended, isoviscous
+from tribodyn.ehl.formulas.line import blended, isoviscous
 from tribodyn.ehl.steady.contact_case import ContactScales
 from tribodyn.errors import InputError
 

@@ -13,8 +13,8 @@ from typing import NamedTuple
 import numpy as np
 
 from tribodyn.ehl.steady.contact_problem import ContactProblem, DiscreteContact, Outcome
+from tribodyn.ehl.steady.engines import newton_engine
 from tribodyn.ehl.steady.grid import FEWEST, MOST, cut_error
-from tribodyn.ehl.steady.newton_engine import newton_engine
 from tribodyn.types import Array
 
 #: Fall of the differences that shows that the inlet is resolved, and that of the theory.

@@ -14,10 +14,9 @@ from tribodyn.checks import require_number, require_whole
 from tribodyn.ehl.flow_factors import FlowFactors
 from tribodyn.ehl.steady.contact_case import ContactCase, moes_case, require_kind, si_case
 from tribodyn.ehl.steady.contact_problem import ContactProblem
-from tribodyn.ehl.steady.fallbacks import Verified, solve_problem
+from tribodyn.ehl.steady.fallbacks import Verified, solve_problem, solve_rough
 from tribodyn.ehl.steady.grid import choose_domain, choose_nodes, cut_error, estimate_film
 from tribodyn.ehl.steady.grid_error import GridError, grid_error
-from tribodyn.ehl.steady.rough_flow import solve_rough
 from tribodyn.ehl.steady.solution import LineContactSolution, assemble
 from tribodyn.ehl.thermal.thermal_contact import HeatedFilm, solve_heated
 from tribodyn.ehl.thermal.thermal_model import ThermalModel, read_thermal

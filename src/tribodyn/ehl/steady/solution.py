@@ -9,15 +9,14 @@ from typing import ClassVar
 import numpy as np
 from numpy.typing import ArrayLike
 
+from tribodyn.ehl.film_stiffness import film_stiffness, frequency_response
 from tribodyn.ehl.steady.contact_case import ContactCase
 from tribodyn.ehl.steady.contact_problem import DiscreteContact
 from tribodyn.ehl.steady.fallbacks import Verified
 from tribodyn.ehl.steady.grid import Domain, regime_name
 from tribodyn.ehl.steady.grid_error import GridError
-from tribodyn.ehl.stiffness.film_stiffness import film_stiffness
-from tribodyn.ehl.stiffness.frequency import frequency_response
 from tribodyn.lubricant import Lubricant
-from tribodyn.record import Labels, Record, fact, quantity, record
+from tribodyn.record import Labels, Record, fact, from_parts, quantity, record
 from tribodyn.types import Array
 
 
@@ -247,38 +246,23 @@ def assemble(
     spike = pressure_spike(grid)
     step = None if len(films) < 2 else (films[-1] - films[-2]) / 3.0
     least = float(np.min(grid.H[: grid.free + 1]))
-    return LineContactSolution(
+    return from_parts(
+        LineContactSolution,
+        *(case, scales, check, solved, solved.outcome),
         position=grid.X * case.half_width,
         pressure=grid.P * case.hertz_pressure,
         film=grid.H * thick,
         central_film=films[-1] * thick,
         minimum_film=least * thick,
-        hertz_pressure=case.hertz_pressure,
-        half_width=case.half_width,
         outlet=outlet_position(grid) * case.half_width,
         spike_pressure=None if spike is None else spike[0] * case.hertz_pressure,
         spike_position=None if spike is None else spike[1] * case.half_width,
-        flux_error=check.flux_error,
-        load_error=check.load_error,
-        cavity_residual=check.cavity_residual,
-        iterations=solved.outcome.iterations,
         nodes=grid.n + 1,
         domain=(domain.start, domain.end),
         inlet=domain.inlet,
-        method=solved.method,
         regime=regime_name(scales.moes_load, scales.moes_viscosity),
         central_film_error=error.central * films[-1] * thick,
         central_film_extrapolated=None if step is None else (films[-1] + step) * thick,
-        attempts=solved.attempts,
-        moes_load=scales.moes_load,
-        moes_viscosity=scales.moes_viscosity,
-        load_per_width=case.load_per_width,
-        equivalent_radius=case.equivalent_radius,
-        entrainment_speed=case.entrainment_speed,
-        effective_modulus=case.effective_modulus,
-        lubricant=case.lubricant,
-        viscosity_law=scales.viscosity_law,
-        compressible=case.compressible,
         minimum_film_error=error.minimum * least * thick,
         pressure_error=error.pressure * float(np.max(grid.P)) * case.hertz_pressure,
         _grid=grid,

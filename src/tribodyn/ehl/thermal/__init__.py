@@ -3,8 +3,7 @@
 | module | what it answers |
 |---|---|
 | ``thermal_model`` | how the oil shears and what of heat a contact needs |
-| ``surfaces`` | how warm the moving surfaces become by the heat that they take up |
-| ``surface_history`` | how warm they become by a heat that changes over time |
+| ``surface_history`` | how warm the moving surfaces become by a heat, steady or not |
 | ``thermal_contact`` | pressure, film and temperatures together |
 | ``thermal_solution`` | the result: temperatures, friction, and the balance of heat |
 """

@@ -21,7 +21,7 @@ from tribodyn.errors import (
     require_positive,
 )
 from tribodyn.lubricant import Lubricant
-from tribodyn.lubricant.density import DENSITY_FALL
+from tribodyn.lubricant.pressure_laws import DENSITY_FALL
 from tribodyn.model import NO_OPTIONS
 
 #: Thermal conductivity of gear steel [W/m/K], in the middle of ISO/TR 13989-1.

@@ -2,14 +2,12 @@
 
 from __future__ import annotations
 
-from dataclasses import fields as dataclass_fields
-
 import numpy as np
 
 from tribodyn.ehl.steady.solution import LineContactSolution
 from tribodyn.ehl.thermal.thermal_contact import HeatedFilm
 from tribodyn.ehl.thermal.thermal_model import ThermalModel
-from tribodyn.record import fact, quantity, record
+from tribodyn.record import fact, from_parts, quantity, record
 from tribodyn.types import Array
 
 
@@ -79,17 +77,15 @@ def with_heat(
     """A solution with the temperatures that belong to it."""
     shear, compression, first, second, carried = heated.balance.tolist()
     generated = shear + compression
-    fields = {each.name: getattr(solution, each.name) for each in dataclass_fields(solution)}
     temperature = heated.temperature
-    return ThermalLineContactSolution(
-        **fields,
+    return from_parts(
+        ThermalLineContactSolution,
+        *(solution, heated),
         sliding_speed=sliding_speed,
         height=np.linspace(0.0, 1.0, temperature.shape[1]),
         film_temperature=temperature,
         surface_temperatures=np.ascontiguousarray(temperature[:, [0, -1]].T),
-        shear_stress=heated.shear_stress,
         surface_heat=heated.heat,
-        traction=heated.traction,
         friction_coefficient=abs(heated.traction) / solution.load_per_width,
         shear_heat=shear,
         compression_heat=compression,

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import fields as dataclass_fields
 from typing import ClassVar
 
 import numpy as np
@@ -12,7 +11,7 @@ from tribodyn.aliases import with_old_names
 from tribodyn.ehl.thermal.thermal_model import ThermalModel
 from tribodyn.ehl.transient.heated_steps import HeatOverTime
 from tribodyn.ehl.transient.moving_contact import MovingContact
-from tribodyn.record import Labels, Record, fact, quantity, record
+from tribodyn.record import Labels, Record, fact, from_parts, quantity, record
 from tribodyn.types import Array, Index
 
 
@@ -209,10 +208,10 @@ def with_heat_over_time(
 ) -> ThermalTransientLineContact:
     """A contact over time with the temperatures that belong to it."""
     shear, compression, first, second, carried, stored, missing = heat.balance.T
-    fields = {each.name: getattr(contact, each.name) for each in dataclass_fields(contact)}
     greatest = np.max(np.abs(heat.balance[:, :-1]), axis=1)
-    return ThermalTransientLineContact(
-        **fields,
+    return from_parts(
+        ThermalTransientLineContact,
+        *(contact, heat),
         surface_speeds=speeds,
         height=np.linspace(0.0, 1.0, model.nodes_across),
         film_temperature=heat.temperature,
@@ -221,7 +220,6 @@ def with_heat_over_time(
         ),
         highest_film_temperature=heat.highest[:, 0],
         highest_surface_temperatures=np.ascontiguousarray(heat.highest[:, 1:].T),
-        traction=heat.traction,
         friction_coefficient=np.abs(heat.traction) / contact.load_per_width,
         shear_heat=shear,
         compression_heat=compression,

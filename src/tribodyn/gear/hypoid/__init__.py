@@ -6,14 +6,12 @@
 | `dimensions` | all dimensions of both blanks that follow from them |
 | `blank` | a pair of blanks from the figures of a drawing |
 | `ease_off` | what a flank has less than its conjugate |
-| `formate` | the flank that a face-mill cutter leaves |
 | `wheel_flanks` | flanks of generated and of face-hobbed wheels |
 | `envelope` | the conjugate of any flank, its curvature and its undercut |
 | `conjugate` | one side of a pair: both surfaces and the ends of the flanks |
 | `flank` | both flanks as grids of points, for export |
 | `tooth_contact` | path of contact, transmission error, pattern, with axes that are misplaced |
 | `misalignment_study` | contact and transmission error with displaced gears |
-| `contact_lines` | contact lines of conjugate flanks, with exact ends |
 | `kinematics` | how the flanks roll and slide in every cell |
 """
 

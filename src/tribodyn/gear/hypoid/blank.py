@@ -10,6 +10,7 @@ from tribodyn.checks import require_number, require_whole
 from tribodyn.errors import Argument, InputError, Problem, require_between, require_one_of
 from tribodyn.gear.hypoid.dimensions import dimensions
 from tribodyn.gear.hypoid.pitch_cones import PitchInput
+from tribodyn.gear.mass_properties import MassProperties
 from tribodyn.record import Parts, Record, fact, labels_of, quantity, record
 
 #: Hands of a pinion; the wheel has the other one.
@@ -373,3 +374,18 @@ def _require_face_fits(pitch_input: PitchInput) -> None:
     why = f"A wheel of this diameter allows at most {most * 1e3:.6g} mm"
     remedy = "Reduce the face width; usual is up to a third of the outer cone distance"
     raise InputError(what, Argument("face_width_wheel"), why, remedy)
+
+
+def cone_bodies(blank: HypoidBlank, density: float) -> dict[str, MassProperties]:
+    """Mass and moments of inertia of both gears, about the middle of the cone."""
+    properties = {}
+    for gear in ("pinion", "wheel"):
+        cone = getattr(blank, f"pitch_angle_{gear}")
+        outer, inner = (getattr(blank, f"{end}_cone_distance_{gear}") for end in ("outer", "inner"))
+        large, small = outer * math.sin(cone), inner * math.sin(cone)
+        height = (outer - inner) * math.cos(cone)
+        scale = math.pi * density * height
+        mass = scale / 3.0 * (large**2 + large * small + small**2)
+        polar = scale / 10.0 * sum(large**k * small ** (4 - k) for k in range(5))
+        properties[gear] = MassProperties(mass, polar, 0.5 * polar + mass * height**2 / 12.0)
+    return properties

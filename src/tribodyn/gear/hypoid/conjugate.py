@@ -1,14 +1,16 @@
-"""One side of a pair: the wheel flank and the pinion flank that it envelops, eased off."""
+"""One side of a pair: wheel flank, the pinion flank that it envelops, and their contact lines."""
 
 from __future__ import annotations
 
 import math
+from functools import cached_property, lru_cache
 from typing import NamedTuple
 
 import numpy as np
 
+from tribodyn.errors import ComputationError
 from tribodyn.gear.hypoid.blank import HypoidBlank
-from tribodyn.gear.hypoid.ease_off import EaseOff, eased_gap
+from tribodyn.gear.hypoid.ease_off import EaseOff, eased_gap, working_depth
 from tribodyn.gear.hypoid.envelope import (
     Curvature,
     Envelope,
@@ -16,11 +18,11 @@ from tribodyn.gear.hypoid.envelope import (
     cross,
     envelope,
     relative_curvature,
+    solved,
     turned_surface,
 )
-from tribodyn.gear.hypoid.formate import pair_axes
-from tribodyn.gear.hypoid.wheel_flanks import wheel_flank
-from tribodyn.types import Array
+from tribodyn.gear.hypoid.wheel_flanks import pair_axes, wheel_flank
+from tribodyn.types import Array, Mask
 
 
 class Touch(NamedTuple):
@@ -114,3 +116,199 @@ class ConjugateFlanks:
         normal *= np.sign(np.einsum("...i,...i->...", normal, pinion.normal))[..., None]
         normal /= np.linalg.norm(normal, axis=-1, keepdims=True)
         return pinion.position - gap[..., None] * pinion.normal, normal
+
+
+#: Steps of Newton's method and of the search for ends, samples of a line, grid of a flank.
+_NEWTON, _SEARCH, _SAMPLES, _GRID = 30, 60, 65, 33
+#: What is left of a place [m] and of a rotation [rad].
+_CLOSE = 1e-14
+#: Grid of the guess of parameters, how far it goes beyond the flank, and degree of its polynomials.
+_FITTED, _WIDER, _DEGREE = 15, 0.15, 5
+
+
+def _flank_places(blank: HypoidBlank, wider: float, count: int) -> Array:
+    """Grid of places (count, count, 2) over the flank of the wheel, wider by a part of it."""
+    share = np.linspace(-wider, 1.0 + wider, count)
+    inner, outer = blank.inner_cone_distance_wheel, blank.outer_cone_distance_wheel
+    along = inner - blank.mean_cone_distance_wheel + share * (outer - inner)
+    (low, _), (high, _) = working_depth(blank, along)
+    across = low[:, None] + share * (high - low)[:, None]
+    return np.stack(np.broadcast_arrays(along[:, None], across), axis=-1)
+
+
+def _powers(pair: Array) -> Array:
+    """Products of powers of two numbers (n, 2) up to the degree of the guess."""
+    x, y = pair.T
+    return np.stack(
+        [x**i * y**j for i in range(_DEGREE + 1) for j in range(_DEGREE + 1 - i)], axis=-1
+    )
+
+
+class ContactLines:
+    """Lines of one flank pair, each at a rotation of the wheel; stations run along them."""
+
+    def __init__(self, flanks: ConjugateFlanks) -> None:
+        self.flanks = flanks
+        surface = flanks.wheel.at(np.zeros(2))
+        _, steps = flanks.wheel.projected(surface)
+        slope = envelope(surface, flanks.axes).slope @ np.linalg.inv(steps)
+        #: Directions along and across the line of the calculation point, in (along, across).
+        self.across = slope / np.linalg.norm(slope)
+        self.along = np.array([-self.across[1], self.across[0]])
+        self._unit = np.array([1e-3, 1e-3 / flanks.blank.cutter_radius])
+
+    @cached_property
+    def _start(self) -> tuple[Array, Array]:
+        """Scale of rotation and station, and polynomials of them that guess the parameters."""
+        places = _flank_places(self.flanks.blank, _WIDER, _FITTED)
+        parameters = self.flanks.wheel.parameters(places.reshape(-1, 2))
+        position, _ = self._lines_at(parameters)
+        finite = np.isfinite(position).all(axis=-1)
+        scale = np.abs(position[finite]).max(axis=0)
+        terms = _powers(position[finite] / scale)
+        return scale, np.asarray(np.linalg.lstsq(terms, parameters[finite], rcond=None)[0])
+
+    def _lines_at(self, parameters: Array) -> tuple[Array, Array]:
+        """Rotation and station of points of the flank, with derivatives by the parameters."""
+        surface = self.flanks.wheel.at(parameters)
+        places, steps = self.flanks.wheel.projected(surface)
+        contact = envelope(surface, self.flanks.axes)
+        position = np.stack([contact.rotation, places @ self.along], axis=-1)
+        return position, np.stack([contact.slope, self.along @ steps], axis=-2)
+
+    def parameters(self, rotation: Array, station: Array) -> Array:
+        """Parameters of the flank at stations of the lines; NaN where there is none."""
+        rotation, station = np.broadcast_arrays(rotation, station)
+        wanted = np.stack([rotation.ravel(), station.ravel()], axis=-1)
+        scale, guess = self._start
+        with np.errstate(all="ignore"):
+            parameters = _powers(wanted / scale) @ guess
+            lost = np.full(len(parameters), np.inf)
+            left = np.arange(len(parameters))
+            for _ in range(_NEWTON):
+                position, matrix = self._lines_at(parameters[left])
+                error = wanted[left] - position
+                lost[left] = np.max(np.abs(error), axis=-1)
+                parameters[left] += solved(matrix, error)
+                left = left[lost[left] > _CLOSE]
+                if not left.size:
+                    break
+        parameters[~(lost < 1e-11)] = np.nan
+        return parameters.reshape(*rotation.shape, 2)
+
+    def touch(self, rotation: Array, station: Array) -> Touch:
+        """Contact at stations of the lines."""
+        surface = self.flanks.wheel.at(self.parameters(rotation, station))
+        return self.flanks.touch_at(surface)
+
+    def margin(self, rotation: Array, station: Array) -> Array:
+        """Least distance to an edge of the active flank; minus infinity where there is no flank."""
+        margin = np.min(self.flanks.margins(self.touch(rotation, station)), axis=-1)
+        return np.where(np.isfinite(margin), margin, -np.inf)
+
+    @cached_property
+    def span(self) -> tuple[float, float]:
+        """Rotations of the wheel at which the active flank comes into touch and leaves it."""
+        from scipy.optimize import minimize
+
+        places = _flank_places(self.flanks.blank, 0.0, _GRID)
+        parameters = self.flanks.wheel.parameters(places)
+        touch = self.flanks.touch_at(self.flanks.wheel.at(parameters))
+        inside = np.all(self.flanks.margins(touch) >= 0.0, axis=-1) & np.isfinite(
+            touch.contact.rotation
+        )
+        if not np.any(inside):
+            raise ComputationError(
+                "the flanks of this pair never touch on their teeth",
+                why="No point of the wheel's flank meets the pinion between its tip and its ends",
+                remedy="Check the depth and the face width of the blank",
+            )
+
+        @lru_cache(maxsize=8)
+        def at(parameters: bytes) -> Touch:  # objective and margins at the same places
+            return self._at(np.frombuffer(parameters))
+
+        ends = []
+        for sense in (-1.0, 1.0):
+            best = np.argmax(np.where(inside, sense * touch.contact.rotation, -np.inf))
+            minimum = minimize(
+                lambda x, sense=sense: -sense * float(at(x.tobytes()).contact.rotation[0]),
+                parameters[np.unravel_index(best, inside.shape)] / self._unit,
+                constraints={
+                    "type": "ineq",
+                    "fun": lambda x: 1e3 * self.flanks.margins(at(x.tobytes()))[0],
+                },
+                method="SLSQP",
+                options={"ftol": 1e-13},
+            )
+            ends.append(float(self._at(minimum.x).contact.rotation[0]))
+        return ends[0], ends[1]
+
+    @property
+    def contact_ratio(self) -> float:
+        """Rotation over which a pair has contact lines, over the pitch."""
+        low, high = self.span
+        return (high - low) * self.flanks.blank.teeth_wheel / (2.0 * math.pi)
+
+    def _at(self, parameters: Array) -> Touch:
+        return self.flanks.touch_at(self.flanks.wheel.at(self._unit * parameters[None]))
+
+    def ends(self, rotation: Array) -> tuple[Array, Mask]:
+        """First and last station (n, 2) of the lines on the active flank, and if they exist."""
+        reach = _flank_places(self.flanks.blank, 0.0, 2) @ self.along
+        spread = 0.1 * np.ptp(reach)
+        samples = np.linspace(reach.min() - spread, reach.max() + spread, _SAMPLES)
+        station = np.tile(samples, (len(rotation), 1))
+        margins = self.margin(rotation[:, None], station)
+        # A line shorter than the sample spacing is next to the sample with the largest margin.
+        for step in (samples[1] - samples[0]) * np.array([1.0, 2.0 / _SAMPLES]):
+            short = ~np.any(margins > 0.0, axis=1)
+            middle = station[short, np.argmax(margins[short], axis=1)]
+            station[short] = middle[:, None] + np.linspace(-step, step, _SAMPLES)
+            margins[short] = self.margin(rotation[short, None], station[short])
+        inside = margins > 0.0
+        middle = np.argmax(margins, axis=1)
+        number = np.arange(_SAMPLES)
+        before = np.where(~inside & (number <= middle[:, None]), number, -1).max(axis=1)
+        after = np.where(~inside & (number >= middle[:, None]), number, _SAMPLES).min(axis=1)
+        exists = inside.any(axis=1) & (before >= 0) & (after < _SAMPLES)
+        before, after = np.where(exists, before, 0), np.where(exists, after, 1)
+        row = np.arange(len(rotation))
+        stations = [
+            self._end(
+                rotation,
+                *(np.stack([each[row, out], each[row, inside_end]]) for each in (station, margins)),
+            )
+            for out, inside_end in ((before, before + 1), (after, after - 1))
+        ]
+        return np.stack(stations, axis=-1), exists
+
+    def _end(self, rotation: Array, station: Array, margins: Array) -> Array:
+        """Close in on the end between a station (2, n) outside of the flank and one inside."""
+        (outside, inside), (outside_margin, inside_margin) = station, margins
+        for _ in range(_SEARCH):
+            with np.errstate(invalid="ignore"):
+                share = inside_margin / (inside_margin - outside_margin)
+            # Far from any flank interpolation is not possible; halves keep both ends moving.
+            share = np.where(np.isfinite(outside_margin) & (share > 0.0), share, 0.5)
+            middle = inside + np.clip(share, 0.01, 0.99) * (outside - inside)
+            middle_margin = self.margin(rotation, middle)
+            is_inside = middle_margin > 0.0
+            # The end that stays counts half the next time (Illinois).
+            inside_margin, outside_margin = (
+                np.where(is_inside, middle_margin, 0.5 * inside_margin),
+                np.where(is_inside, 0.5 * outside_margin, middle_margin),
+            )
+            outside, inside = (
+                np.where(is_inside, outside, middle),
+                np.where(is_inside, middle, inside),
+            )
+            if np.nanmax(np.minimum(np.abs(middle_margin), np.abs(outside - inside))) < 1e-13:
+                break
+        return np.asarray(inside)
+
+
+@lru_cache(maxsize=8)
+def contact_lines(flanks: ConjugateFlanks) -> ContactLines:
+    """Lines of a flank pair, one object for all its misalignments and loads."""
+    return ContactLines(flanks)

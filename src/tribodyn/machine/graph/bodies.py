@@ -8,7 +8,7 @@ from collections.abc import Sequence
 from tribodyn.errors import Problem
 from tribodyn.gear import MassProperties, section_moments
 from tribodyn.gear.cylindrical_gear import RIM_COEFFICIENT
-from tribodyn.gear.hypoid.bodies import cone_bodies
+from tribodyn.gear.hypoid.blank import cone_bodies
 from tribodyn.gear.mass_properties import Hole, body_properties, ring_section
 from tribodyn.machine.fields import display
 from tribodyn.machine.gear import Gear

@@ -10,8 +10,7 @@ import numpy as np
 
 from tribodyn.errors import Argument, InputError
 from tribodyn.gear import HypoidBlank, Misalignment
-from tribodyn.gear.hypoid.formate import hand_sense, pair_axes
-from tribodyn.gear.hypoid.wheel_flanks import wheel_flank
+from tribodyn.gear.hypoid.wheel_flanks import hand_sense, pair_axes, wheel_flank
 from tribodyn.machine.fields import quoted
 from tribodyn.types import Array
 

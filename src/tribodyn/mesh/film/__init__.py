@@ -9,6 +9,6 @@ The public names stand on the page of :mod:`tribodyn.mesh`.
 | ``path_film`` | the film of the touching pairs: by formula, or solved at places |
 | ``film_lookup`` | films from a table over load and speed, of slices and of many operating points |
 | ``sheared_film`` | friction and heat of slices and cells, from a table over load and place |
-| ``fitted_table`` | values from polynomials that are fitted to solved contacts |
+| ``film_table`` | values between solved contacts: an interpolated table, or fitted polynomials |
 | ``film_refinement`` | where places are added until what lies between them is right |
 """

@@ -18,7 +18,7 @@ from tribodyn.friction import LAWS, FrictionParts, TribologicalContact
 from tribodyn.gear import Material
 from tribodyn.lubricant import Lubricant
 from tribodyn.mesh.columns import FILM_COLUMNS
-from tribodyn.mesh.face.lines import slice_count
+from tribodyn.mesh.face_lines import slice_count
 from tribodyn.mesh.table import MeshTable
 from tribodyn.model import NO_OPTIONS
 from tribodyn.types import Array, Mask

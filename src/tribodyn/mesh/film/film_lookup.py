@@ -33,8 +33,7 @@ from tribodyn.mesh.film.film_refinement import (
     PathLoads,
     places_of,
 )
-from tribodyn.mesh.film.film_table import FilmTable
-from tribodyn.mesh.film.fitted_table import FittedTable
+from tribodyn.mesh.film.film_table import FilmTable, FittedTable
 from tribodyn.mesh.film.loaded_contacts import ContactMotion
 from tribodyn.mesh.film.path_film import LoadedFilms, cold_film
 from tribodyn.mesh.film.sheared_film import ShearedFilms, place_from_pitch

@@ -17,7 +17,7 @@ from tribodyn.friction import LAWS, FrictionParts
 from tribodyn.mesh.cycle import PairsInContact
 from tribodyn.mesh.film.film_columns import judged
 from tribodyn.mesh.film.film_refinement import STIFFNESS, Places, places_of
-from tribodyn.mesh.film.fitted_table import FittedTable
+from tribodyn.mesh.film.film_table import FittedTable
 from tribodyn.mesh.film.path_film import (
     COLD,
     Friction,

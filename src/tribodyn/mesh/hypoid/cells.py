@@ -11,8 +11,7 @@ import numpy as np
 
 from tribodyn.errors import ComputationError
 from tribodyn.gear import HypoidFlanks, Misalignment
-from tribodyn.gear.hypoid.conjugate import ConjugateFlanks, Touch
-from tribodyn.gear.hypoid.contact_lines import contact_lines
+from tribodyn.gear.hypoid.conjugate import ConjugateFlanks, Touch, contact_lines
 from tribodyn.gear.hypoid.envelope import Curvature, cross
 from tribodyn.gear.hypoid.tooth_contact import gap_of
 from tribodyn.types import Array, Index, Mask

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import field
+from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
@@ -21,7 +22,7 @@ from tribodyn.mesh.hypoid.table import mesh_table_of
 from tribodyn.mesh.sharing import ToothContact
 from tribodyn.mesh.table import MeshTable
 from tribodyn.model import NO_OPTIONS
-from tribodyn.record import Record, fact, figure_method, quantity, record
+from tribodyn.record import Record, fact, figure_method, from_parts, quantity, record
 from tribodyn.types import Array, Mask
 
 _PHASES, _CELLS = ("phase",), ("phase", "pair", "cell")
@@ -215,14 +216,12 @@ def hypoid_friction(
     film_model = require_one_of(
         "film_model", film_model, (ELLIPTICAL, *(name for name in FILM_MODELS if name != "none"))
     )
-    settings = ToothContact(
+    settings = from_parts(
+        ToothContact,
+        SimpleNamespace(**locals()),
         material=loaded.material,
-        lubricant=lubricant,
         composite_roughness=require_number("composite_roughness", composite_roughness),
         film_model="none" if film_model == ELLIPTICAL else film_model,
-        film_options=film_options,
-        friction_law=friction_law,
-        friction_options=friction_options,
     )
     return friction_in_cells(loaded, pinion_speed, settings, entrainment)
 

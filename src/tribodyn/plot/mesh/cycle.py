@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from tribodyn.drawing import drawing
-from tribodyn.mesh.face.lines import middle_delay, pair_column
+from tribodyn.mesh.face_lines import middle_delay, pair_column
 from tribodyn.mesh.loaded_intervals import loaded_ages, sharing_parts, teeth_shares
 from tribodyn.plot.theme.labels import display_unit, displayed
 from tribodyn.plot.theme.path import mesh_marks, number_word, pair_ages, roll_angle_of

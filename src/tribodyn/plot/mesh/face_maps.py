@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from tribodyn.drawing import Need, Sketch, drawing
-from tribodyn.mesh.face.maps import face_map
+from tribodyn.mesh.face_lines import face_map
 from tribodyn.plot.mesh.cycle import table_drawing
 from tribodyn.plot.theme.colors import HEAT, MUTED
 from tribodyn.plot.theme.labels import axis_label, display_unit, displayed, label_with, rounded

@@ -11,7 +11,6 @@
 | `bevel` | influence over the flank of a hypoid or spiral bevel gear |
 | `bevel_sector` | section of one of its teeth in hexahedra |
 | `bevel_tooth` | flanks, fillets and cones of that tooth |
-| `local` | local compression that the elements show, which belongs to the contact |
 """
 
 from tribodyn.stiffness.fe3d.bevel import FlankInfluence, hypoid_influence

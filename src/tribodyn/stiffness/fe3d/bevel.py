@@ -151,7 +151,7 @@ def _below(sector: BevelSector) -> Array:
 _SOURCES = (
     (".", "bevel bevel_sector bevel_tooth condense ring sections"),
     ("../fe2d", "ring tooth_mesh"),
-    ("../../gear/hypoid", "conjugate ease_off envelope formate wheel_flanks"),
+    ("../../gear/hypoid", "conjugate ease_off envelope wheel_flanks"),
 )
 
 

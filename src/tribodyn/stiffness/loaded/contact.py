@@ -20,8 +20,7 @@ from tribodyn.errors import (
 )
 from tribodyn.gear import Material, SpurPair
 from tribodyn.model import NO_OPTIONS
-from tribodyn.stiffness.loaded.face_problem import has_slices, sliced_problem
-from tribodyn.stiffness.loaded.influences import gear_influences
+from tribodyn.stiffness.loaded.face_problem import gear_influences, has_slices, sliced_problem
 from tribodyn.stiffness.loaded.problem import (
     Compliance,
     ContactPlaces,

@@ -1,21 +1,17 @@
-"""Loaded tooth contact over path and face: slices of the lines of contact of helical gears.
-
-Slices are contacts of their own with their own place on both flanks. They act on each other
-through the teeth where the model knows the face width; of plane models each slice is a thin gear
-of its own, whose pairs act on each other within the slice alone.
-"""
+"""Structure of both gears of a pair by a stiffness model, kept for all loads."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
+from functools import lru_cache
 from typing import Any
 
 import numpy as np
 
 from tribodyn.contact import FaceContacts
-from tribodyn.gear import Material, SpurPair
-from tribodyn.stiffness.loaded.influences import gear_influences
+from tribodyn.errors import ModelWarning, collected, warn
+from tribodyn.gear import Material, SpurGear, SpurPair
 from tribodyn.stiffness.loaded.problem import (
     FAR,
     Compliance,
@@ -30,6 +26,32 @@ from tribodyn.stiffness.model import StiffnessModel, usable_stiffness
 from tribodyn.stiffness.teeth.face_influence import FaceInfluence
 from tribodyn.stiffness.teeth.influence import GearInfluence
 from tribodyn.types import Array
+
+
+def gear_influences(
+    pair: SpurPair, material: Material, model: StiffnessModel, options: Mapping[str, Any]
+) -> tuple[Any, Any]:
+    """Structure of pinion and wheel by a model that knows it, the same under every load."""
+    model.require_known_teeth(pair)
+    reference = {**model.options, **options}["reference"]
+    gears = pair.gears.values()
+    pinion, wheel = (_influence(model.influence, gear, material, reference) for gear in gears)
+    return pinion, wheel
+
+
+def _influence(*arguments: Any) -> Any:
+    influence, model_warnings = _cached_influence(*arguments)
+    for warning in model_warnings:
+        warn(warning.code, warning.message, stacklevel=4)
+    return influence
+
+
+@lru_cache(maxsize=8)
+def _cached_influence(
+    model: Callable[..., Any], gear: SpurGear, material: Material, reference: str
+) -> tuple[Any, list[ModelWarning]]:
+    with collected() as model_warnings:
+        return model(gear, material, reference=reference), model_warnings
 
 
 def has_slices(pair: SpurPair, model: StiffnessModel) -> bool:

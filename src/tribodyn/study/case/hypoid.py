@@ -92,7 +92,7 @@ def _built(gears: Gears) -> tuple[HypoidFlanks, tuple[ModelWarning, ...]]:
 
 def contact_ratio(gears: Gears) -> float:
     """Return the contact ratio: rotation with contact lines over the pitch angle."""
-    from tribodyn.gear.hypoid.contact_lines import contact_lines
+    from tribodyn.gear.hypoid.conjugate import contact_lines
 
     return contact_lines(hypoid_flanks(gears).conjugate).contact_ratio
 
@@ -112,7 +112,7 @@ def levers(flanks: HypoidFlanks) -> tuple[float, float]:
 
 def bodies(flanks: HypoidFlanks, density: float, gears: Gears) -> dict[str, MassProperties]:
     """Return mass and inertia of both gears: prescribed ones, else those of their pitch cones."""
-    from tribodyn.gear.hypoid.bodies import cone_bodies
+    from tribodyn.gear.hypoid.blank import cone_bodies
 
     cones = cone_bodies(flanks.blank, density)
     return {

@@ -259,7 +259,7 @@ def mesh_contacts(
     inputs: MeshInputs, mesh: MeshFunctions, damping: float, mesh_force: MeshForce
 ) -> tuple[tuple[str, ...], tuple[Contact, ...]]:
     """Coordinates of the gears of a mesh, and the contacts of its teeth over them."""
-    from tribodyn.dynamics.structure.pair_contacts import pair_contacts
+    from tribodyn.dynamics.structure.structures import pair_contacts
 
     values = {"error": 0.0, **contact_values(inputs, damping)}
     of_gears: Any = {"base_radius": inputs.base_radii, "driver": inputs.driver}

@@ -11,8 +11,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from tribodyn.errors import InputError, require_between, require_positive, warn
-from tribodyn.friction.mesh_means.mean_law import mean_law
-from tribodyn.friction.mesh_means.pitch_point import PitchPoint
+from tribodyn.friction.mesh_means import PitchPoint, mean_law
 from tribodyn.model import numbers
 from tribodyn.types import Array, Index, Mask
 from tribodyn.units import RPM

@@ -7,8 +7,7 @@ from numpy.typing import ArrayLike
 
 from tribodyn.errors import require_positive
 from tribodyn.friction.base import Range, TribologicalContact, warn_outside
-from tribodyn.friction.mesh_means.mean_law import mean_friction, mean_law
-from tribodyn.friction.mesh_means.pitch_point import PitchPoint
+from tribodyn.friction.mesh_means import PitchPoint, mean_friction, mean_law
 from tribodyn.model import choice
 from tribodyn.types import Array
 
