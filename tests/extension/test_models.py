@@ -12,6 +12,7 @@ from own_case import CASE, DYNAMICS, STIFFNESS
 import tribodyn as td
 from tribodyn.cli import call
 from tribodyn.errors import InputError
+from tribodyn.study.case.write import case_text
 
 Load = Callable[[str], dict[str, object]]
 
@@ -41,7 +42,7 @@ def test_default_and_source_of_an_option_are_reported(load: Load, tmp_path: Path
     load("friction_law")
     text = FRICTION.replace('slope = "0.5 s/m"\n', "")
     case = case_of(text, tmp_path)
-    written = case.to_toml()
+    written = case_text(case, comments=True)
     assert 'slope = "0.3 s/m"  # fall with the sliding speed' in written
     again = tmp_path / "again.toml"
     again.write_text(written, encoding="utf-8")

@@ -65,6 +65,7 @@ __all__ = ["ANY", "FILES", "LINES", "import_circles", "lines_of_code", "measures
 #: study: summary figures of users for every kind of part
 #: rating, study: shafts against yield, oils of one viscosity
 #: record: results are built from what their parts state
+#: study: files of pairs keep their comments too
 LINES: dict[str, int] = {
     "__init__": 105,
     "__main__": 3,
@@ -108,7 +109,7 @@ LINES: dict[str, int] = {
     "scope": 55,
     "signals": 1788,
     "stiffness": 5149,
-    "study": 18835,
+    "study": 18852,
     "surrogate": 777,
     "types": 7,
     "uncertainty": 290,
@@ -117,7 +118,7 @@ LINES: dict[str, int] = {
     "variants": 1048,
 }
 #: Modules of the package, and its annotations without a type.
-FILES, ANY = 734, 2569
+FILES, ANY = 734, 2582
 
 _NO_CODE = {
     tokenize.COMMENT, tokenize.NL, tokenize.NEWLINE, tokenize.INDENT, tokenize.DEDENT,

@@ -18,6 +18,7 @@ from tribodyn.errors import InputError
 from tribodyn.gear import FlankModification, default_relief_length, flank_gap, flank_ranges
 from tribodyn.study import SUMMARY, Case, read_case
 from tribodyn.study.case.provenance import assumptions
+from tribodyn.study.case.write import case_text
 from tribodyn.study.pipeline.assembly import geometry
 
 pytestmark = pytest.mark.filterwarnings("ignore::tribodyn.errors.ModelWarning")
@@ -116,7 +117,7 @@ def test_keys_reach_the_pair() -> None:
 def test_without_tables_the_flanks_are_involutes() -> None:
     case = td.load_case("fzg-roughness")
     assert not case.gear_pair.has_modification
-    assert "# [gears.wheel.modification] is not given" in case.to_toml()
+    assert "# [gears.wheel.modification] is not given" in case_text(case, comments=True)
     assert not any("modification" in assumption.key for assumption in assumptions(case))
 
 
@@ -153,7 +154,7 @@ def test_default_length_is_shown_where_it_holds() -> None:
     case = read_case(with_pinion('tip_relief = "10 um"'), "pair.toml")
     length = default_relief_length(case.gear_pair)
     line = f'# tip_relief_length = "{1e3 * length:.10g} mm"'
-    assert line in case.to_toml()
+    assert line in case_text(case, comments=True)
     assert f"{1e3 * length:.10g} mm" in str(case)
     figures = geometry(case)
     assert figures["tip_relief_pinion"] == pytest.approx(10e-6)

@@ -24,6 +24,7 @@ from tribodyn.study.case.provenance import (
     provenance,
     spec_of,
 )
+from tribodyn.study.case.write import case_text
 from tribodyn.study.pipeline.cautions import case_cautions
 from tribodyn.study.pipeline.citations import cite
 
@@ -35,6 +36,11 @@ def reason_of(case: Any, key: str) -> str:
     """What is said of a value wherever a reader looks for it."""
     reasons = [row.reason for row in assumptions(case) if row.key == key and row.kind == "assumed"]
     return " ".join([*reasons, case.assumed.get(key, "")])
+
+
+def with_every_key(case: Any) -> str:
+    """The case file as ``tribodyn new --from`` writes it."""
+    return case_text(case, comments=True)
 
 
 def old_form(text: str) -> str:
@@ -82,7 +88,7 @@ def test_an_edited_line_of_a_written_file_is_the_users(kind: str, tmp_path: Path
     key, line = EDITS[kind]
     began = td.load_case("fzg-roughness")
     path = tmp_path / "my.toml"
-    path.write_text(edited(began.to_toml(), key, line), encoding="utf-8")
+    path.write_text(edited(with_every_key(began), key, line), encoding="utf-8")
     case = td.load_case(path)
     if kind in STAYS:
         assert changed_keys(case) == ()
@@ -90,17 +96,17 @@ def test_an_edited_line_of_a_written_file_is_the_users(kind: str, tmp_path: Path
     assert changed_keys(case) == (key,)
     assert reason_of(case, key).strip() == ""
     assert provenance(case)[key] == ("default" if line is None else "given")
-    again = read_case(case.to_toml())
+    again = read_case(with_every_key(case))
     assert again == case
     assert changed_keys(again) == changed_keys(case)
-    assert again.to_toml() == case.to_toml()
+    assert with_every_key(again) == with_every_key(case)
     others = [k for k in began.assumed if k != key]
     assert all(case.assumed[k] == began.assumed[k] for k in others)
 
 
 @pytest.mark.parametrize("same", ["20 mm", "0.02 m", "2e4 um", "0.02000000000001 m"])
 def test_the_same_value_in_another_unit_preserves_its_reason(same: str) -> None:
-    text = td.load_case("fzg-roughness").to_toml()
+    text = with_every_key(td.load_case("fzg-roughness"))
     case = read_case(edited(text, WIDTH, f'face_width = "{same}"'))
     assert provenance(case)[WIDTH].startswith("assumed: FZG type A test gears are 20 mm wide")
     assert changed_keys(case) == ()
@@ -108,7 +114,7 @@ def test_the_same_value_in_another_unit_preserves_its_reason(same: str) -> None:
 
 
 def test_another_value_by_a_thousandth_does_not() -> None:
-    text = td.load_case("fzg-roughness").to_toml()
+    text = with_every_key(td.load_case("fzg-roughness"))
     case = read_case(edited(text, WIDTH, 'face_width = "20.02 mm"'))
     assert provenance(case)[WIDTH] == "given"
 
@@ -119,7 +125,7 @@ def test_unchanged_values_preserve_their_reason(name: str, tmp_path: Path) -> No
     origins = provenance(case)
     assert all(origins[key] == f"assumed: {reason}" for key, reason in case.assumed.items())
     assert f"Values of the case: {case.origin}" in cite(case)
-    for text in (case.to_toml(), old_form(case.to_toml())):
+    for text in (with_every_key(case), old_form(with_every_key(case))):
         path = tmp_path / "copy.toml"
         path.write_text(text, encoding="utf-8")
         copy = td.load_case(path)
@@ -156,7 +162,7 @@ def mutated(case: Any, key: str) -> Any:
 @pytest.mark.parametrize("way", ["replace", "file", "old file"])
 def test_every_changed_value_loses_its_reason(name: str, way: str, tmp_path: Path) -> None:
     case = td.load_case(name)
-    text = case.to_toml()
+    text = with_every_key(case)
     began = text if way == "file" else old_form(text)
     path, done = tmp_path / "my.toml", 0
     for key, reason in case.assumed.items():
@@ -167,7 +173,7 @@ def test_every_changed_value_loses_its_reason(name: str, way: str, tmp_path: Pat
         if way != "replace":
             line = re.search(
                 rf"^{key.rpartition('.')[2]} = .*$",
-                edited_block(changed.to_toml(), key),
+                edited_block(with_every_key(changed), key),
                 re.MULTILINE,
             )
             assert line is not None
@@ -180,7 +186,9 @@ def test_every_changed_value_loses_its_reason(name: str, way: str, tmp_path: Pat
         assert key in changed_keys(changed)
         assert reason_of(changed, key).strip() == ""
         assert provenance(changed)[key] == "given"
-        assert not re.search(rf'^"{key}" = .*{re.escape(reason)}', changed.to_toml(), re.MULTILINE)
+        assert not re.search(
+            rf'^"{key}" = .*{re.escape(reason)}', with_every_key(changed), re.MULTILINE
+        )
         sources = cite(changed)
         assert f"Values of the case: {case.origin}" not in sources
         assert f"Based on: {case.origin}" in sources
@@ -287,16 +295,16 @@ def test_keywords_take_a_reason_with_or_without_its_value() -> None:
 
 
 def test_a_reason_of_the_user_is_preserved() -> None:
-    text = edited(td.load_case("fzg-roughness").to_toml(), WIDTH, 'face_width = "30 mm"')
+    text = edited(with_every_key(td.load_case("fzg-roughness")), WIDTH, 'face_width = "30 mm"')
     mark = next(line for line in text.splitlines() if line.startswith(f'"{WIDTH}"'))
     case = read_case(text.replace(mark, f'"{WIDTH}" = "measured on the drawing"'))
     assert provenance(case)[WIDTH] == "assumed: measured on the drawing"
     assert changed_keys(case) == (WIDTH,)
-    assert read_case(case.to_toml()) == case
+    assert read_case(with_every_key(case)) == case
 
 
 def test_a_removed_mark_changes_no_value() -> None:
-    text = td.load_case("fzg-roughness").to_toml()
+    text = with_every_key(td.load_case("fzg-roughness"))
     lines = [line for line in text.splitlines() if not line.startswith(f'"{WIDTH}" = {{')]
     case = read_case("\n".join(lines))
     assert provenance(case)[WIDTH] == "given"
@@ -304,12 +312,12 @@ def test_a_removed_mark_changes_no_value() -> None:
 
 
 def test_a_new_origin_replaces_the_source_of_the_preset() -> None:
-    text = edited(td.load_case("fzg-roughness").to_toml(), WIDTH, 'face_width = "30 mm"')
+    text = edited(with_every_key(td.load_case("fzg-roughness")), WIDTH, 'face_width = "30 mm"')
     line = next(line for line in text.splitlines() if line.startswith("origin = "))
     case = read_case(text.replace(line, 'origin = "Drawing 4711"', 1))
     assert changed_keys(case) == ()
     assert "Values of the case: Drawing 4711." in cite(case)
-    assert "Study of the flank roughness" not in cite(case) + case.to_toml()
+    assert "Study of the flank roughness" not in cite(case) + with_every_key(case)
     assert "Based on: Drawing 4711" in cite(case.replace({"operation.torque": 95.0}))
     none = read_case(text.replace(line, "", 1))
     assert "Study of the flank" not in cite(none)
@@ -319,7 +327,7 @@ def test_a_mass_of_another_gear_is_reported() -> None:
     case = td.load_case("fzg-roughness")
     code = "mass-of-other-gear"
     assert code not in [warning.code for warning in case_cautions(case)]
-    wide = read_case(edited(case.to_toml(), WIDTH, 'face_width = "30 mm"'))
+    wide = read_case(edited(with_every_key(case), WIDTH, 'face_width = "30 mm"'))
     texts = [str(warning) for warning in case_cautions(wide) if warning.code == code]
     assert len(texts) == 2
     solid = wide.replace({"gears.pinion.moment_of_inertia": None, "gears.pinion.mass": None})
@@ -333,7 +341,7 @@ def test_a_reason_states_that_its_value_has_changed() -> None:
     reason = "assumed: that of a comparable FZG pair, 20 mm wide; none is printed"
     assert provenance(case)["gears.pinion.mass"] == f"{reason}; stated before {WIDTH} changed"
     assert provenance(case)["gears.wheel.mass"].endswith("none is printed")
-    assert provenance(read_case(case.to_toml())) == provenance(case)
+    assert provenance(read_case(with_every_key(case))) == provenance(case)
 
 
 @pytest.mark.parametrize("origin", ['origin = "Another"', 'title = "x"'])
@@ -342,7 +350,7 @@ def test_a_base_of_another_origin_reads_back_equal(origin: str, of_file: bool) -
     text = Path(case_files()["fzg-12dof"]).read_text(encoding="utf-8")
     lines = [line for line in text.splitlines() if of_file or not line.startswith("origin")]
     case = read_case("\n".join([*lines, "[based_on]", origin, '"gears.pinion.teeth" = 20']))
-    assert read_case(case.to_toml()) == case
+    assert read_case(with_every_key(case)) == case
 
 
 @pytest.mark.parametrize(
@@ -364,7 +372,9 @@ def test_faults_of_a_record_are_reported_with_their_line(line: str, message: str
 
 def test_a_file_of_before_names_what_its_user_changed(tmp_path: Path) -> None:
     path = tmp_path / "old.toml"
-    text = edited(old_form(td.load_case("fzg-12dof").to_toml()), WIDTH, 'face_width = "14 mm"')
+    text = edited(
+        old_form(with_every_key(td.load_case("fzg-12dof"))), WIDTH, 'face_width = "14 mm"'
+    )
     text = edited(text, "dynamics.shaft1_damping", 'shaft1_damping = "0.5 N*m*s/rad"')
     path.write_text(text, encoding="utf-8")
     case = td.load_case(path)

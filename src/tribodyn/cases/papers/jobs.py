@@ -67,7 +67,7 @@ class Jobs:
         return self._changed(request[1], request[2])
 
     def _name(self, request: Request) -> str:
-        text = f"{request[0]} {request[3]} {self.case(request).to_toml()}"
+        text = f"{request[0]} {request[3]} {self.case(request)._text(comments=True)}"
         return hashlib.sha256(text.encode()).hexdigest()
 
     def done(

@@ -45,7 +45,6 @@ from tribodyn.study.case.values import (
     unknown_key,
     with_typed_keys,
 )
-from tribodyn.study.case.write import case_toml
 
 if TYPE_CHECKING:
     from tribodyn.model import Option
@@ -224,9 +223,6 @@ class Case(CaseData, case=True):
         while section_at(path[:-1]) is None:
             path = path[:-1]
         return replace(unknown_key(path, None), what=f"{'.'.join(path)}: unknown key")
-
-    def _text(self, *, comments: bool) -> str:
-        return case_toml(self)
 
 
 Case.__signature__ = signature_of(Case)

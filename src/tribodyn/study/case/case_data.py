@@ -13,6 +13,7 @@ from tribodyn.arguments.display import brief
 from tribodyn.errors import InputError, Problem
 from tribodyn.model import text
 from tribodyn.study.case import to_models
+from tribodyn.study.case.changes import with_values
 from tribodyn.study.case.gears import Gears
 from tribodyn.study.case.hypoid import hypoid_flanks
 from tribodyn.study.case.provenance import (
@@ -21,6 +22,7 @@ from tribodyn.study.case.provenance import (
     default_of,
     derived_values,
     provenance,
+    without_records,
 )
 from tribodyn.study.case.rating_tables import Materials, RatingTable
 from tribodyn.study.case.section import CaseTables, Section, flat, table
@@ -36,7 +38,7 @@ from tribodyn.study.case.sections import (
     Stiffness,
 )
 from tribodyn.study.case.user_input import Source, Stated, UserInput, spread_problem
-from tribodyn.study.case.write import case_rows, case_table
+from tribodyn.study.case.write import case_rows, case_table, case_text, every_value
 from tribodyn.study.faults.section import Faults
 
 if TYPE_CHECKING:
@@ -53,6 +55,7 @@ class BaseCase:
     root: ClassVar[type[Section]]  #: declares the tables of the case
     title: str
     origin: str | None
+    data: dict[str, Any]  #: tables of the case file as typed, without spreads and records
     _source: Source
     _spread: dict[str, str]
     _assumed: dict[str, str]
@@ -84,13 +87,17 @@ class BaseCase:
     def _unknown_key(self, key: str) -> Problem:
         """Problem of a key that the case does not have."""
 
-    @abstractmethod
-    def _text(self, *, comments: bool) -> str:
-        """Text of the case file; a file of parts has a comment for each key if that is asked."""
+    def _every_value(self) -> dict[str, Any]:
+        """Tables that are written with the meanings of their keys; None where there is no value."""
+        return with_values(self.data, self._spread)
 
     def to_toml(self) -> str:
-        """Write the case file; it reads back to an equal case."""
+        """Write the case as its file was read, with its comments; it reads back to an equal one."""
         return self._text(comments=False)
+
+    def _text(self, *, comments: bool) -> str:
+        """Text of the case file, if asked with the meanings of its keys as comments."""
+        return case_text(self, comments=comments)
 
     def _spread_faults(self, faulty: Container[str] = ()) -> list[tuple[str, Problem]]:
         """Report spreads beyond the range of their key, and of keys that have no number."""
@@ -208,7 +215,12 @@ class CaseData(BaseCase, CaseTables):
     rating: RatingTable | None = table(RatingTable, "load capacity of the gears", "none")
     faults: Faults | None = table(Faults, "faults that repeat with a shaft, by name", "none")
 
-    _default_of, _derived_values = default_of, derived_values
+    _default_of, _derived_values, _every_value = default_of, derived_values, every_value
+
+    @property
+    def data(self) -> dict[str, Any]:  # type: ignore[override]
+        """Tables of the case file as typed, without spreads and recorded values."""
+        return without_records(self._user_input.data)
 
     @property
     def assumptions(self) -> tuple[Assumption, ...]:

@@ -19,8 +19,8 @@ from tribodyn.study.case.hypoid import bodies
 from tribodyn.study.case.section import Section, in_force, section_at
 from tribodyn.study.case.sections import PROPERTIES, SHEET
 from tribodyn.study.case.to_models import USUAL_GEARS, has_usual_backlash, mesh_law_of
-from tribodyn.study.case.user_input import Stated, UserInput
-from tribodyn.study.case.values import FaultError, Plain, read_value, unmarked, written
+from tribodyn.study.case.user_input import Stated, UserInput, si_value
+from tribodyn.study.case.values import FaultError, Plain, unmarked, written
 
 if TYPE_CHECKING:
     from tribodyn.study.case.case_data import BaseCase, CaseData
@@ -107,7 +107,7 @@ def _read(
             problems.append((location, Problem(f'there is no key "{key}"', "", why, remedy)))
             continue
         try:
-            values[key] = unmarked(read_value(spec, key.rpartition(".")[2], value))
+            values[key] = si_value(spec, key.rpartition(".")[2], value)
         except FaultError as fault:
             problems.append((location, fault.problem))
     return values, problems

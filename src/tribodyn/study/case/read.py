@@ -15,23 +15,24 @@ from tribodyn.errors import InputError, Problem
 from tribodyn.study.case.case import Case
 from tribodyn.study.case.changes import changed_tables
 from tribodyn.study.case.section import file_keys
-from tribodyn.study.case.user_input import Source
+from tribodyn.study.case.user_input import Note, Source
 from tribodyn.validated_files import read_bytes
 
 _SPACE = " \t\r"
-Comments = dict[str, list[tuple[list[str], str]]]
 
 
 class _Scanner:
-    """Scanner of TOML text: numbers of the lines, and comments, by dotted key."""
+    """Scanner of TOML text: numbers of the lines, and what is written about each dotted key."""
 
     def __init__(self, text: str) -> None:
         self.text = text
         self.at = 0
         self.line, self.counted = 1, 0  #: line number, and position up to which lines are counted
         self.lines: dict[str, list[int]] = {}
-        self.comments: Comments = {}
-        self._above: list[str] = []
+        self.notes: dict[str, Note] = {}
+        self._end = 0  #: position behind the line of the last key
+        self._rows: dict[tuple[str, ...], int] = {}  #: tables of each list of tables
+        self._table: tuple[str, ...] = ()  #: key of the table, and in a list its number
 
     def run(self) -> Self:
         """Scan the text."""
@@ -39,17 +40,20 @@ class _Scanner:
         while self.at < len(self.text):
             self._skip(_SPACE + "\n")
             if self._peek() == "#":
-                self._above.append(self._comment())
+                self._to_line_end()
             elif self._peek() == "[":
-                self._skip("[")
                 start = self.at
-                table = self._key("]")
+                self._skip("[")
+                table = self._table = self._key("]")
+                if self.text.startswith("[[", start):
+                    self._rows[table] = self._rows.get(table, 0) + 1
+                    self._table = (*table, str(self._rows[table]))
                 self._note(table, start)
-                self._skip("]" + _SPACE)
-                self._behind(table)
+                self._skip("]")
+                self._finish(self._table, start)
             elif self.at < len(self.text):
                 self._pair(table, "\n")
-        self.comments[""] = [(self._above, "")]
+        self.notes[""] = Note(self.text[self._end :])
         return self
 
     def _peek(self) -> str:
@@ -63,23 +67,18 @@ class _Scanner:
         end = self.text.find("\n", self.at)
         self.at = len(self.text) if end < 0 else end
 
-    def _comment(self) -> str:
-        """Read to the end of the line."""
-        start = self.at
+    def _finish(self, place: tuple[str, ...], start: int, value: str = "") -> None:
+        """Keep what is above a key and behind it, and go to the next line."""
+        at = self.at
         self._to_line_end()
-        return self.text[start : self.at].rstrip()
-
-    def _behind(self, key: tuple[str, ...]) -> None:
-        """Keep the rest of the line as the comment behind a key."""
-        notes = self.comments[".".join(key)]
-        notes[-1] = notes[-1][0], self._comment()
+        above, behind = self.text[self._end : start], self.text[at : self.at].rstrip()
+        self.notes[".".join(place)] = Note(above, behind, value)
+        self._end = self.at = self.at + 1
 
     def _note(self, key: tuple[str, ...], position: int) -> None:
         self.line += self.text.count("\n", self.counted, position)
         self.counted = max(position, self.counted)
         self.lines.setdefault(".".join(key), []).append(self.line)
-        self.comments.setdefault(".".join(key), []).append((self._above, ""))
-        self._above = []
 
     def _key(self, end: str) -> tuple[str, ...]:
         """Read a dotted key, quoted parts included, up to and with the character ``end``."""
@@ -104,9 +103,15 @@ class _Scanner:
     def _pair(self, table: tuple[str, ...], ends: str) -> None:
         """Read ``key = value`` and note the key; the value ends at a character of ``ends``."""
         start = self.at
-        key = (*table, *self._key("="))
-        self._note(key, start)
-        self._value(key, ends)
+        names = self._key("=")
+        sign = self.text[start : self.at]
+        first = self.at - len(sign) + len(sign.rstrip("= \t"))
+        self._note((*table, *names), start)
+        self._value((*table, *names), ends)
+        if ends == "\n":
+            value = self.text[first : self.at].rstrip()
+            self.at = first + len(value)
+            self._finish((*self._table, *names), start, value)
 
     def _string(self, quote: str) -> None:
         """Skip the string that begins at the current position."""
@@ -129,8 +134,10 @@ class _Scanner:
             if character in "\"'":
                 self._string(character)
                 continue
+            if character == "#" and not depth:
+                return
             if character == "#":
-                self._to_line_end() if depth else self._behind(key)
+                self._to_line_end()
                 continue
             if character == "{":
                 self._inline(key)
@@ -154,9 +161,9 @@ def key_lines(text: str) -> dict[str, list[int]]:
     return _Scanner(text).run().lines
 
 
-def key_comments(text: str) -> Comments:
-    """Lines of comments above and comment behind each dotted key of TOML text, in their order."""
-    return _Scanner(text).run().comments
+def key_notes(text: str) -> dict[str, Note]:
+    """What is written above, behind and for each dotted key; rows of a list have numbers."""
+    return _Scanner(text.replace("\r\n", "\n")).run().notes
 
 
 #: A number followed by a unit, without quotes.
@@ -215,6 +222,11 @@ Add it with normal_module, normal_pressure_angle, driver, pinion, wheel.
     return changed_file(text, name, {})
 
 
+def source_of(text: str, name: str) -> Source:
+    """Where the values of the text of a case file come from."""
+    return Source(name or "case", partial(key_lines, text), notes=partial(key_notes, text))
+
+
 def changed_file(text: str, name: str, changes: Mapping[str, Any], by: str = "") -> Case:
     """Check the text of a case file with values replaced by dotted key."""
     data = parse_toml(text, name)
@@ -224,7 +236,7 @@ def changed_file(text: str, name: str, changes: Mapping[str, Any], by: str = "")
             "the file has no values", name, "A case needs gears, speed and torque", remedy
         )
     _place_files(data, Path(name).parent)
-    source = Source(name or "case", partial(key_lines, text)).with_replaced(changes, by)
+    source = source_of(text, name).with_replaced(changes, by)
     return Case(source, **(changed_tables(Case, data, changes, by=by) if changes else data))
 
 

@@ -210,9 +210,11 @@ def table_in(data: Mapping[str, Any], name: str) -> Mapping[str, Any]:
     return value if isinstance(value, Mapping) else dict(named_rows(value))
 
 
-def option_at(root: type[Section], data: Mapping[str, Any], key: str) -> Option | None:
-    """Option of a dotted key of these tables; of a value of a list its number ends the key."""
-    *path, name = key.split(".")
+def option_at(
+    root: type[Section], data: Mapping[str, Any], key: str | tuple[str, ...]
+) -> Option | None:
+    """Option of a key of these tables; of a value of a list its number ends the key."""
+    *path, name = key.split(".") if isinstance(key, str) else key
     section, inner = root, data
     for depth, each in enumerate(path, 1):
         field = section.keys_for(inner).get(each)

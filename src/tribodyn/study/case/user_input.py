@@ -13,11 +13,13 @@ from functools import cached_property
 from itertools import islice
 from typing import Any, NamedTuple
 
+import numpy as np
+
 from tribodyn.errors import InputError, Problem
 from tribodyn.model import Option
 from tribodyn.nomenclature import QUANTITIES
 from tribodyn.study.case.section import named_rows
-from tribodyn.study.case.values import Plain, written
+from tribodyn.study.case.values import Plain, read_value, unmarked, written
 from tribodyn.uncertainty import distribution
 from tribodyn.units import UnitProblemError, convert, split
 
@@ -79,6 +81,16 @@ def plain(data: Any) -> Any:
     return data if isinstance(data, str | bool | Plain) else Plain(data)
 
 
+def si_value(option: Option, name: str, value: Any) -> Any:
+    """Value in SI as it is read, the numbers of a list of parts too."""
+    if option.kind != "list" or not option.unit:
+        return unmarked(read_value(option, name, value))
+    value = value.value if isinstance(value, Plain) else value
+    if isinstance(value, list | tuple | np.ndarray):
+        return tuple(si_value(option, name, item) for item in value)
+    return read_value(replace(option, kind="number"), name, Plain(value))
+
+
 class UserInput(dict[str, Any]):
     """User input by dotted keys: values as typed, and tables; ``data`` is the nested form."""
 
@@ -133,6 +145,15 @@ def conflicting_keys(inputs: UserInput, first: str, second: str) -> tuple[str, P
 
 
 @dataclass(frozen=True)
+class Note:
+    """What a file has for a key besides its value in SI."""
+
+    above: str  #: comments and empty lines before it, and what its line begins with
+    behind: str = ""  #: comment behind it, with the space before
+    value: str = ""  #: equals sign and value as typed; empty for the head of a table
+
+
+@dataclass(frozen=True)
 class Source:
     """Origin of the keys of a case."""
 
@@ -141,15 +162,17 @@ class Source:
         dict  #: finds the lines of the keys; called on demand
     )
     replaced: Mapping[str, str] = field(default_factory=dict)
-    #: finds the lines above the keys and the comments behind them
-    notes: Callable[[], Mapping[str, list[tuple[list[str], str]]]] = field(
-        default=dict, kw_only=True
-    )
+    notes: Callable[[], Mapping[str, Note]] = field(default=dict, kw_only=True)
 
     @cached_property
     def lines(self) -> Mapping[str, list[int]]:
         """Line numbers of each key."""
         return self.find()
+
+    @cached_property
+    def comments(self) -> Mapping[str, Note]:
+        """What the file has for each key."""
+        return self.notes()
 
     def line(self, key: str) -> int:
         """Return the line of a key, or of its first inner key or enclosing table; zero if none."""

@@ -1,32 +1,276 @@
-"""Format a case as a commented case file, and as a table."""
+"""Write a case: as its file was read, with the meanings of its keys, or as a table."""
 
 from __future__ import annotations
 
 import json
 import math
+import tomllib
 from collections.abc import Iterator, Mapping
+from contextlib import suppress
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
+
 from tribodyn import units
+from tribodyn.arguments.quantities import quantity_in, without_units
 from tribodyn.model import Option
+from tribodyn.study.case.changes import with_values
 from tribodyn.study.case.checks import DEFAULT_MARK
 from tribodyn.study.case.gears import is_idle
-from tribodyn.study.case.provenance import (
-    changed_keys,
-    derived_values,
-    effective,
-    provenance,
-    spec_of,
+from tribodyn.study.case.provenance import changed_keys, effective, provenance
+from tribodyn.study.case.section import (
+    RAW_KINDS,
+    Section,
+    Table,
+    named_rows,
+    option_at,
+    section_at,
 )
-from tribodyn.study.case.section import RAW_KINDS, Section, Table, section_at
-from tribodyn.study.case.values import written
+from tribodyn.study.case.user_input import Note
+from tribodyn.study.case.values import Plain, in_unit, unmarked, written
 
 if TYPE_CHECKING:
     from tribodyn.study.case.case_data import BaseCase, CaseData
 
+Place = tuple[str, ...]
+Rows = list[tuple[str, Any]]
 
-#: Line above ``[based_on]``.
-BASE_NOTE = "# Initial values of this case, which reports use to name changed values: do not edit"
+_NUMBERS = ("number", "numbers")
+#: Line above ``[based_on]``, and what stands above ``[assumed]``.
+_BASE_NOTE = "# Initial values of this case, which reports use to name changed values: do not edit"
+_MARKS_NOTE = """
+# Values above that the source of this case does not print, and defaults. A reason is
+# valid for the value recorded with it, and is dropped once the value above changes.
+"""
+
+
+def case_text(case: BaseCase, *, comments: bool = False) -> str:
+    """Text of the file as it was read; with the meanings of all keys if asked, or from Python."""
+    is_read = bool(case.source.comments) and not comments
+    return (_Writer if is_read else _Commentator)(case).text()
+
+
+def every_value(case: CaseData) -> dict[str, Any]:
+    """Tables with all values of a pair; of keys without a value None."""
+    values, kind = effective(case), case.gears.kind
+
+    def inside(section: Section, prefix: str) -> dict[str, Any]:
+        table: dict[str, Any] = {}
+        for name in section._names():
+            key, inner = f"{prefix}{name}", vars(section).get(name)
+            if isinstance(inner, Section):
+                table[name] = inside(inner, f"{key}.")
+            elif not (prefix.startswith("gears") and is_idle(key, kind)):
+                value = values.get(key)
+                table[name] = case.uncertain.get(key, None if value is None else Plain(value))
+        return table
+
+    return inside(case, "")
+
+
+class _Writer:
+    """Writer of tables in their order, with what the file has above and behind each key."""
+
+    def __init__(self, case: BaseCase) -> None:
+        self._case, self._changed = case, changed_keys(case)
+        self._notes: Mapping[str, Note] = case.source.comments
+        self._tables = with_values(case.data, case._spread)
+
+    def text(self) -> str:
+        """Text of the file."""
+        above = self._note(("based_on",)).above.replace(f"{_BASE_NOTE}\n", "").rstrip("\n")
+        text = "".join((*self._inside(self._tables, (), ()), self._note(("",)).above, above))
+        return (text if text.endswith("\n") else f"{text}\n") + "".join(self._base())
+
+    def _inside(self, table: Mapping[str, Any], place: Place, key: Place) -> Iterator[str]:
+        """Values of a table, then tables in it; in ``key`` tables of a list have their numbers."""
+        values, tables = self._split(table, place, key)
+        for name, value in values:
+            yield self._entry((*place, name), self._note((*key, name)), value)
+        for name, value in tables:
+            if name == "assumed" and not place:
+                yield from self._reasons(value)
+            elif isinstance(value, Mapping):
+                head = f"[{'.'.join(map(_quoted, (*place, name)))}]"
+                yield from self._table(head, value, (*place, name), (*key, name))
+            elif value is None:
+                absent, meaning = ".".join((*place, name)), self._meaning((*place, name))
+                yield f"\n# [{absent}] is not given{meaning.replace('  #', ':')}\n"
+            for number, (row, body) in enumerate(named_rows(value), 1):
+                head = f"[[{'.'.join(map(_quoted, (*place, name)))}]]"
+                at = (*place, name, row), (*key, name, str(number))
+                yield from self._table(head, body, *at)
+
+    def _split(self, table: Mapping[str, Any], place: Place, key: Place) -> tuple[Rows, Rows]:
+        """Values of a table, also tables that are written in one line, and other tables."""
+        values: Rows = []
+        tables: Rows = []
+        for name, value in table.items():
+            is_table = isinstance(value, Mapping) or bool(named_rows(value))
+            in_line = bool(self._note((*key, name)).value)
+            is_absent = value is None and bool(self._meaning((*place, name)))
+            (tables if is_absent or (is_table and not in_line) else values).append((name, value))
+        return values, tables
+
+    def _table(self, head: str, body: Mapping[str, Any], place: Place, key: Place) -> Iterator[str]:
+        """Head of a table, unless only other tables are in it, and what is inside."""
+        note = self._notes.get(".".join(key))
+        if note is not None:
+            yield f"{note.above}{head}{note.behind}\n"
+        elif self._split(body, place, key)[0] or not body:
+            yield f"\n{head}{self._meaning(place)}\n"
+        yield from self._inside(body, place, key)
+
+    def _note(self, key: Place) -> Note:
+        """What the file has for a key."""
+        return self._notes.get(".".join(key)) or Note("")
+
+    def _entry(self, place: Place, note: Note, value: Any) -> str:
+        if unmarked(value) is None:
+            return ""
+        text = note.value if _denotes(note.value, value) else f" = {self._value(place, value)}"
+        behind = "" if ".".join(place) in self._changed else note.behind
+        return f"{note.above}{_quoted(place[-1])}{text}{behind}\n"
+
+    def _value(self, place: Place, value: Any) -> str:
+        """Text of a value, or of a table in one line."""
+        if isinstance(value, Mapping):
+            pairs = (f"{_quoted(k)} = {self._value((*place, k), v)}" for k, v in value.items())
+            return f"{{ {', '.join(pairs)} }}"
+        return written_value(value, option_at(self._case.root, self._tables, place))
+
+    def _meaning(self, place: Place) -> str:
+        """Comment behind the head of a table that the file does not have."""
+        return ""
+
+    def _reasons(self, reasons: Mapping[str, str]) -> Iterator[str]:
+        """Table of the reasons, each with its value once the case has changed."""
+        if not reasons and "assumed" not in self._notes:
+            return
+        head = self._notes.get("assumed", Note("\n"))
+        yield f"{head.above}[assumed]{head.behind}\n"
+        for key, reason in reasons.items():
+            note, value = self._note(("assumed", key)), self._case._effective.get(key)
+            typed = _typed(note.value)
+            is_record = isinstance(typed, Mapping) and typed.get("reason") == reason
+            if is_record or (typed == reason and not self._changed):
+                text = note.value
+            else:
+                text = f" = {self._with_value(key, reason, value)}"
+            yield f"{note.above}{_quoted(key)}{text}{note.behind}\n"
+
+    def _with_value(self, key: str, reason: str, value: Any) -> str:
+        why = json.dumps(reason, ensure_ascii=False)
+        if value is None:
+            return why
+        return f"{{ value = {self._recorded(key, value)}, reason = {why} }}"
+
+    def _recorded(self, key: str, value: Any) -> str:
+        option = self._case.option_of(key)
+        is_raw = option is None or (option.kind in RAW_KINDS and not option.unit)
+        return written_value(value if is_raw else Plain(value), None if is_raw else option)
+
+    def _base(self) -> Iterator[str]:
+        """Initial values in ``[based_on]``, of a case that has changed or whose file has them."""
+        if self._changed or "based_on" in self._notes:
+            yield f"\n{_BASE_NOTE}\n[based_on]\n"
+            for key, value in self._case.stated.base.items():
+                if value is not None and key != "title":
+                    yield f"{_quoted(key)} = {self._recorded(key, value)}\n"
+
+
+class _Commentator(_Writer):
+    """Writer of tables with the meanings of their keys; what has no value is a comment."""
+
+    def __init__(self, case: BaseCase) -> None:
+        super().__init__(case)
+        self._notes, self._origins = {}, provenance(case)
+        self._derived = case._derived_values()
+        self._tables = {k: v for k, v in case._every_value().items() if k != "assumed"}
+        values = (key for key, origin in self._origins.items() if origin == DEFAULT_MARK)
+        marks = dict.fromkeys((k for k in values if case._effective[k] is not None), DEFAULT_MARK)
+        if reasons := {**case.assumed, **marks}:
+            self._tables["assumed"] = reasons
+
+    def text(self) -> str:
+        """Text of the file."""
+        return super().text().lstrip("\n")
+
+    def _meaning(self, place: Place) -> str:
+        parent = section_at(place[:-1], self._case.root)
+        field = parent.fields.get(place[-1]) if parent else None
+        return f"  # {field.meaning}" if isinstance(field, Table) else ""
+
+    def _entry(self, place: Place, note: Note, value: Any) -> str:
+        option = option_at(self._case.root, self._tables, place)
+        if option is None:
+            return super()._entry(place, note, value)
+        key, name, spread = ".".join(place), place[-1], self._case.uncertain
+        if value is not None:
+            default = self._origins.get(key) == DEFAULT_MARK
+            why = DEFAULT_MARK if default else "known within bounds" if key in spread else ""
+            if key == "origin" and self._changed:
+                why = f"{len(self._changed)} of the values have changed since: see [based_on]"
+            return f"{name} = {written_value(value, option)}{_comment(option, why)}\n"
+        if (derived := self._derived.get(key)) is not None:
+            why = _comment(option, f"default: from {option.basis}")
+            return f'# {name} = "{option.show(derived)}"{why}\n'
+        return f"# {name} = {_example(option)}{_comment(option, _owners(self._case, place))}\n"
+
+    def _reasons(self, reasons: Mapping[str, str]) -> Iterator[str]:
+        yield f"{_MARKS_NOTE}[assumed]\n"
+        for key, reason in reasons.items():
+            value = self._case._effective.get(key)
+            yield f"{_quoted(key)} = {self._with_value(key, reason, value)}\n"
+
+    def _base(self) -> Iterator[str]:
+        if self._changed or self._case.stated.base.get("origin") is not None:
+            self._notes = {"based_on": Note("")}
+        return super()._base()
+
+
+def _comment(option: Option, note: str) -> str:
+    meaning = f"{option.symbol}: {option.meaning}" if option.symbol else option.meaning
+    limits = option.allowed() if option.names or math.isfinite(option.low) else ""
+    text = "; ".join(part for part in (meaning, limits, note) if part)
+    return f"  # {text}" if text else ""
+
+
+def _example(option: Option) -> str:
+    """Return a value that makes the line valid TOML when uncommented."""
+    if option.kind == "numbers":
+        return option.example if option.example.startswith("[") else f"[{option.example}]"
+    if option.kind == "flag":
+        return "true"
+    return f'"{option.names()[0]}"' if option.names is not None else option.example or '"..."'
+
+
+def _owners(case: BaseCase, place: Place) -> str:
+    """Name the models that have an option which the model of the case lacks."""
+    section = section_at(place[:-1], case.root)
+    owners = section.section_keys().owners.get(place[-1], []) if section else []
+    chosen = vars(case).get(place[0])
+    if section is None or not owners or not isinstance(chosen, Section) or chosen.chosen is None:
+        return "not given"
+    if chosen.chosen.name in owners:
+        return "not given"
+    return f"belongs to {section.selector} = {', '.join(owners)}"
+
+
+def _quoted(name: str) -> str:
+    return name if name.replace("_", "").replace("-", "").isalnum() else json.dumps(name)
+
+
+def _typed(text: str) -> Any:
+    """Value of a text such as ``= 3``; None where it is none."""
+    with suppress(tomllib.TOMLDecodeError):
+        return tomllib.loads(f"x{text}")["x"] if text else None
+    return None
+
+
+def _denotes(text: str, value: Any) -> bool:
+    """Whether the text of a file denotes a value that was read."""
+    return not isinstance(value, Plain) and bool(text) and bool(_typed(text) == value)
 
 
 def written_number(spec: Option, value: float) -> str:
@@ -36,154 +280,23 @@ def written_number(spec: Option, value: float) -> str:
     return f'"{units.shortest_quantity(value, spec.unit, spec.display_unit)}"'
 
 
-def _toml_value(spec: Option, value: Any) -> str:
+def written_value(value: Any, option: Option | None) -> str:
+    """Text of a value; a number or a quantity from Python with the unit of its key."""
+    if isinstance(value, Plain) and isinstance(value.value, list | tuple | np.ndarray):
+        value = [Plain(item) for item in value.value]
+    if isinstance(value, list | tuple):
+        return f"[{', '.join(written_value(item, option) for item in value)}]"
+    if isinstance(value, Plain):
+        unit = option.unit if option else None
+        foreign = quantity_in(value.value) is not None
+        number = in_unit(value.value, unit) if foreign else without_units(value.value, unit)
+        is_number = isinstance(number, float | int | np.number) and not isinstance(number, bool)
+        if is_number and option is not None and (option.unit or option.kind in _NUMBERS):
+            return written_number(option, float(number))
+        value = number.item() if isinstance(number, np.generic) else number
     if isinstance(value, bool):
         return str(value).lower()
-    if isinstance(value, tuple):
-        return f"[{', '.join(written_number(spec, item) for item in value)}]"
-    if spec.kind == "number":
-        return written_number(spec, value)
-    return str(value) if spec.kind == "integer" else json.dumps(value, ensure_ascii=False)
-
-
-def _comment(spec: Option, note: str) -> str:
-    meaning = f"{spec.symbol}: {spec.meaning}" if spec.symbol else spec.meaning
-    limits = spec.allowed() if spec.names or math.isfinite(spec.low) else ""
-    return "; ".join(part for part in (meaning, limits, note) if part)
-
-
-def _line(
-    spec: Option, name: str, value: Any, origin: str, derived: float | None, owners: str
-) -> str:
-    if value is None and derived is not None:
-        note = f"default: from {spec.basis}"
-        return f'# {name} = "{spec.show(derived)}"  # {_comment(spec, note)}'
-    if value is None:
-        return f"# {name} = {_unset_example(spec)}  # {_comment(spec, owners)}"
-    note = origin if origin == DEFAULT_MARK else ""
-    return f"{name} = {_toml_value(spec, value)}  # {_comment(spec, note)}"
-
-
-def _unset_example(spec: Option) -> str:
-    """Return a value that makes the line valid TOML when uncommented."""
-    if spec.kind == "numbers":
-        return spec.example if spec.example.startswith("[") else f"[{spec.example}]"
-    if spec.kind == "flag":
-        return "true"
-    return f'"{spec.names()[0]}"' if spec.names is not None else spec.example or '"..."'
-
-
-def _owners(case: CaseData, key: str) -> str:
-    """Name the models that have an option which the model of the case lacks."""
-    table, _, name = key.rpartition(".")
-    section = section_at((table,)) if "." not in table else None
-    owners = section.section_keys().owners.get(name, []) if section else []
-    chosen = vars(case).get(table)
-    if not (section and owners and isinstance(chosen, Section)) or chosen.chosen is None:
-        return "not given"
-    names = ", ".join(owners)
-    available = chosen.chosen.name in owners
-    return "not given" if available else f"belongs to {section.selector} = {names}"
-
-
-def case_toml(case: CaseData) -> str:
-    """Format the complete commented case file."""
-    values, origins, derived = effective(case), provenance(case), derived_values(case)
-    changed = changed_keys(case)
-    lines: list[str] = []
-    table = ""
-    for key, value in values.items():
-        spec = spec_of(case, key)
-        place, _, name = key.rpartition(".")
-        if is_idle(key, case.gears.kind) and place.startswith("gears"):
-            continue
-        if spec is None:
-            if key.endswith(".modification"):
-                lines += ["", f"# [{key}] is not given: the flanks are involutes"]
-            continue
-        if place != table:
-            table = place
-            section = section_at(tuple(place.split("."))) if place else None
-            lines += ["", f"[{place}]  # {_table_meaning(case, place)}" if section else ""]
-        owners = _owners(case, key)
-        lines.append(_line(spec, name, value, origins.get(key, ""), derived.get(key), owners))
-        if key in case.uncertain:
-            text = json.dumps(case.uncertain[key], ensure_ascii=False)
-            lines[-1] = f"{name} = {text}  # {_comment(spec, 'known within bounds')}"
-        if key == "origin" and value is not None and changed:
-            lines[-1] += f"; {len(changed)} of the values have changed since: see [based_on]"
-    for name, why in (
-        ("lubricant", "nothing in this case needs an oil"),
-        ("losses", "of what loses power the teeth alone are counted"),
-    ):
-        if getattr(case, name) is None:
-            lines += ["", f"# [{name}] is not given: {why}"]
-    marks = {
-        key: case.assumed.get(key, DEFAULT_MARK)
-        for key, origin in origins.items()
-        if origin != "given" and values[key] is not None
-    }
-    return "\n".join([*lines, *_assumed_lines(case, marks), *base_lines(case)]) + "\n"
-
-
-def _assumed_lines(case: CaseData, marks: dict[str, str]) -> list[str]:
-    """Format the reasons in ``[assumed]``, each with the value that it refers to."""
-    if not marks:
-        return []
-    return [
-        "",
-        "# Values above that the source of this case does not print, and defaults. A reason is",
-        "# valid for the value recorded with it, and is dropped once the value above changes.",
-        "[assumed]",
-        *reason_lines(case, marks),
-    ]
-
-
-def reason_lines(
-    case: BaseCase, marks: Mapping[str, str], *, records: bool = True
-) -> Iterator[str]:
-    """Format reasons, with records each with the value that it refers to."""
-    for key, reason in marks.items():
-        why, value = json.dumps(reason, ensure_ascii=False), case._effective.get(key)
-        if records and value is not None:
-            why = f"{{ value = {_recorded(case, key, value)}, reason = {why} }}"
-        yield f'"{key}" = {why}'
-
-
-def base_lines(case: BaseCase) -> list[str]:
-    """Format the initial values in ``[based_on]``; empty without an origin and changes."""
-    base = case.stated.base
-    if base.get("origin") is None and not changed_keys(case):
-        return []
-    lines = [
-        f"{_quoted(key)} = {_recorded(case, key, value)}"
-        for key, value in base.items()
-        if value is not None and key != "title"
-    ]
-    return [
-        "",
-        BASE_NOTE,
-        "[based_on]",
-        *lines,
-    ]
-
-
-def _quoted(key: str) -> str:
-    return f'"{key}"' if "." in key else key
-
-
-def _recorded(case: BaseCase, key: str, value: Any) -> str:
-    spec = case.option_of(key)
-    if spec is None or spec.kind in RAW_KINDS:
-        return json.dumps(value, ensure_ascii=False)
-    return _toml_value(spec, value)
-
-
-def _table_meaning(case: CaseData, place: str) -> str:
-    *path, name = place.split(".")
-    parent = section_at(tuple(path))
-    table = parent.fields.get(name) if parent else None
-    return table.meaning if isinstance(table, Table) else ""
+    return json.dumps(value, ensure_ascii=False) if isinstance(value, str) else repr(value)
 
 
 def case_rows(case: BaseCase) -> list[tuple[str, str, str]]:
@@ -199,7 +312,7 @@ def case_rows(case: BaseCase) -> list[tuple[str, str, str]]:
 
 
 def _value_text(spec: Option | None, value: Any) -> str:
-    if spec is None or spec.kind in RAW_KINDS:
+    if spec is None or (spec.kind in RAW_KINDS and not spec.unit):
         return written(value).strip('"')
     return spec.show(value)
 

@@ -183,7 +183,7 @@ def _card(
 
     keys = {axis.key: {"unit": axis.unit, "values": list(axis.values)} for axis in axes}
     card = {"title": case.title, "tribodyn": __version__, "keys": keys, **settings}
-    content = json.dumps(card, sort_keys=True) + case.to_toml()
+    content = json.dumps(card, sort_keys=True) + case._text(comments=True)
     return {**card, "digest": hashlib.sha256(content.encode()).hexdigest()}
 
 

@@ -4,15 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import replace
-from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from tribodyn.errors import InputError
 from tribodyn.model import NO_OPTIONS
-from tribodyn.study.case.read import changed_file, key_comments, key_lines, parse_toml
+from tribodyn.study.case.read import changed_file, parse_toml, source_of
 from tribodyn.study.case.section import file_keys, flat_keys
-from tribodyn.study.case.user_input import Source
 from tribodyn.study.machine.case import MachineCase
 from tribodyn.study.machine.tables import HousingTable
 from tribodyn.study.machine.unused_keys import changed_machine
@@ -69,8 +67,6 @@ def _read(
     changes: Mapping[str, Any],
     by: str,
 ) -> Case | MachineCase:
-    source = Source(name or "case", partial(key_lines, text), notes=partial(key_comments, text))
-    source = source.with_replaced(changes, by)
     if not is_machine(data):
         return changed_file(text, name, changes, by)
     place = Path(name).parent if folder is None else folder
@@ -83,4 +79,5 @@ def _read(
         for key in keys if isinstance(table, dict) else ():
             if isinstance(table.get(key), str):
                 table[key] = str((place / table[key]).absolute())
+    source = source_of(text, name).with_replaced(changes, by)
     return MachineCase(source, **changed_machine(data, changes, by=by))

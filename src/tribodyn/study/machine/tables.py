@@ -55,9 +55,9 @@ def clearance(meaning: str) -> Any:
     return number(0.0, 0.0, 0.01, _GUARD, **length)
 
 
-def _listed(default: Any, meaning: str, example: str) -> Any:
+def _listed(default: Any, meaning: str, example: str, **more: Any) -> Any:
     """Declare a list that is checked where its part is made."""
-    return Option("list", meaning, default, example=example)
+    return Option("list", meaning, default, example=example, **more)
 
 
 def position(meaning: str, default: Any = REQUIRED, **more: Any) -> Any:
@@ -80,6 +80,8 @@ class ShaftTable(MaterialData):
         "sections along x: length, outer and inner diameter, and for a cone both diameters of the "
         "end; a rigid shaft by default",
         '[["60 mm", "40 mm"], ["20 mm", "50 mm", "10 mm"]]',
+        unit="m",
+        display_unit="mm",
     )
     density: float = number(STEEL.density, 500.0, 25000.0, "polymers to tungsten", of="density")
     moment_of_inertia: float = number(

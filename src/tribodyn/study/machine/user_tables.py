@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from abc import abstractmethod
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from contextlib import suppress
@@ -11,28 +10,24 @@ from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Self
 
-import numpy as np
-
-from tribodyn.arguments.quantities import quantity_in, without_units
 from tribodyn.errors import InputError, Problem, did_you_mean
 from tribodyn.machine.fields import display
 from tribodyn.study.case.case_data import BaseCase
 from tribodyn.study.case.changes import with_values
 from tribodyn.study.case.provenance import (
     Assumption,
-    changed_keys,
     read_stated,
     settled,
     without_records,
 )
-from tribodyn.study.case.reference import key_comment
-from tribodyn.study.case.section import flat_keys, named_rows, option_at, section_at, table_in
+from tribodyn.study.case.section import flat_keys, option_at, section_at, table_in
 from tribodyn.study.case.to_models import USUAL_GEARS
 from tribodyn.study.case.user_input import (
     Source,
     Stated,
     UserInput,
     plain,
+    si_value,
     unsound,
     without_spread,
 )
@@ -40,12 +35,9 @@ from tribodyn.study.case.values import (
     FaultError,
     KeyedProblems,
     Plain,
-    in_unit,
-    read_value,
     unmarked,
 )
-from tribodyn.study.case.write import BASE_NOTE, base_lines, reason_lines, written_number
-from tribodyn.study.machine.read_parts import LENGTH
+from tribodyn.study.case.write import written_value
 from tribodyn.study.machine.tables import GROUPS, OperationTable
 from tribodyn.study.machine.unused_keys import changed_machine
 from tribodyn.study.machine_tables import STIFF, MachineTables
@@ -54,10 +46,6 @@ if TYPE_CHECKING:
     from tribodyn.model import Option
     from tribodyn.study.case.case import Case
     from tribodyn.study.machine.case import MachineCase
-
-
-#: Keys at the top of a file.
-_TEXTS = ("title", "origin")
 
 
 class PartsBase(BaseCase):
@@ -165,17 +153,12 @@ class PartsBase(BaseCase):
         changed._records = self._stated
         return changed
 
-    def _text(self, *, comments: bool) -> str:
-        base = base_lines(self) if changed_keys(self) else []
-        lines = _Writer(self, comments).lines(with_values(self.data, self._spread), ())
-        return "\n".join([*lines, *base]).strip() + "\n"
-
 
 def _in_si(option: Option | None, key: str, value: Any) -> Any:
     """Value of a key in SI; a list of values, or a text in place of a number, as it is."""
     if option is not None:
         with suppress(FaultError):
-            return unmarked(read_value(option, key.rpartition(".")[2], value))
+            return si_value(option, key.rpartition(".")[2], value)
     return unmarked(value)
 
 
@@ -199,7 +182,7 @@ def stated_assumptions(case: PartsBase) -> Iterator[Assumption]:
         for each in (*names, name):
             value = value.get(each) if isinstance(value, Mapping) else None
         blank = value is None or isinstance(value, Mapping)
-        text = "" if blank else written_value(value, _option_at(case, (*names, name))).strip('"')
+        text = "" if blank else written_value(value, case.option_of(key)).strip('"')
         yield Assumption(key, text, "assumed", why)
 
 
@@ -272,110 +255,3 @@ def _estimates(texts: Iterable[str]) -> Iterator[tuple[str, str, str]]:
         key, _, value_and_reason = text.partition(" = ")
         value, _, why = value_and_reason.partition(", ")
         yield key, value, why
-
-
-def _option_at(case: PartsBase, path: tuple[str, ...]) -> Option | None:
-    """Option of the key at a path, of the rows of sections and of load cases too."""
-    if path[-1] == "sections":
-        return LENGTH  # type: ignore[no-any-return]
-    rows = named_rows(case.data.get(path[0]))
-    return case.option_of(".".join((path[0], *(name for name, _ in rows[:1]), *path[1:])))
-
-
-class _Writer:
-    """Writer of tables in their order, with the comments of their file or with meanings."""
-
-    def __init__(self, case: PartsBase, meanings: bool) -> None:
-        self._case, self._meanings = case, meanings
-        notes = {} if meanings else case.source.notes()
-        self._notes = {key: iter(each) for key, each in notes.items()}
-        self._places = case.source.lines if notes else {}
-        self._changed = {key for key in changed_keys(case) if key not in _TEXTS}
-
-    def lines(self, table: Mapping[str, Any], path: tuple[str, ...]) -> Iterator[str]:
-        """Lines of a table, of what is inside, and of comments at the end of the file."""
-        if path == ("assumed",):
-            records = bool(self._changed or self._case._records.marks)
-            yield from reason_lines(self._case, table, records=records)
-            return
-        values = {k: v.value if isinstance(v, Plain) else v for k, v in table.items()}
-        inner = {k: v for k, v in values.items() if self._is_table((*path, k), v)}
-        rows = {k: v for k, v in values.items() if _is_rows(v)}
-        for name, value in table.items():
-            if name not in inner and name not in rows and values[name] is not None:
-                place = (*path, name)
-                yield from self._line(place, f"{_key(name)} = {self._value(place, value)}")
-        for name, body in inner.items():
-            place = (*path, name)
-            if not body or any(not self._is_table((*place, k), v) for k, v in body.items()):
-                yield ""
-                yield from self._line(place, f"[{'.'.join(map(_key, place))}]")
-            yield from self.lines(body, place)
-        for name, bodies in rows.items():
-            for body in bodies:
-                yield ""
-                yield from self._line((*path, name), f"[[{'.'.join(map(_key, (*path, name)))}]]")
-                yield from self.lines(body, (*path, name))
-        for key in ("based_on", "") if not path else ():
-            above, _ = next(self._notes.get(key, iter(())), ([], ""))
-            yield from (line for line in above if line != BASE_NOTE)
-
-    def _is_table(self, path: tuple[str, ...], body: Any) -> bool:
-        """Whether a value is a table, and was not written in the line of its first key."""
-        if not isinstance(body, Mapping):
-            return False
-        keys = ".".join(path), ".".join((*path, next(iter(body), "")))
-        first, second = (self._places.get(key, [0])[0] for key in keys)
-        return not first == second > 0
-
-    def _value(self, path: tuple[str, ...], value: Any) -> str:
-        """Text of a value, or of a table in one line."""
-        if isinstance(value, Mapping):
-            pairs = (f"{_key(k)} = {self._value((*path, k), v)}" for k, v in value.items())
-            return f"{{ {', '.join(pairs)} }}"
-        return written_value(
-            value, None if isinstance(value, str) else _option_at(self._case, path)
-        )
-
-    def _line(self, path: tuple[str, ...], text: str) -> Iterator[str]:
-        """A line with the comments of its key; that behind a changed value may be wrong."""
-        key = ".".join(path)
-        above, behind = next(self._notes.get(key, iter(())), ([], ""))
-        yield from above
-        if self._meanings and "=" in text:
-            behind = _note(self._case, path)
-        yield f"{text}  {behind}".rstrip() if behind and key not in self._changed else text
-
-
-def _note(case: PartsBase, path: tuple[str, ...]) -> str:
-    """Meaning of a key of the file as a comment; empty where it is named by the user."""
-    option = _option_at(case, path)
-    return f"# {key_comment(option)}" if option is not None and option.meaning else ""
-
-
-def _is_rows(value: Any) -> bool:
-    listed = isinstance(value, list | tuple) and len(value) > 0
-    return listed and all(isinstance(item, Mapping) for item in value)
-
-
-def _key(name: str) -> str:
-    return name if name.replace("_", "").replace("-", "").isalnum() else json.dumps(name)
-
-
-def written_value(value: Any, option: Option | None) -> str:
-    """Text of a value; a number or a quantity from Python with the unit of its key."""
-    if isinstance(value, Plain) and isinstance(value.value, list | tuple | np.ndarray):
-        value = [Plain(item) for item in value.value]
-    if isinstance(value, list | tuple):
-        return f"[{', '.join(written_value(item, option) for item in value)}]"
-    if isinstance(value, Plain):
-        unit = option.unit if option else None
-        foreign = quantity_in(value.value) is not None
-        number = in_unit(value.value, unit) if foreign else without_units(value.value, unit)
-        is_number = isinstance(number, float | int | np.number) and not isinstance(number, bool)
-        if is_number and option is not None and option.kind in ("number", "numbers"):
-            return written_number(option, float(number))
-        value = number.item() if isinstance(number, np.generic) else number
-    if isinstance(value, bool):
-        return str(value).lower()
-    return json.dumps(value, ensure_ascii=False) if isinstance(value, str) else repr(value)

@@ -42,7 +42,7 @@ def identity(study: str, case: Case | MachineCase, over: Any, **options: Any) ->
         "study": study,
         "version": tribodyn.__version__,
         "options": options,
-        "case": hashlib.sha256(case.to_toml().encode()).hexdigest(),
+        "case": hashlib.sha256(case._text(comments=True).encode()).hexdigest(),
         "over": hashlib.sha256(text.encode()).hexdigest(),
     }
 
