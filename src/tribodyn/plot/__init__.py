@@ -55,6 +55,7 @@ from tribodyn.plot.machine.planetary import (
 )
 from tribodyn.plot.machine.power import machine_power
 from tribodyn.plot.machine.side_view import machine
+from tribodyn.plot.machine.space_view import machine_space
 from tribodyn.plot.mesh.face_maps import face_maps, rating_maps
 from tribodyn.plot.mesh.loaded_contact import loaded_contact, loaded_sharing
 from tribodyn.plot.mesh.studies import (
@@ -206,6 +207,7 @@ __all__ = [
     "machine_modes",
     "machine_orders",
     "machine_power",
+    "machine_space",
     "machine_sweep",
     "mesh_deformation",
     "mesh_force",

@@ -64,6 +64,7 @@ _OTHER_TOPICS = {
     "turning_motion": "Motion",
     "machine": "Machine",
     "machine_power": "Machine",
+    "machine_space": "Machine",
     "machine_orders": "Motion",
     "machine_forces": "Motion",
     "machine_modes": "Natural modes",
@@ -197,6 +198,7 @@ def _of_parts(result: MachineResult) -> Iterator[_Place]:
     """Figures of the whole, of each stage, of each mesh, and of the motion of all parts."""
     if result.case.lone_stage is None:  # a stage by itself has its front view
         yield _Place(plot.machine, result)
+    yield _Place(plot.machine_space, result)
     yield _Place(plot.machine_power, result)
     yield from _of_stages(result)
     yield from _of_meshes(result)

@@ -34,7 +34,7 @@ def machine_power(result: MachineResult) -> Sketch:
     links.append(("input", f"shaft {start}", power, MUTED))
     for place, name in enumerate(machine.meshes):
         color = COLORS[place % len(COLORS)]
-        for shaft, gain in _gains(machine, flow, name).items():
+        for shaft, gain in gains(machine, flow, name).items():
             if gain < 0.0:
                 links.append((f"shaft {shaft}", f"mesh {name}", -gain, color))
             elif gain > 0.0:
@@ -60,7 +60,7 @@ def machine_power(result: MachineResult) -> Sketch:
     return figure(title, [trace], {"height": 360, "hovermode": "closest"})
 
 
-def _gains(machine: Machine, flow: PowerFlow, name: str) -> dict[str, float]:
+def gains(machine: Machine, flow: PowerFlow, name: str) -> dict[str, float]:
     """Power that a mesh gives to its shafts and to its carrier; negative where it takes it."""
     mesh, (first, second) = machine.meshes[name], flow.meshes[name].torque
     shafts = [machine.gears[gear].shaft for gear in mesh.gears]

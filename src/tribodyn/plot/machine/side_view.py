@@ -33,7 +33,7 @@ _TEETH = (-0.66, -0.22, 0.22, 0.66)
 _UPRIGHT = 0.7
 #: Distance of names that are drawn as one [px], and that along the axis of names of shafts.
 _NEAR = (4.0, 70.0)
-_STEEL, _SEAT = "#c9d1d9", "#f3e3c3"
+STEEL_COLOR, SEAT_COLOR = "#c9d1d9", "#f3e3c3"
 
 
 class Axis(NamedTuple):
@@ -91,6 +91,21 @@ class SideView:
         return x, y
 
     @property
+    def thin(self) -> float:
+        """Diameter of a shaft without sections [m]."""
+        gears = self.machine.gears
+        return min((pitch_diameter(self.machine, gear) for gear in gears), default=0.02) * _THIN
+
+    def outline(self, name: str) -> tuple[list[float], list[float]]:
+        """Positions and radii of a shaft, of one without sections too [m]."""
+        shaft = self.machine.shafts[name]
+        if shaft.sections:
+            return shaft_outline(shaft)
+        left, right = self.reach[name]
+        middle, half = 0.5 * (left + right), max(0.5 * (right - left), 0.02)
+        return [middle - half, middle + half], [0.5 * self.thin] * 2
+
+    @property
     def height(self) -> float:
         """Distance of the lowest from the highest point of an axis [m]."""
         ends = [self.place(name, self.reach[name], 0.0)[1] for name in self.axes]
@@ -145,45 +160,54 @@ def _box(left: float, right: float, low: float, high: float) -> tuple[list[float
     return [left, right, right, left, left], [low, low, high, high, low]
 
 
+def shaft_text(machine: Machine, name: str) -> str:
+    """Name, speed and torque of a shaft."""
+    load = machine.kinematics.shafts[name]
+    text = f"shaft {name}: {rounded('speed', load.speed)}, {rounded('torque', load.torque)}"
+    return text if machine.shafts[name].sections else f"{text}, rigid"
+
+
 def _shafts(view: SideView) -> Iterator[Trace]:
-    machine = view.machine
-    thin = min((pitch_diameter(machine, gear) for gear in machine.gears), default=0.02) * _THIN
-    for name, shaft in machine.shafts.items():
-        load = machine.kinematics.shafts[name]
-        text = f"shaft {name}: {rounded('speed', load.speed)}, {rounded('torque', load.torque)}"
-        if shaft.sections:
-            x, radius = shaft_outline(shaft)
-            outline = [*x, *x[::-1], x[0]], [*radius, *(-r for r in radius[::-1]), radius[0]]
-        else:
-            left, right = view.reach[name]
-            middle, half = 0.5 * (left + right), max(0.5 * (right - left), 0.02)
-            outline = _box(middle - half, middle + half, -0.5 * thin, 0.5 * thin)
-            text += ", rigid"
-        yield _area(view.place(name, *outline), INK, _STEEL, text)
+    for name in view.machine.shafts:
+        x, radius = view.outline(name)
+        outline = [*x, *x[::-1], x[0]], [*radius, *(-r for r in radius[::-1]), radius[0]]
+        text = shaft_text(view.machine, name)
+        yield _area(view.place(name, *outline), INK, STEEL_COLOR, text)
+
+
+def gear_color(machine: Machine, name: str) -> str:
+    """Colour of a gear that drives, or of one that is driven."""
+    drives = any(load.driver == name for load in machine.kinematics.meshes.values())
+    return PINION if drives else WHEEL
+
+
+def gear_text(machine: Machine, name: str) -> str:
+    """Name, teeth, diameter and inclination of the teeth of a gear."""
+    diameter = rounded("reference_diameter", pitch_diameter(machine, name))
+    text = f"{name}: {machine.gears[name].teeth} teeth, diameter {diameter}"
+    angle = helix(machine, name)
+    hand = "right" if angle > 0.0 else "left"
+    return f"{text}, {rounded('helix_angle', abs(angle))} {hand}" if angle else text
 
 
 def _gears(view: SideView) -> Iterator[Trace]:
     machine = view.machine
     for name, gear in machine.gears.items():
         x, half = gear.node_position, 0.5 * gear.face_width
-        radius = 0.5 * pitch_diameter(machine, name)
-        drives = any(load.driver == name for load in machine.kinematics.meshes.values())
-        color = PINION if drives else WHEEL
-        text = f"{name}: {gear.teeth} teeth, diameter {rounded('reference_diameter', 2.0 * radius)}"
-        helix = _helix(machine, name)
-        if helix:
-            text += f", {rounded('helix_angle', abs(helix))} {'right' if helix > 0.0 else 'left'}"
-        outline = _cone(machine, name) or _box(x - half, x + half, -radius, radius)
-        yield _area(view.place(gear.shaft, *outline), color, FILLS[color], text)
+        radius, angle = 0.5 * pitch_diameter(machine, name), helix(machine, name)
+        color = gear_color(machine, name)
+        outline = cone(machine, name) or _box(x - half, x + half, -radius, radius)
+        place = view.place(gear.shaft, *outline)
+        yield _area(place, color, FILLS[color], gear_text(machine, name))
         # Teeth of a right-hand gear descend along x on the side of the viewer.
-        rise = -half * math.tan(helix)
-        for part in _TEETH if helix else ():
+        rise = -half * math.tan(angle)
+        for part in _TEETH if angle else ():
             y = part * radius
             ends = [x - half, x + half], [y - rise, y + rise]
             yield strokes(*view.place(gear.shaft, *ends), color, 0.8, showlegend=False)
 
 
-def _cone(machine: Machine, name: str) -> tuple[list[float], list[float]] | None:
+def cone(machine: Machine, name: str) -> tuple[list[float], list[float]] | None:
     """Pitch cone of a bevel gear; None of a cylindrical gear."""
     meshes = (mesh for mesh in machine.meshes.values() if name in mesh.gears)
     mesh = next(meshes, None)
@@ -205,7 +229,7 @@ def _cone(machine: Machine, name: str) -> tuple[list[float], list[float]] | None
     return [x[0], x[1], x[1], x[0], x[0]], corners
 
 
-def _helix(machine: Machine, name: str) -> float:
+def helix(machine: Machine, name: str) -> float:
     """Helix angle of a gear, negative of a left-hand one; zero of a spur gear."""
     mesh = next((each for each in machine.meshes.values() if name in each.gears), None)
     if mesh is None:
@@ -213,18 +237,30 @@ def _helix(machine: Machine, name: str) -> float:
     return mesh.helix_angle * (1.0 if gear_hand(name, machine.gears, mesh) == "right" else -1.0)
 
 
+def bearing_text(machine: Machine, name: str) -> str:
+    """Name and kind of a bearing."""
+    rolling = machine.bearings[name].rolling
+    kind = "linear support" if rolling is None else type(rolling).__name__
+    return f"bearing {name}: {kind}"
+
+
+def bearing_ring(machine: Machine, name: str) -> tuple[float, float, float, float]:
+    """Ends of a bearing along its shaft, and its inner and outer radius [m]."""
+    bearing = machine.bearings[name]
+    shaft, x, rolling = machine.shafts[bearing.shaft], bearing.position, bearing.rolling
+    width = getattr(rolling, "width", None) or _WIDTH
+    seat = 0.5 * (getattr(rolling, "bore_diameter", None) or _seat(shaft, x))
+    outer = 0.5 * (getattr(rolling, "outer_diameter", None) or 2.0 * _OUTER * seat)
+    return x - 0.5 * width, x + 0.5 * width, seat, outer
+
+
 def _bearings(view: SideView) -> Iterator[Trace]:
     machine = view.machine
     for name, bearing in machine.bearings.items():
-        shaft, x, rolling = machine.shafts[bearing.shaft], bearing.position, bearing.rolling
-        width = getattr(rolling, "width", None) or _WIDTH
-        seat = 0.5 * (getattr(rolling, "bore_diameter", None) or _seat(shaft, bearing.position))
-        outer = 0.5 * (getattr(rolling, "outer_diameter", None) or 2.0 * _OUTER * seat)
-        kind = "linear support" if rolling is None else type(rolling).__name__
-        left, right = x - 0.5 * width, x + 0.5 * width
+        left, right, seat, outer = bearing_ring(machine, name)
         for low, high in ((seat, outer), (-outer, -seat)):
             ring = view.place(bearing.shaft, *_box(left, right, low, high))
-            yield _area(ring, MUTED, _SEAT, f"bearing {name}: {kind}")
+            yield _area(ring, MUTED, SEAT_COLOR, bearing_text(machine, name))
             cross = [left, right, np.nan, left, right], [low, high, np.nan, high, low]
             yield strokes(*view.place(bearing.shaft, *cross), MUTED, 1.0, showlegend=False)
 
