@@ -16,7 +16,7 @@
 | `root_section`, `bending`, `root_strength` | root stress and its limit: ISO 6336-3 |
 | `root_elements` | root stress by finite elements beside it |
 | `surface` | scuffing, micropitting: ISO/TS 6336-20, -21, -22; stress below the surface |
-| `elements` | life of rolling bearings, fatigue of shafts: ISO 281, ISO/TS 16281, DIN 743 |
+| `elements` | life of rolling bearings, shafts, load cycles: ISO 281, ISO/TS 16281, DIN 743 |
 | `life` | Z_NT, Y_NT and cycles to failure |
 """
 
@@ -33,6 +33,7 @@ from tribodyn.rating.elements.bearing_life import (
     system_life,
 )
 from tribodyn.rating.elements.element_life import ball_bearing_life, roller_bearing_life
+from tribodyn.rating.elements.rainflow import LoadCycles, rainflow_cycles
 from tribodyn.rating.elements.shaft_fatigue import (
     ShaftMaterial,
     ShaftNotch,
@@ -49,7 +50,13 @@ from tribodyn.rating.oil import GearOil
 from tribodyn.rating.pair_rating import GearRating, PairRating, rate_pair
 from tribodyn.rating.rated_gear import PinionShaft, RatedGear, ShaperCutter
 from tribodyn.rating.root_elements import RootStress, root_stress_by_elements
-from tribodyn.rating.spectrum import GearDamage, SpectrumLoad, SpectrumRating, rate_spectrum
+from tribodyn.rating.spectrum import (
+    GearDamage,
+    SpectrumLoad,
+    SpectrumRating,
+    load_classes,
+    rate_spectrum,
+)
 from tribodyn.rating.surface.subsurface import (
     LineContactStress,
     SubsurfaceExposure,
@@ -68,6 +75,7 @@ __all__ = [
     "GearOil",
     "GearRating",
     "LineContactStress",
+    "LoadCycles",
     "PairRating",
     "PinionShaft",
     "RatedBearing",
@@ -93,6 +101,8 @@ __all__ = [
     "life_factor",
     "life_modification_factor",
     "line_contact_stress",
+    "load_classes",
+    "rainflow_cycles",
     "rate_pair",
     "rate_shaft",
     "rate_spectrum",

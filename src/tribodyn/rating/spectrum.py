@@ -13,6 +13,9 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
+import numpy as np
+from numpy.typing import ArrayLike
+
 from tribodyn.errors import Argument, InputError, require_between, require_positive
 from tribodyn.gear import CylindricalPair
 from tribodyn.rating.conditions import rating_conditions
@@ -61,6 +64,68 @@ class SpectrumLoad:
         require_positive("speed", self.speed, "rad/s")
         require_positive("duration", self.duration, "s")
         require_between("torque", self.torque, -1e9, 1e9, "N*m")
+
+
+def load_classes(
+    torque: ArrayLike, speed: ArrayLike, duration: float, classes: int = 16
+) -> tuple[SpectrumLoad, ...]:
+    """Load duration classes of a torque history: how long which torque acts.
+
+    Parameters
+    ----------
+    torque : array (n,) [N*m]
+        Of the pinion at evenly spaced times, measured or computed; negative where the other flanks
+        carry.
+    speed : float or array (n,) [rad/s]
+        Of the pinion.
+    duration : float [s]
+        Time that the history stands for.
+    classes : int
+        Equal classes from no load to the greatest torque, for each sign (pure number).
+
+    Returns
+    -------
+    tuple of SpectrumLoad
+        Each class with the greatest torque in it, its time and the speed that keeps its turns.
+
+    Raises
+    ------
+    InputError
+        If a value is out of range, or the lengths of both histories differ.
+
+    Notes
+    -----
+    A tooth is loaded once a turn and mesh at the torque of that moment, whatever came before: gears
+    take the time under each torque, not rainflow cycles. As load cases of a machine:
+    ``[{"torque": c.torque, "speed": c.speed, "share": c.duration / duration} for c in classes]``.
+    Source: ISO 6336-6.
+
+    Examples
+    --------
+    >>> [(c.torque, c.duration) for c in load_classes([0.0, 90.0, 100.0, -50.0], 150.0, 8.0, 4)]
+    [(0.0, 2.0), (100.0, 4.0), (-50.0, 2.0)]
+    """
+    torques = np.asarray(torque, dtype=float).ravel()
+    require_between("torque", torques, -1e9, 1e9, "N*m")
+    require_positive("speed", np.asarray(speed, dtype=float), "rad/s")
+    require_positive("duration", duration, "s")
+    require_between("classes", classes, 1, 10000)
+    speeds = np.asarray(speed, dtype=float).ravel()
+    if not torques.size or speeds.size not in (1, torques.size):
+        what = f"torque has {torques.size} values and speed {speeds.size}"
+        why, remedy = "Each torque acts at one speed", "Give one speed, or one for each torque"
+        raise InputError(what, Argument("torque"), why, remedy)
+    speeds = np.broadcast_to(speeds, torques.shape)
+    width = np.abs(torques).max() / classes or 1.0
+    numbers = np.sign(torques) * np.ceil(np.abs(torques) / width * (1.0 - 1e-12))
+    loads = []
+    for place, number in enumerate(sorted(set(numbers.tolist()), key=lambda n: (n < 0.0, abs(n)))):
+        inside = numbers == number
+        greatest = float(torques[inside][np.abs(torques[inside]).argmax()])
+        time = duration * float(inside.mean())
+        name = f"class {place + 1}"
+        loads.append(SpectrumLoad(greatest, float(speeds[inside].mean()), time, name))
+    return tuple(loads)
 
 
 @dataclass(frozen=True)
