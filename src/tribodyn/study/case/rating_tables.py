@@ -237,13 +237,10 @@ def _wear_problems(case: CaseData) -> Iterator[tuple[str, Problem]]:
     assert case.rating is not None
     if case.rating.wear_coefficient is None:
         return
-    what, remedy = "wear_coefficient has no effect here", ""
     if case.rating.required_life is None:
-        why, remedy = "Wear goes on for the required life", "Add required_life, or remove it"
-        yield "rating.wear_coefficient", Problem(what, "", why, remedy)
-    if getattr(case.gears, "helix_angle", 0.0):
-        why, remedy = "Wear is computed over the path of contact of spur teeth", "Remove it"
-        yield "rating.wear_coefficient", Problem(what, "", why, remedy)
+        what, why = "wear_coefficient has no effect here", "Wear goes on for the required life"
+        problem = Problem(what, "", why, "Add required_life, or remove it")
+        yield "rating.wear_coefficient", problem
 
 
 def has_viscosity_at_40(oil: LubricantData) -> bool:

@@ -9,6 +9,7 @@ import numpy as np
 from tribodyn.checks import require_whole
 from tribodyn.errors import InputError, collected, require_positive
 from tribodyn.gear.mesh_geometry import flank_ranges
+from tribodyn.mesh.face.lines import by_pair, slice_count
 from tribodyn.nomenclature import GEARS
 from tribodyn.progress import SILENT, Progress
 from tribodyn.record import Record, quantity, record
@@ -66,7 +67,7 @@ def wear(
     Parameters
     ----------
     case : Case
-        Of a spur pair with teeth whose deflection is computed.
+        Of a cylindrical pair with teeth whose deflection is computed.
     coefficient : float
         Wear coefficient: volume over load and sliding distance [m^2/N]; mild wear of steel in
         boundary lubrication has 1e-18 to 1e-16.
@@ -84,13 +85,15 @@ def wear(
     Raises
     ------
     InputError
-        If a value is out of range, or the gears are no spur pair.
+        If a value is out of range, or the gears are not cylindrical.
 
     Notes
     -----
     A point of flank i is passed once a turn by a contact with the line load f, which moves over it
-    with the surface speed u_i: it loses ``h = k f |u_1 - u_2| / u_i``. Source: Archard (1953), J.
-    Appl. Phys. 24, 981; Flodin and Andersson (1997), Wear 207, 16, for spur gears.
+    with the surface speed u_i: it loses ``h = k f |u_1 - u_2| / u_i``. Where the contact is solved
+    in slices of the face, as of helical pairs, the depth is their mean over the face: the profile
+    wears, the lead does not. Source: Archard (1953), J. Appl. Phys. 24, 981; Flodin and Andersson
+    (1997), Wear 207, 16, for spur, and (2000), Wear 241, 123, for helical gears.
 
     Examples
     --------
@@ -103,9 +106,10 @@ def wear(
     require_positive("coefficient", coefficient, "m^2/N")
     require_positive("turns", turns, "")
     require_whole("steps", steps, 1)
-    if case.gears.kind != "spur" or case.gear_pair.helix_angle:
-        why = "Wear is computed over the path of contact of spur teeth"
-        raise InputError("the gears are no spur pair", "gears.kind", why, "Give a spur pair")
+    if case.gears.kind != "spur":
+        why = "Wear is computed over the path of contact of involute teeth"
+        what = "the gears are not cylindrical"
+        raise InputError(what, "gears.kind", why, "Give a spur or helical pair")
     with collected():
         bare = case.replace({"film.model": "none", "friction.law": "none"})
     each, place = turns / steps, np.linspace(0.0, 1.0, _PLACES)
@@ -151,13 +155,16 @@ def _rates(case: Case, coefficient: float) -> list[Array]:
 
 
 def _rate(mesh: MeshTable, gear: str, coefficient: float) -> Array:
-    pair = mesh.gear_pair
+    pair, slices = mesh.gear_pair, slice_count(mesh)
     flank = flank_ranges(pair)[GEARS.index(gear)]
-    touching = mesh.in_contact
-    radius = getattr(mesh, f"{gear}_curvature_radius")[touching]
     speed = abs(mesh.pinion_speed) * (1.0 if gear == "pinion" else 1.0 / abs(pair.ratio))
-    sliding = np.abs(mesh.sliding_speed[touching])
-    lost = coefficient * mesh.load_per_width[touching] * sliding / (speed * radius)
-    order = np.argsort(radius)
-    share = (radius[order] - flank.lowest) / flank.length
-    return np.asarray(np.interp(np.linspace(0.0, 1.0, _PLACES), share, lost[order]))
+    radii = getattr(mesh, f"{gear}_curvature_radius")
+    columns = [radii, np.abs(mesh.sliding_speed), mesh.load_per_width, mesh.in_contact]
+    depth = np.zeros(_PLACES)
+    for each in zip(*(np.moveaxis(by_pair(c, slices), -1, 0) for c in columns), strict=True):
+        radius, sliding, load = (column[each[3]] for column in each[:3])
+        order = np.argsort(radius)
+        share = (radius[order] - flank.lowest) / flank.length
+        lost = coefficient * load * sliding / (speed * radius)
+        depth += np.interp(np.linspace(0.0, 1.0, _PLACES), share, lost[order]) / slices
+    return depth
