@@ -12,7 +12,7 @@ from tribodyn.errors import collected
 from tribodyn.gear import FlankModification
 from tribodyn.nomenclature import GEARS
 from tribodyn.rating.root_elements import root_stress_by_elements
-from tribodyn.rating.surface.micropitting import heated_film
+from tribodyn.rating.surface.micropitting import heated_film, local_film
 from tribodyn.rating.surface.subsurface import subsurface_exposure
 
 if TYPE_CHECKING:
@@ -81,19 +81,33 @@ POINTWISE = {
     "pitting_safety": "pitting_safety",
     "scuffing_safety": "scuffing_safety_flash",
     "micropitting_safety": "micropitting_safety",
+    "micropitting_safety_a": "micropitting_safety_method_a",
 }
 
 
 def rating_maps(rating: MeshRating) -> xarray.Dataset | None:
     """Criteria at every place of path and face; None without computed teeth."""
+    from xarray import Dataset
+
     mesh = rating.rated
     if mesh is None or (table := mesh.table) is None:
         return None
+    with collected() as warnings:
+        maps = _maps(rating, mesh, table)
+    units = {"pressure": "Pa", "contact_temperature": "K"}
+    named = {n: each.rename(n).assign_attrs(units=units.get(n, "1")) for n, each in maps.items()}
+    listed = list(dict.fromkeys(map(str, warnings)))
+    return Dataset(named, attrs={"warnings": listed} if listed else {})
+
+
+def _maps(rating: MeshRating, mesh: RatedMesh, table: MeshTable) -> dict[str, xarray.DataArray]:
     factors, oil = rating.computed.factors, mesh.common["oil"]
     outer = factors["K_A"] * factors["K_gamma"] * factors["K_v"]
     maps = {"pressure": table.over_face("hertz_pressure") * outer**0.5}
     limit = min(gear.factors["sigma_HG"] for gear in rating.computed.gears.values())
     maps["pitting_safety"] = limit / maps["pressure"].where(maps["pressure"] > 0.0)
+    roughness = sum(mesh.common[role].roughness_ra for role in GEARS) / len(GEARS)
+    maps["specific_film_a"] = _film_of_method_a(rating, maps["pressure"]) / roughness
     if table.flash_temperature is not None and table.friction_coefficient.any():
         flash = table.over_face("flash_temperature") * outer**0.75
         mates = 0.5 * (1.0 + max(mesh.meshes_per_turn))
@@ -105,11 +119,26 @@ def rating_maps(rating: MeshRating) -> xarray.Dataset | None:
             maps["scuffing_safety"] = margin / (maps["contact_temperature"] - oil.temperature)
         film = _film_between_heated_flanks(mesh, flash, factors["theta_MGF"])
         if film is not None:
-            roughness = sum(mesh.common[role].roughness_ra for role in GEARS) / len(GEARS)
             maps["specific_film"] = film * outer**-0.13 / roughness
-            if "lambda_GFP" in factors:
-                maps["micropitting_safety"] = maps["specific_film"] / factors["lambda_GFP"]
-    return _dataset(maps)
+    if "lambda_GFP" in factors:
+        for end in ("", "_a"):
+            if (film := maps.get(f"specific_film{end}")) is not None:
+                maps[f"micropitting_safety{end}"] = film / factors["lambda_GFP"]
+    return maps
+
+
+def _film_of_method_a(rating: MeshRating, pressure: xarray.DataArray) -> xarray.DataArray:
+    """Film of ISO/TS 6336-22 where the flanks press, of the computed pressure: method A."""
+    mesh, factors = rating.rated, rating.computed.factors
+    assert mesh is not None
+    assert mesh.table is not None
+    modulus = effective_modulus(*(mesh.common[role].material for role in GEARS))
+    names = ("equivalent_radius", "entrainment_speed", "sliding_speed")
+    radius, *speeds = (mesh.table.over_face(name).values for name in names)
+    constants = modulus, factors["mu_mGF"], factors["theta_MGF"]
+    oil = mesh.common["oil"]
+    _, film = local_film(oil, constants, pressure.values, radius, (speeds[0], speeds[1]))
+    return pressure.copy(data=film).where(pressure > 0.0)
 
 
 def _film_between_heated_flanks(
@@ -127,14 +156,6 @@ def _film_between_heated_flanks(
     oil, stated = mesh.common["oil"], mesh.case.lubricant
     temperature = oil.temperature if stated is None else stated.gear_temperature or oil.temperature
     return film * heated_film(oil, temperature, bulk + flash.values, bulk)
-
-
-def _dataset(maps: dict[str, xarray.DataArray]) -> xarray.Dataset:
-    from xarray import Dataset
-
-    units = {"pressure": "Pa", "contact_temperature": "K"}
-    named = {n: each.rename(n).assign_attrs(units=units.get(n, "1")) for n, each in maps.items()}
-    return Dataset(named)
 
 
 def least_safeties(maps: xarray.Dataset | None) -> dict[str, dict[str, float]]:

@@ -118,7 +118,8 @@ class MeshRating:
     def wear_depth(self) -> dict[str, float]:
         """Greatest depth of wear by ``rating.wear_coefficient`` after the required life [m].
 
-        By role, in steps with the load distribution of the worn flanks; of spur pairs.
+        By role, in steps with the load distribution of the worn flanks; of helical pairs the mean
+        over the face.
         """
         from tribodyn.study.computed_rating import wear_depths
 
@@ -152,9 +153,11 @@ class MeshRating:
             ("micropitting", "micropitting_safety", needed.micropitting_safety, "lambda_min"),
         ):
             if (safety := getattr(self.standard, key)) is not None:
-                other = self.pointwise.get(key, {}).get("safety", getattr(self.computed, key))
+                points = (self.pointwise.get(name) for name in (key, f"{key}_method_a"))
+                point = next(filter(None, points), {"safety": getattr(self.computed, key)})
                 where = self.standard.factors[factor].branch if factor else "mean of the path"
-                yield Verdict(mode, self.mesh, self.load, safety, required, other, where)
+                values = safety, required, point["safety"], where
+                yield Verdict(mode, self.mesh, self.load, *values)
 
     def to_dict(self) -> dict[str, Any]:
         """Ratings of the mesh, as JSON has them.

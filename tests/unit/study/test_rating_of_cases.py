@@ -161,6 +161,7 @@ def test_criteria_point_by_point_are_those_of_the_standard_with_the_same_loads(r
     table, factors, maps = rubbed.mesh, mesh.computed.factors, mesh.maps
     assert set(mesh.pointwise) == {
         "pitting_safety", "scuffing_safety_flash", "micropitting_safety",
+        "micropitting_safety_method_a",
     }  # fmt: skip
     outer = factors["K_A"] * factors["K_gamma"] * factors["K_v"]
     limit = min(gear.factors["sigma_HG"] for gear in mesh.computed.gears.values())
@@ -179,6 +180,11 @@ def test_criteria_point_by_point_are_those_of_the_standard_with_the_same_loads(r
     assert mesh.pointwise["micropitting_safety"]["safety"] == pytest.approx(
         even.micropitting_safety, rel=0.06
     )
+    # method A has the pressure of the computed load: at C that of the whole load, as method B
+    film = maps["specific_film_a"].interp(path=pair.line_of_action_length / (1 + pair.ratio))
+    assert float(film[0]) == pytest.approx(even.factors["lambda_C"], rel=0.03)  # a kink at C
+    ratio = maps["specific_film_a"] / maps["micropitting_safety_a"]
+    assert float(ratio.max()) == pytest.approx(factors["lambda_GFP"], rel=1e-9)
     at_c = maps["contact_temperature"].interp(path=pair.line_of_action_length / (1 + pair.ratio))
     bulk = float(maps["contact_temperature"].min())
     assert float(at_c[0]) == pytest.approx(bulk, abs=1.0)  # nothing slides there
@@ -193,14 +199,18 @@ def test_criteria_point_by_point_are_those_of_the_standard_with_the_same_loads(r
 
 def test_what_a_run_does_not_compute_has_no_map(result):
     (mesh,) = result.rating.ratings
-    assert set(mesh.maps) == {"pressure", "pitting_safety"}
-    assert mesh.pointwise.keys() == {"pitting_safety"}
+    of_method_a = {"specific_film_a", "micropitting_safety_a"}
+    assert set(mesh.maps) == {"pressure", "pitting_safety", *of_method_a}
+    assert mesh.pointwise.keys() == {"pitting_safety", "micropitting_safety_method_a"}
+    by_mode = {verdict.mode: verdict.computed for verdict in mesh.verdicts()}
+    least = mesh.pointwise["micropitting_safety_method_a"]["safety"]
+    assert by_mode["micropitting"] == least
 
 
 def test_maps_of_a_rating_are_drawn(rubbed):
     (mesh,) = rubbed.rating.ratings
     drawn = td.plot.rating_maps(mesh)
-    assert len(drawn.data) == 6
+    assert len(drawn.data) == 8
     assert f"{mesh.pointwise['pitting_safety']['safety']:.3g}" in drawn.layout.title.text
 
 
@@ -224,11 +234,13 @@ def test_hardness_and_residual_stress_below_the_flank_give_its_exposure():
     assert mesh.to_dict()["exposure"] == mesh.exposure
 
 
-def test_wear_of_the_required_life_is_that_of_its_turns():
+@pytest.mark.parametrize("helix", [{}, {"helix_angle": "10 deg", "center_distance": 93.5e-3}])
+def test_wear_of_the_required_life_is_that_of_its_turns(helix):
     from tribodyn.study import wear
 
     rating = {**PAIR["rating"], "wear_coefficient": 1e-20, "required_life": "10 h"}
-    case = Case(**changed(PAIR, rating=rating, stiffness={"model": "analytic"}))
+    tables = {"gears": {**PAIR["gears"], **helix}, "stiffness": {"model": "analytic"}}
+    case = Case(**changed(PAIR, rating=rating, **tables))
     (mesh,) = td.run(case).rating.ratings
     worn = wear(case, 1e-20, 1500.0 / 60.0 * 36000.0)
     assert mesh.wear_depth["pinion"] == pytest.approx(worn.depth_pinion[-1].max(), rel=1e-9)
@@ -289,13 +301,6 @@ def test_report_and_page_have_verdict_and_factors(result):
         ({"materials": {"steel": {**PROFILES, "residual_stress_profile": [0.0]}}}, "1 values and"),
         ({"materials": {"steel": {**PROFILES, "profile_depth": [0.0, 2e-3, 1e-3, 3e-3]}}}, "rise"),
         ({"rating": {"wear_coefficient": 1e-18}}, "required life"),
-        (
-            {
-                "gears": {**PAIR["gears"], "helix_angle": "10 deg", "center_distance": 93.5e-3},
-                "rating": {"wear_coefficient": 1e-18, "required_life": "1 h"},
-            },
-            "spur teeth",
-        ),
         ({"rating": {"required_lief": "1 h"}}, "required_life"),
     ],
 )

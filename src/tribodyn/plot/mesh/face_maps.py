@@ -126,12 +126,14 @@ _RATED = {
     "scuffing_safety": ("Scuffing safety", "film_ratio"),
     "specific_film": ("Film over Ra", "film_ratio"),
     "micropitting_safety": ("Micropitting safety", "film_ratio"),
+    "specific_film_a": ("Film over Ra, method A", "film_ratio"),
+    "micropitting_safety_a": ("Micropitting safety, method A", "film_ratio"),
 }
 
 
 def _least_in_words(rating: MeshRating) -> str:
-    least = {key.split("_")[0]: each["safety"] for key, each in rating.pointwise.items()}
-    return ", ".join(f"{mode} {value:.3g}" for mode, value in least.items())
+    modes = {key: key.replace("_safety", "").replace("_", " ") for key in rating.pointwise}
+    return ", ".join(f"{mode} {rating.pointwise[key]['safety']:.3g}" for key, mode in modes.items())
 
 
 @drawing(

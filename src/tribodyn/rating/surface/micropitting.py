@@ -1,4 +1,4 @@
-"""Micropitting by the specific film thickness: ISO/TS 6336-22, method B.
+"""Micropitting by the specific film thickness: ISO/TS 6336-22, method B; the film of method A too.
 
 At A, AB, B, C, D, DE and E, ``S_lambda = lambda_min/lambda_GFP``, ``lambda = h/Ra``,
 ``h = 1600 rho_n G_M^0.6 U^0.7 W^-0.13 S_GF^0.22`` in um and mm with ``G_M = 1e6 alpha_M E_r``,
@@ -130,15 +130,30 @@ def film_points(load: ScuffingLoad, position: Array) -> FilmPoints:
     angles = math.cos(pair.transverse_pressure_angle) * math.cos(pair.base_helix_angle)
     share = load.points.share(position, load.grade)
     pressure = np.sqrt(modulus / (2.0 * np.pi) * share * load.line_load / (radius * angles))
-    carried = np.sqrt(np.abs(motion.pinion_surface_speed))
-    carried = THERMAL_COEFFICIENT * (carried + np.sqrt(np.abs(motion.wheel_surface_speed)))
-    flash = 0.5 * math.sqrt(math.pi) * friction * pressure * np.abs(motion.sliding_speed) / carried
+    speeds = motion.entrainment_speed, motion.sliding_speed
+    flash, film = local_film(oil, (modulus, friction, bulk), pressure, radius, speeds)
+    return FilmPoints(position, pressure, flash, film, film / load.roughness)
+
+
+def local_film(
+    oil: GearOil,
+    mesh: tuple[float, float, float],
+    pressure: Array,
+    radius: Array,
+    speeds: tuple[Array, Array],
+) -> tuple[Array, Array]:
+    """Flash temperature [K] and film [m] where flanks have a pressure [Pa]."""
+    modulus, friction, bulk = mesh  # E_r [Pa], mean friction, temperature [K]
+    entrainment, sliding_speed = speeds
+    surfaces = np.abs(entrainment + 0.5 * sliding_speed), np.abs(entrainment - 0.5 * sliding_speed)
+    carried = THERMAL_COEFFICIENT * (np.sqrt(surfaces[0]) + np.sqrt(surfaces[1]))
+    flash = 0.5 * math.sqrt(math.pi) * friction * pressure * np.abs(sliding_speed) / carried
     flash *= np.sqrt(8.0 * radius * pressure / modulus)
     sliding, eta_m, alpha_m = sliding_parameter(oil, bulk + flash, bulk)
-    speed = eta_m * motion.entrainment_speed / (modulus * radius)
-    loaded = 2.0 * np.pi * pressure**2 / modulus**2
+    speed = eta_m * entrainment / (modulus * radius)
+    loaded = np.maximum(2.0 * np.pi * pressure**2 / modulus**2, 1e-300)
     film = 1.6 * radius * (alpha_m * modulus) ** 0.6 * speed**0.7 * loaded**-0.13 * sliding**0.22
-    return FilmPoints(position, pressure, flash, film, film / load.roughness)
+    return flash, film
 
 
 def material_factor(load: ScuffingLoad) -> float:
