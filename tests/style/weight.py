@@ -66,6 +66,7 @@ __all__ = ["ANY", "FILES", "LINES", "import_circles", "lines_of_code", "measures
 #: rating, study: shafts against yield, oils of one viscosity
 #: record: results are built from what their parts state
 #: study: files of pairs keep their comments too
+#: rating, study: load histories, wear of helical flanks, micropitting by method A
 LINES: dict[str, int] = {
     "__init__": 105,
     "__main__": 3,
@@ -101,15 +102,15 @@ LINES: dict[str, int] = {
     "nomenclature": 215,
     "notebook": 57,
     "nonlinear": 2485,
-    "plot": 8686,
+    "plot": 8934,
     "progress": 72,
-    "rating": 2828,
+    "rating": 2916,
     "record": 212,
-    "report": 1824,
+    "report": 1826,
     "scope": 55,
     "signals": 1788,
     "stiffness": 5149,
-    "study": 18852,
+    "study": 18874,
     "surrogate": 777,
     "types": 7,
     "uncertainty": 290,
@@ -118,7 +119,7 @@ LINES: dict[str, int] = {
     "variants": 1048,
 }
 #: Modules of the package, and its annotations without a type.
-FILES, ANY = 734, 2582
+FILES, ANY = 736, 2583
 
 _NO_CODE = {
     tokenize.COMMENT, tokenize.NL, tokenize.NEWLINE, tokenize.INDENT, tokenize.DEDENT,
