@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from itertools import pairwise
 from math import pi
 
 import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
+from tests.known_systems import plain_slope
 
 from tribodyn.dynamics import (
     Contact,
@@ -158,7 +160,7 @@ def two_meshes(cycles, *, gap=0.0, jumps=False, friction=False, amplitude=0.2):
     [
         ({}, 1e-7),
         ({"friction": True, "amplitude": 0.02}, 1e-6),
-        ({"jumps": True, "amplitude": 0.02}, 5e-4),
+        ({"jumps": True, "amplitude": 0.02}, 1e-4),
     ],
 )
 def test_two_phases_give_the_motion_of_a_common_period(options, accuracy):
@@ -201,6 +203,42 @@ def test_flanks_that_separate_are_solved_with_second_order():
         errors.append(np.sqrt(np.mean((at.position - clock.position) ** 2)))
     assert errors[2] < 1e-3 * np.abs(clock.position).max()
     assert errors[0] / errors[2] > 8.0  # two halvings; 16 for an even second order
+
+
+@pytest.mark.parametrize(
+    "options", [{"jumps": True, "amplitude": 0.02}, {"gap": 0.1, "amplitude": 0.12}]
+)
+def test_forces_that_break_are_in_balance_on_average(options):
+    system = two_meshes(((1, 0), (0, 1)), **options)
+    motion = harmonic_balance(system, (0.25, 0.11 * np.sqrt(2)), steps=(24, 12))
+    rows = np.array([contact.direction for contact in system.contacts])
+    position, force = (
+        motion.lines(name).amplitude[0].real for name in ("position", "contact_force")
+    )
+    balance = system.force - system.stiffness @ position - force @ rows
+    assert np.abs(balance).max() < 1e-9
+
+
+def test_a_mesh_that_jumps_needs_points_over_its_own_phase_alone():
+    """A march that ends its steps at the jumps stays on the motion, with second order."""
+    system, frequencies = two_meshes(((1, 0), (0, 1)), jumps=True, amplitude=0.02), (0.25, 0.11)
+    jumps = np.add.outer(np.arange(4), [0.2, 0.65]) - 0.15
+    times = np.unique(np.concatenate(([0.0, 12.0], jumps.ravel() / frequencies[0])))
+    times, slope = times[times <= 12.0], plain_slope(system, np.array(frequencies))
+    errors = []
+    for points in (24, 96, 192):
+        motion = harmonic_balance(system, frequencies, steps=(points, 24))
+        at = motion.at(times)
+        states = [np.concatenate((at.position[0], at.velocity[0]))]
+        for begin, end in pairwise(times):
+            ends, last = (begin + 1e-12, end - 1e-12), states[-1]
+            marched = solve_ivp(slope, ends, last, "DOP853", rtol=1e-9, atol=1e-12)
+            states.append(marched.y[:, -1])
+        error = np.abs(np.array(states)[:, :3] - at.position).max()
+        errors.append(error / np.abs(at.deflection).max())
+        assert errors[-1] / 3.0 < motion.step_error < 4.0 * errors[-1]
+    assert errors[-1] < 2e-5
+    assert errors[0] / errors[-1] > 10.0  # 64 for an even second order
 
 
 def test_eccentric_gears_turn_with_their_shafts():

@@ -293,7 +293,7 @@ def _start(
 ) -> Array:
     """Motion at the contacts (steps, r) from which the search starts."""
     contacts, size = residual.contacts, prepared.system.size
-    into = prepared.structure.coordinates.lower @ contacts.along
+    into = prepared.structure.coordinates.lower @ residual.structure.along
     if isinstance(start, Response):
         at = np.arange(contacts.steps) / contacts.steps
         columns = (start.position @ into).T

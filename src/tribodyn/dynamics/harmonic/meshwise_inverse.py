@@ -31,14 +31,14 @@ class MeshwiseInverse:
 
     def __init__(self, residual: OnGrid, state: State) -> None:
         self.shape = residual.grid.shape
-        structure, breaks = residual.structure, state.breaks
+        structure, cell = residual.structure, state.cell
         stiffness: Any = structure.contact_stiffness - state.law.stiffness
         damping: Any = structure.contact_damping - state.law.damping
-        if breaks.step.size:
-            spread = breaks.spread(residual.grid.size)
-            weights = np.asarray(spread.sum(axis=0)).reshape(-1, 1)
-            tangent = breaks.tangent.reshape(len(breaks.tangent), -1)
-            stiffness = stiffness + (spread @ (weights * tangent)).reshape(-1, *stiffness.shape[1:])
+        if cell is not None:
+            stiffness, damping = (
+                cell.pieces.gather(part.reshape(len(part), -1)).reshape(-1, *part.shape[1:])
+                for part in (cell.stiffness, cell.damping)
+            )
         wide = (residual.grid.size, *stiffness.shape[1:])
         parts = [
             np.broadcast_to(part, wide).reshape(*self.shape, *wide[1:])

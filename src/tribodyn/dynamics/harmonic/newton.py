@@ -8,13 +8,16 @@ time integration of the linearized equations preconditions them, so that a few p
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import Any, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
 from tribodyn.dynamics.modal.closed_structure import ClosedStructure
 from tribodyn.dynamics.modal.contact_equations import Breaks, ContactEquations, Law
 from tribodyn.types import Array, Mask
+
+if TYPE_CHECKING:
+    from tribodyn.dynamics.harmonic.phase_contacts import Cell
 
 #: Newton steps, halvings of a step, and steps over which the residual may rise.
 _LIMIT, _HALVINGS, _MEMORY = 40, 4, 3
@@ -29,10 +32,11 @@ class State(NamedTuple):
 
     y: Array  #: (steps, r)
     rate: Array
-    law: Law
+    law: Law  #: at the samples, or at the points of the cell
     breaks: Breaks
     force: Array  #: components of the force on the closed structure (steps, s)
     residual: Array  #: (steps, r)
+    cell: Cell | None = None  #: where forces are integrated between their breaks
     parts: tuple[State, ...] = ()  #: of contacts on grids of their own
 
     @property
@@ -119,16 +123,23 @@ class Residual:
 
 def force_change(closed: Any, state: State) -> Callable[[Array, Callable[[Array], Array]], Array]:
     """Change of the force on the closed structure with a motion, and a function for its rate."""
-    stiffness = closed.contact_stiffness - state.law.stiffness
-    damping = closed.contact_damping - state.law.damping
+    cell = state.cell
+    if cell is None:
+        stiffness = closed.contact_stiffness - state.law.stiffness
+        damping = closed.contact_damping - state.law.damping
+    else:
+        stiffness, damping = cell.stiffness, cell.damping
     breaks, damped = state.breaks, bool(np.any(damping))
     spread: Any = breaks.spread(len(state.y)) if breaks.step.size else None
     gather: Any = None if spread is None else spread.T.tocsr()
 
     def change(motion: Array, rate: Callable[[Array], Array]) -> Array:
-        force = (stiffness @ motion[..., None])[..., 0]
+        sample = np.asarray if cell is None else cell.pieces.sample
+        force = (stiffness @ sample(motion)[..., None])[..., 0]
         if damped:
-            force += (damping @ rate(motion)[..., None])[..., 0]
+            force += (damping @ sample(rate(motion))[..., None])[..., 0]
+        if cell is not None:
+            force = cell.pieces.gather(force)
         if spread is not None:
             force += spread @ np.einsum("bsr,br->bs", breaks.tangent, gather @ motion)
         return np.asarray(force)

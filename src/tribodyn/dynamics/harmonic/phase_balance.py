@@ -37,10 +37,11 @@ from tribodyn.types import Array, Index, Mask
 _MESH, _SHAFT, _LAST = 24, 8, 96
 #: Points of the first grids over phases that a part does not follow, by the number of phases.
 _OTHERS = 12, 12, 12, 8, 4
-#: Change of the motion with twice the points at which an automatic choice stops: the first while it
-#: falls to less than this part from grid to grid, the second where forces that bend or jump make it
-#: fall slowly; and the most unknowns of both.
-_ACCURATE, _FALLING, _ENOUGH, _MANY, _MOST = 2e-7, 0.1, 2e-3, 2**17, 3 * 2**14
+#: Most unknowns of any grids of an automatic choice, and of those where forces bend or jump.
+_MANY, _MOST = 2**17, 3 * 2**14
+#: Changes of the motion with twice the points at which it stops, each with the most unknowns for
+#: it: while they fall to less than a part from grid to grid, and where forces bend or jump.
+_SMOOTH, _FALLING, _BROKEN = ((2e-7, _MANY),), 0.1, ((1e-5, 2**13), (2e-3, _MOST))
 #: Step error that causes a warning; part of the largest change with which a phase is refined too.
 _LIMIT, _WORST = 1e-2, 0.2
 #: Damping added at first where Newton's method does not converge, over the critical damping at
@@ -102,7 +103,8 @@ class _Search:
         orbit_coordinates(means, float(frequency.max()))  # warns of forces that do not balance
         start = static_start(means)[: system.size]
         structure, _ = close_contacts(means, rows.sampled_forces(), start)
-        return cls(rows, structure, parts_of(system, frequency, structure, start), start)
+        parts = parts_of(system, frequency, structure, start)
+        return cls(rows, parts[0].structure, parts, start)
 
     def residual(self, points: Points, prior: PhaseResidual | None = None) -> PhaseResidual:
         """Residual on grids with so many points over each phase."""
@@ -159,12 +161,16 @@ class _Search:
         phases = range(self.rows.frequency.size)
         return np.array([[axis in part.axes for axis in phases] for part in self.parts])
 
-    def affordable(self, points: Points, poor: Mask, errors: Array, most: int) -> Mask:
-        """Those of the poor grids with the largest errors whose points stay below a number."""
-        chosen = np.zeros_like(poor)
-        for place in np.argsort(-errors, axis=None)[: np.count_nonzero(poor)]:
-            chosen.flat[place] = True
-            chosen.flat[place] = self.size(doubled(points, chosen)) <= most
+    def poor(self, points: Points, errors: Array, smooth: bool) -> Mask:
+        """Grids whose points are doubled: those with the largest errors; none if they are small."""
+        chosen = np.zeros(errors.shape, dtype=bool)
+        for limit, most in _SMOOTH if smooth else _BROKEN:
+            large = errors > (limit / errors.size if smooth else _WORST * errors.max())
+            if errors.sum() <= limit or chosen.any():
+                break
+            for place in np.argsort(-errors, axis=None)[: np.count_nonzero(large)]:
+                chosen.flat[place] = True
+                chosen.flat[place] = self.size(doubled(points, chosen)) <= most
         return chosen
 
     def size(self, points: Points) -> int:
@@ -186,13 +192,13 @@ class _Search:
 
     def changes(self, points: Points, residual: PhaseResidual, state: State) -> Array:
         """Change of a motion with twice the points of each part over each phase."""
-        errors = residual.unfelt(state)
+        errors = np.zeros(np.shape(points))
         for place in np.argwhere(np.ones(errors.shape, dtype=bool)):
             which = np.zeros(errors.shape, dtype=bool)
             which[*place] = True
             finer = self.residual(doubled(points, which), residual)
-            change = float(np.abs(finer.change(residual, state, place[0])).max()) / state.size
-            errors[*place] = max(errors[*place], change)
+            change = np.abs(finer.change(residual, state, place[0])).max()
+            errors[*place] = float(change) / state.size
         return errors
 
 
@@ -209,18 +215,14 @@ def phase_balance(
     points = _first_points(search) if steps is None else _read_steps(steps, search)
     points, residual, solution = search.first(points, start, tolerance, steps is None)
     step_error = float("nan")
-    smooth = not any(part.breaks.step.size for part in solution.state.parts)
+    smooth = all(part.cell is None for part in solution.state.parts)
     poor, before = np.zeros(np.shape(points), dtype=bool), np.zeros(np.shape(points))
     while solution.error <= tolerance:
         errors = search.changes(points, residual, solution.state)
         smooth &= bool(errors[poor].sum() <= _FALLING * before[poor].sum())
         step_error = float(errors.sum())
-        limit, most = (_ACCURATE, _MANY) if smooth else (_ENOUGH, _MOST)
-        poor = errors > (limit / errors.size if smooth else _WORST * errors.max())
-        if steps is not None or step_error <= limit:
-            break
-        poor, before = search.affordable(points, poor, errors, most), errors
-        if not poor.any():
+        poor, before = search.poor(points, errors, smooth), errors
+        if steps is not None or not poor.any():
             break
         more = doubled(points, poor)
         finer = search.residual(more, residual)
@@ -322,12 +324,12 @@ def _not_converged(
     """Message that names the contact with the largest residual."""
     worst: tuple[float, str] = (-1.0, "")
     for part, state in zip(residual.parts, solution.state.parts, strict=True):
-        along = np.broadcast_to(
-            part.contacts.rows.along, (len(state.y), *part.contacts.rows.along.shape[1:])
-        )
+        along = part.contacts.rows.along
+        along = np.broadcast_to(along, (len(state.y), *along.shape[1:]))
         distance = np.abs(np.einsum("pjr,pr->pj", along, state.residual)).max(axis=0)
         number = int(np.argmax(distance))
-        rows, share = part.structure.rows, np.mean(state.law.side[:, number] == 0.0)
+        rows, weight = part.structure.rows, 1.0 if state.cell is None else state.cell.pieces.weight
+        share = np.average(state.law.side[:, number] == 0.0, weights=weight)
         mesh = next(mesh for mesh in rows.meshes if number in mesh.contacts)
         rate = abs(rows.rate(mesh.cycles)) * mesh.period
         text = (

@@ -25,10 +25,11 @@ from tribodyn.dynamics.harmonic.newton import (
     force_change,
     solve_linear,
 )
-from tribodyn.dynamics.harmonic.phase_grid import PhaseContacts, PhaseGrid
+from tribodyn.dynamics.harmonic.phase_contacts import Cell, PhaseContacts, axis_of
+from tribodyn.dynamics.harmonic.phase_grid import PhaseGrid
 from tribodyn.dynamics.harmonic.phase_rows import PhaseRows
 from tribodyn.dynamics.modal.closed_structure import ClosedStructure
-from tribodyn.dynamics.modal.contact_equations import close_contacts
+from tribodyn.dynamics.modal.contact_equations import NO_BREAKS, close_contacts
 from tribodyn.types import Array, ComplexArray, Index, Mask
 
 #: Bytes of the vectors of a linear solution, and the fewest of them.
@@ -46,6 +47,7 @@ class Part:
     rows: PhaseRows
     members: Index  #: numbers of the contacts in the system
     axes: frozenset[int]  #: phases that they follow
+    axis: int  #: that of their meshes
     structure: ClosedStructure
     along: Array  #: basis of compressions in coordinates of unit mass (n, r)
     push: Array  #: basis of forces (n, s)
@@ -66,14 +68,14 @@ class Part:
 def parts_of(
     system: System, frequency: Array, structure: ClosedStructure, start: Array
 ) -> list[Part]:
-    """Divide a system into the contacts that follow the same phases."""
-    groups: dict[frozenset[int], list[int]] = {}
+    """Divide a system into the contacts that follow the same phases, and close them all."""
+    groups: dict[tuple[frozenset[int], int], list[int]] = {}
     for number, contact in enumerate(system.contacts):
         cycles = [contact.cycles, *(term.cycles for term in contact.turning)]
         axes = frozenset(np.flatnonzero(np.any(np.array(cycles) != 0, axis=0)).tolist())
-        groups.setdefault(axes, []).append(number)
+        groups.setdefault((axes, axis_of(np.array(contact.cycles))), []).append(number)
     parts = []
-    for axes, numbers in groups.items():
+    for key, numbers in groups.items():
         place = {number: at for at, number in enumerate(numbers)}
         frictions = [
             replace(each, contacts=tuple(place[j] for j in each.contacts))
@@ -89,8 +91,14 @@ def parts_of(
         none = np.zeros((0, system.size))
         law, closed = close_contacts(rows.means, none, start, structure.coordinates)
         means = law.along, law.push, law.contact_stiffness, law.contact_damping
-        parts.append(Part(rows, np.array(numbers), axes, structure, *means, closed))
-    return parts
+        parts.append(Part(rows, np.array(numbers), *key, structure, *means, closed))
+    push, along = structure.push, structure.along
+    stiffness, damping = (
+        sum(push.T @ part.push @ getattr(part, name) @ part.along.T @ along for part in parts)
+        for name in ("contact_stiffness", "contact_damping")
+    )
+    joined = ClosedStructure(system, structure.coordinates, push, along, stiffness, damping)
+    return [replace(part, structure=joined) for part in parts]
 
 
 class OnGrid(NamedTuple):
@@ -106,7 +114,7 @@ class OnGrid(NamedTuple):
     @classmethod
     def of(cls, part: Part, grid: PhaseGrid, force: Callable[[Array], Array]) -> OnGrid:
         """Sample a part under external forces, a function of the points."""
-        contacts = PhaseContacts.of(part.rows, part, grid)
+        contacts = PhaseContacts.of(part.rows, part, grid, part.axis)
         structure, numbers = part.structure, grid.numbers
         structure.refuse_resonance(grid.omega, lambda k: f"the line {numbers[k]} of the phases")
         receptances = part.receptances(grid.omega)
@@ -127,13 +135,18 @@ class OnGrid(NamedTuple):
 
     def at(self, y: Array, excess: Array, closed: bool) -> State:
         """Forces of a motion (p, r), without its residual."""
-        motion = 1.0, y, self.rate(y), excess, self.structure.closed if closed else None
-        law = self.contacts.law(self.contacts.rows, *motion)
-        breaks = self.contacts.breaks(law, *motion)
-        force = law.force + y @ self.structure.contact_stiffness.T
-        force += motion[2] @ self.structure.contact_damping.T
-        breaks.scatter(force, breaks.correction)
-        return State(y, motion[2], law, breaks, force, y)
+        rate, springs = self.rate(y), self.structure.closed if closed else None
+        means = self.structure.contact_stiffness, self.structure.contact_damping
+        law, cell = self.contacts.at(y, rate, excess, springs, means)
+        force = y @ means[0].T + rate @ means[1].T + self.integral(law.force, cell)
+        return State(y, rate, law, NO_BREAKS, force, y, cell)
+
+    @staticmethod
+    def integral(values: Array, cell: Cell | None) -> Array:
+        """Values at the points of the grid from those of a law."""
+        if cell is None:
+            return values
+        return cell.pieces.gather(cell.pieces.weight[:, None] * values)
 
 
 class _Link(NamedTuple):
@@ -207,19 +220,25 @@ class PhaseResidual(Residual):
             for part, other, piece in zip(self.parts, finer.parts, self.split(y), strict=True)
         ])  # fmt: skip
 
-    def responses(self, forces: Sequence[Array], loaded: bool = False) -> list[Array]:
-        """Motions of the parts under forces (p, s), and the external force where it acts."""
-        pairs = list(zip(self.parts, forces, strict=True))
-        lines = [part.grid.spectrum(force) / part.grid.size for part, force in pairs]
-        moved = [
-            (part.receptances @ line[..., None])[..., 0] + (part.loaded if loaded else 0.0)
-            for part, line in zip(self.parts, lines, strict=True)
-        ]
-        for (to, by), link in self.links.items():
-            pushed = lines[by][link.of]
-            moved[to][link.into] += (link.receptances @ pushed[..., None])[..., 0]
-        return [part.grid.values(line * part.grid.size)
-                for part, line in zip(self.parts, moved, strict=True)]  # fmt: skip
+    def responses(
+        self, forces: Sequence[Array | None], loaded: bool = False, of: Sequence[int] | None = None
+    ) -> list[Array]:
+        """Motions of parts, all by default, under the forces (p, s) of some, and the load."""
+        lines = [None if force is None else part.grid.spectrum(force) / part.grid.size
+                 for part, force in zip(self.parts, forces, strict=True)]  # fmt: skip
+        motions = []
+        for to in range(len(self.parts)) if of is None else of:
+            part, own = self.parts[to], lines[to]
+            moved = part.loaded.copy() if loaded else np.zeros_like(part.loaded)
+            if own is not None:
+                moved += (part.receptances @ own[..., None])[..., 0]
+            for by, pushing in enumerate(lines):
+                if by != to and pushing is not None:
+                    link = self.links[to, by]
+                    pushed = pushing[link.of, :, None]
+                    moved[link.into] += (link.receptances @ pushed)[..., 0]
+            motions.append(part.grid.values(moved * part.grid.size))
+        return motions
 
     def at(self, y: Array, closed: Any = None) -> State:
         """Evaluate a motion; ``closed`` fixes the springs to those that are closed at rest."""
@@ -236,7 +255,7 @@ class PhaseResidual(Residual):
         residual = self.joined([state.residual for state in states])
         first = states[0]
         return State(
-            y, first.rate, first.law, first.breaks, first.force, residual, tuple(states)
+            y, first.rate, first.law, first.breaks, first.force, residual, None, tuple(states)
         )  # fmt: skip
 
     def derivative(self, state: State) -> Callable[[Array], Array]:
@@ -251,29 +270,6 @@ class PhaseResidual(Residual):
 
         return product
 
-    def unfelt(self, state: State) -> Array:
-        """Motion of each part that its grid leaves out, over each phase (parts, phases)."""
-        # Such lines of a part move the contacts of others through the structure; only that part of
-        # their force is missing which the stiffness varies about its mean.
-        left_out = np.zeros((len(self.parts), len(self.parts[0].grid.shape)))
-        for by, pushing in zip(self.parts, state.parts, strict=True):
-            lines = by.grid.spectrum(pushing.force) / by.grid.size
-            lines[by.grid.unpaired] = 0.0
-            for number, (to, moving) in enumerate(zip(self.parts, state.parts, strict=True)):
-                beyond = 2 * np.abs(by.grid.numbers) >= np.array(to.grid.shape)
-                if to is by or not beyond.any():
-                    continue
-                rows = np.flatnonzero(beyond.any(axis=1))
-                rows = np.concatenate(([0], rows))
-                receptances = to.structure.receptances(by.grid.omega[rows], by.structure.push)
-                size = np.abs((receptances @ lines[rows][..., None])[1:, :, 0]).max(axis=1)
-                mean = to.structure.contact_stiffness
-                varies = np.abs(mean - moving.law.stiffness).max() / np.abs(mean).max()
-                for axis in np.flatnonzero(beyond.any(axis=0)):
-                    total = 2.0 * np.sqrt(np.sum(size[beyond[rows[1:], axis]] ** 2))
-                    left_out[number, axis] = max(left_out[number, axis], varies * total)
-        return left_out / state.size
-
     def accuracy(self, norms: list[float]) -> float:
         """Accuracy of the linear solution after steps that left residuals of these norms."""
         # Source: Eisenstat and Walker (1996), SIAM J. Sci. Comput. 17, 16, choice 2.
@@ -282,16 +278,18 @@ class PhaseResidual(Residual):
 
     def change(self, coarser: PhaseResidual, state: State, number: int) -> Array:
         """Estimate the change of a solution with more points of one part."""
-        part, old = self.parts[number], coarser.parts[number]
-        states, none = list(state.parts), np.zeros(len(part.structure.members))
-        y = old.grid.refined(states[number].y, part.grid)
-        states[number] = part.at(y, none, closed=False)
-        moved = self.responses([each.force for each in states], loaded=True)
-        right = [motion - each.y for motion, each in zip(moved, states, strict=True)]
+        part, old, states = self.parts[number], coarser.parts[number], state.parts
+        forces: list[Array | None] = [each.force for each in states]
+        before = forces[number] = old.grid.refined(states[number].force, part.grid)
+        y = self.responses(forces, loaded=True, of=[number])[0]
+        none = np.zeros(len(part.structure.members))
+        further: list[Array | None] = [None] * len(states)
+        further[number] = part.at(y, none, closed=False).force - before
+        right = self.responses(further)
         # The new lines as they are, the lines of before by their approximate inverse.
         inverses = coarser.inverses_at(state)
-        before = part.grid.refined(right[number], old.grid)
-        felt = inverses[number](before) - before
+        low = part.grid.refined(right[number], old.grid)
+        felt = inverses[number](low) - low
         changes = [
             each + old.grid.refined(felt, part.grid) if n == number else inverse(each)
             for n, (inverse, each) in enumerate(zip(inverses, right, strict=True))

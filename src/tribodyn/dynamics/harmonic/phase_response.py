@@ -24,8 +24,8 @@ _ROUNDING = 1e-14
 _RECORDED, _MOST = 64, 4096
 #: Logarithm of the decay after which a time integration has settled.
 _SETTLED = 5.0
-#: Numbers that are held at once while lines are summed up.
-_TOGETHER = 2**22
+#: Numbers that are held at once in samples, and while lines are summed up.
+_TOGETHER, _WAVES = 2**22, 2**15
 #: Samples per cycle of the fastest phase along the closed line, most cycles of it for each further
 #: phase, and cycles over which no phases fall into step on it if it can be.
 _SAMPLED, _LONGEST, _APART = 64, 512, 12
@@ -200,10 +200,15 @@ def _strong(lines: ComplexArray) -> Mask:
 def sum_lines(points: Array, numbers: Index, values: ComplexArray) -> Array:
     """Sums of lines at points of the phases (p, phases), (p, c)."""
     total = np.empty((len(points), values.shape[1]))
-    step = max(1, _TOGETHER // max(1, len(numbers)))
+    step = max(1, _WAVES // max(1, len(numbers)))
+    # A wave of all phases is the product of those of each, of which there are few.
+    orders = [np.unique(column, return_inverse=True) for column in numbers.T]
+    parts = np.concatenate((values.real, -values.imag)).T
     for begin in range(0, len(points), step):
-        turns = points[begin : begin + step] @ numbers.T
-        total[begin : begin + step] = (np.exp(2j * np.pi * turns) @ values).real
+        some, wave = points[begin : begin + step].T, np.ones((1, 1), dtype=complex)
+        for (different, place), phase in zip(orders, some, strict=True):
+            wave = wave * np.exp(2j * np.pi * different[:, None] * phase)[place.reshape(-1)]
+        total[begin : begin + step] = (parts @ np.concatenate((wave.real, wave.imag))).T
     return total
 
 
@@ -328,8 +333,9 @@ def _all_forces(
         forces.append(lines @ (part.structure.push.T @ structure.push))
         columns = np.zeros((len(lines), 2 * count), dtype=complex)
         members = part.structure.members
-        columns[:, members] = (grid.spectrum(each.law.compression) / grid.size)[paired]
-        columns[:, count + members] = (grid.spectrum(each.law.contact) / grid.size)[paired]
+        for first, values in ((0, each.law.compression), (count, each.law.contact)):
+            sampled = part.integral(values, each.cell)
+            columns[:, first + members] = (grid.spectrum(sampled) / grid.size)[paired]
         others.append(columns)
     grid = max((part.grid for part in residual.parts), key=lambda grid: min(grid.shape))
     loads = rows.force(grid.points) @ structure.coordinates.inverse.T @ structure.push

@@ -108,40 +108,20 @@ class Breaks(NamedTuple):
             column += np.bincount(at, share, len(force))
 
 
+#: Breaks of a motion that has none, or of one whose forces are integrated between them.
+NO_BREAKS = Breaks(
+    np.zeros(0, dtype=np.int64), np.zeros(0, dtype=np.int64), np.zeros(0), np.zeros((0, 0)),
+    np.zeros((0, 0)), np.zeros((0, 0, 0)),
+)  # fmt: skip
+
+
 @dataclass(frozen=True)
-class ContactEquations:
-    """The contacts of a system on equal steps of the clock."""
+class ContactLaw:
+    """The law of the contacts of a system."""
 
     system: System
-    rows: Rows
-    before: Rows  #: entries just before the events at which one jumps
-    after: Rows
-    events: Array  #: these events [-]
-    along: Array  #: basis of compressions in coordinates of unit mass (n, r)
-    push: Array  #: basis of forces (n, s)
     dead: Mask  #: springs with a dead zone (contacts, m)
     damped_in_gap: Mask
-    steps: int
-
-    def coarser(self) -> ContactEquations:
-        """The same on half as many steps."""
-        rows = self.rows.at(slice(None, None, 2))
-        rows = rows._replace(nodes=rows.nodes._replace(weight=2.0 * rows.nodes.weight))
-        return replace(self, rows=rows, steps=self.steps // 2)
-
-    def event_places(self) -> tuple[Index, Index, Array]:
-        """Samples before and after each row of ``before``, and the fraction of the step."""
-        place = self.events * self.steps
-        step = np.ceil(place - 1e-6).astype(np.int64) - 1
-        return step % self.steps, (step + 1) % self.steps, place - step
-
-    def neighbour(self, sample: Index, contact: Index, by: int) -> Index:
-        """Sample ``by`` steps of the mesh of a contact ahead of another one."""
-        return np.asarray((sample + by) % self.steps)
-
-    def next_samples(self, values: Array | Mask) -> Array | Mask:
-        """Values (steps, contacts, ...) of the next samples."""
-        return np.roll(values, -1, axis=0)
 
     def law(
         self,
@@ -185,6 +165,23 @@ class ContactEquations:
             rising = rising + frequency * outer(push, damping, rows.along_slope)
         return Law(d, contact, side[..., 0], force, rising, outer(push, damping, rows.along), push)
 
+
+@dataclass(frozen=True)
+class ContactEquations(ContactLaw):
+    """The contacts of a system on equal steps of the clock."""
+
+    rows: Rows
+    before: Rows  #: entries just before the events at which one jumps
+    after: Rows
+    events: Array  #: these events [-]
+    steps: int
+
+    def coarser(self) -> ContactEquations:
+        """The same on half as many steps."""
+        rows = self.rows.at(slice(None, None, 2))
+        rows = rows._replace(nodes=rows.nodes._replace(weight=2.0 * rows.nodes.weight))
+        return replace(self, rows=rows, steps=self.steps // 2)
+
     def breaks(
         self,
         law: Law,
@@ -203,7 +200,10 @@ class ContactEquations:
     def _event_breaks(
         self, frequency: float, y: Array, rate: Array, excess: Array, closed: Mask | None
     ) -> Breaks:
-        step, after, fraction = self.event_places()
+        place = self.events * self.steps
+        step = np.ceil(place - 1e-6).astype(np.int64) - 1
+        fraction = place - step
+        step, after = step % self.steps, (step + 1) % self.steps
         at, pace = (_between(values, step, after, fraction) for values in (y, rate))
         left, right = (
             self.law(rows, frequency, at, pace, excess, closed)
@@ -217,8 +217,8 @@ class ContactEquations:
     def _crossings(self, law: Law, frequency: float, y: Array, rate: Array, edge: float) -> Breaks:
         clearance = edge * law.compression[..., None] - self.rows.gap
         inside = (clearance > 0.0) & self.dead
-        step, contact, spring = np.nonzero(inside != self.next_samples(inside))
-        before, after = (self.neighbour(step, contact, by) for by in (-1, 1))
+        step, contact, spring = np.nonzero(inside != np.roll(inside, -1, axis=0))
+        before, after = ((step + by) % self.steps for by in (-1, 1))
         begin, end = clearance[step, contact, spring], clearance[after, contact, spring]
         fraction = begin / (begin - end)
         touch = _touch_factor((step, contact, spring), (before, after), fraction, inside.shape)
@@ -319,7 +319,7 @@ def contact_equations(
     )
     at = project_rows(nodes, *into)
     return ContactEquations(
-        system, at, left, right, points[jumping], *bases, with_dead_zone(nodes), in_gap, steps
+        system, with_dead_zone(nodes), in_gap, at, left, right, points[jumping], steps
     )
 
 

@@ -1,0 +1,276 @@
+"""Contacts of a part on a grid of phases, whose forces are integrated between their breaks.
+
+Along the phase of its mesh the force of a contact breaks where an entry jumps and where a flank
+opens or closes. Each line of the grid along this phase is cut there, and the force is integrated by
+Gauss's rule over the pieces, which gives its lines without the error of equal steps.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+import numpy as np
+from numpy.polynomial import legendre
+
+from tribodyn.dynamics.harmonic.phase_grid import PhaseGrid
+from tribodyn.dynamics.harmonic.phase_rows import Mesh, PhaseRows
+from tribodyn.dynamics.modal.contact_equations import ContactLaw, Law, Rows, with_dead_zone
+from tribodyn.types import Array, Index, Mask
+
+if TYPE_CHECKING:
+    from scipy.sparse import csr_matrix
+
+#: Points of Gauss's rule over a piece, fewest of those over a short one, and steps of the grid in
+#: a piece without breaks.
+_GAUSS, _FEWEST, _STEPS = 8, 3, 3
+#: Refinement of a grid along a phase between whose points motions are interpolated, and points of
+#: the polynomial.
+_REFINED, _POINTS = 4, 12
+#: Intervals of a piece that are searched for the end of a dead zone, and Newton steps to it.
+_INTERVALS, _NEWTON = 16, 4
+
+
+class Cut(NamedTuple):
+    """Places on the lines along a phase."""
+
+    line: Index  #: (b,)
+    place: Array  #: from 0 to 1 (b,)
+
+    @classmethod
+    def joined(cls, cuts: Sequence[Cut]) -> Cut:
+        """All places one after the other."""
+        none = np.zeros(0, dtype=np.int64), np.zeros(0)
+        columns = zip(none, *cuts, strict=True)
+        return cls(*(np.concatenate(column) for column in columns))
+
+
+@dataclass(frozen=True)
+class Pieces:
+    """Points on the lines of a grid along one phase, with weights of an integral over it."""
+
+    grid: PhaseGrid
+    axis: int
+    begin: Cut  #: of each piece
+    width: Array
+    at: Cut  #: points (q,)
+    weight: Array  #: of the points; their sum over a line is 1
+
+    @classmethod
+    def of(cls, grid: PhaseGrid, axis: int, cut: Cut, fewest: int = _FEWEST) -> Pieces:
+        """Pieces between even places on all lines and those of a cut."""
+        count, lines = -(-grid.shape[axis] // _STEPS), grid.size // grid.shape[axis]
+        even = Cut(np.repeat(np.arange(lines), count), np.tile(np.arange(count) / count, lines))
+        line, place = Cut.joined((even, cut))
+        order = np.lexsort((place, line))
+        begin = Cut(line[order], place[order])
+        last = np.append(begin.line[1:] != begin.line[:-1], True)
+        end = np.roll(begin.place, -1)
+        end[last] = 1.0 + begin.place[np.roll(last, 1)]
+        width = end - begin.place
+        points = np.ceil(fewest + (_GAUSS - fewest) * np.minimum(width * count, 1.0))
+        parts, weights = [], []
+        for number in np.unique(points).astype(int):
+            chosen = np.flatnonzero(points == number)
+            node, share = legendre.leggauss(number)
+            half = 0.5 * width[chosen, None]
+            place = (begin.place[chosen, None] + half * (1.0 + node)) % 1.0
+            parts.append(Cut(np.repeat(begin.line[chosen], number), place.reshape(-1)))
+            weights.append((half * share).reshape(-1))
+        return cls(grid, axis, begin, width, Cut.joined(parts), np.concatenate(weights))
+
+    def also(self, at: Cut) -> Pieces:
+        """The same with further points, without weight."""
+        weight = np.append(self.weight, np.zeros(at.line.size))
+        return replace(self, at=Cut.joined((self.at, at)), weight=weight)
+
+    @property
+    def points(self) -> Array:
+        """Phases of the points (q, phases)."""
+        points = self.grid.points[self.grid.lines(self.axis)[self.at.line]]
+        points[:, self.axis] = self.at.place
+        return points
+
+    @cached_property
+    def _between(self) -> csr_matrix:
+        """Weights of the points of the refined lines in a motion at each point."""
+        from scipy.sparse import csr_matrix
+        from scipy.special import binom
+
+        count = _REFINED * self.grid.shape[self.axis]
+        offsets = np.arange(_POINTS)
+        first = np.floor(self.at.place * count)[:, None] - _POINTS // 2 + 1
+        distance = self.at.place[:, None] * count - first - offsets
+        distance[distance == 0.0] = 1e-200  # all weight at this point
+        share = (-1.0) ** offsets * binom(_POINTS - 1, offsets) / distance
+        share /= share.sum(axis=1, keepdims=True)
+        columns = self.at.line[:, None] * count + (first + offsets).astype(np.int64) % count
+        ends = np.arange(0, share.size + 1, _POINTS)
+        size = len(share), _REFINED * self.grid.size
+        return csr_matrix((share.reshape(-1), columns.reshape(-1), ends), size)
+
+    def sample(self, values: Array) -> Array:
+        """Values at the points (q, c) of a motion on the grid (p, c)."""
+        count = self.grid.shape[self.axis]
+        table = np.moveaxis(values.reshape(*self.grid.shape, -1), self.axis, -2)
+        lines = np.fft.rfft(table, axis=-2)[..., : (count + 1) // 2, :]
+        fine = np.fft.irfft(lines, _REFINED * count, axis=-2) * _REFINED
+        return np.asarray(self._between @ fine.reshape(-1, values.shape[1]))
+
+    def gather(self, values: Array) -> Array:
+        """Motion on the grid (p, c) with the lines of values with their weights (q, c)."""
+        count, others = self.grid.shape[self.axis], np.delete(self.grid.shape, self.axis)
+        table = (self._between.T @ values).reshape(*others, _REFINED * count, -1)
+        lines = np.fft.rfft(table, axis=-2)[..., : (count + 1) // 2, :]
+        coarse = np.moveaxis(np.fft.irfft(lines, count, axis=-2) * count, -2, self.axis)
+        return np.asarray(coarse.reshape(self.grid.size, -1))
+
+
+class Cell(NamedTuple):
+    """How a motion at the points of pieces changes the forces on the closed structure."""
+
+    pieces: Pieces
+    stiffness: Array  #: derivative of the weighted forces by the motion (q, s, r)
+    damping: Array  #: and by its rate
+
+
+class _Crossings(NamedTuple):
+    """Places where the clearance of a spring changes its sign."""
+
+    at: Cut
+    contact: Index
+    spring: Index
+    edge: Array  #: 1 or -1, the side of the dead zone
+    slope: Array  #: derivative of the clearance by the phase
+
+
+@dataclass(frozen=True)
+class PhaseContacts(ContactLaw):
+    """The contacts of a part on a grid of phases."""
+
+    part: PhaseRows
+    bases: tuple[Array, Array]
+    grid: PhaseGrid
+    axis: int  #: phase of the meshes
+    jumps: Cut  #: places where an entry jumps
+
+    @classmethod
+    def of(cls, rows: PhaseRows, structure: Any, grid: PhaseGrid, axis: int) -> PhaseContacts:
+        """Contacts of a system with the bases of a structure."""
+        inverse, contacts = structure.coordinates.inverse, rows.system.contacts
+        return cls(
+            rows.system, with_dead_zone(rows.means.nodes),
+            np.array([contact.damping_in_gap for contact in contacts], dtype=bool), rows,
+            (inverse.T @ structure.along, inverse.T @ structure.push), grid, axis,
+            Cut.joined([_jumps(rows, grid, axis, mesh) for mesh in rows.meshes]),
+        )  # fmt: skip
+
+    @cached_property
+    def rows(self) -> Rows:
+        """Entries at the points of the grid."""
+        return self.part.projected(self.grid.points, *self.bases)
+
+    @cached_property
+    def _base(self) -> tuple[Pieces, Rows]:
+        """Pieces between the jumps of the entries, and the entries at their points."""
+        pieces = Pieces.of(self.grid, self.axis, self.jumps, _GAUSS)
+        return pieces, self.part.projected(pieces.points, *self.bases)
+
+    def at(
+        self, y: Array, rate: Array, excess: Array, closed: Mask | None, means: tuple[Array, Array]
+    ) -> tuple[Law, Cell | None]:
+        """Law of a motion (p, r) at the points of the grid, or of pieces where it breaks."""
+        # means: stiffness and damping of the closed contacts
+        if not self.jumps.line.size:
+            law = self.law(self.rows, 1.0, y, rate, excess, closed)
+            if closed is not None or not self._opens(law):
+                return law, None
+        pieces, rows = self._base
+        moved = pieces.sample(y), pieces.sample(rate)
+        law = self.law(rows, 1.0, *moved, excess, closed)
+        crossings = None if closed is not None else self._crossings(pieces, rows, law)
+        if crossings is not None and crossings.contact.size:
+            cut = Cut.joined((self.jumps, crossings.at))
+            pieces = Pieces.of(self.grid, self.axis, cut).also(crossings.at)
+            rows = self.part.projected(pieces.points, *self.bases)
+            moved = pieces.sample(y), pieces.sample(rate)
+            law = self.law(rows, 1.0, *moved, excess, closed)
+        weight = pieces.weight[:, None, None]
+        stiffness, damping = (
+            weight * (mean - part)
+            for mean, part in zip(means, (law.stiffness, law.damping), strict=True)
+        )
+        if crossings is not None and crossings.contact.size:
+            number = len(weight) - crossings.contact.size
+            stiffness[number:] = self._jumped(crossings, rows.at(slice(number, None)), law, moved)
+        return law, Cell(pieces, stiffness, damping)
+
+    def _opens(self, law: Law) -> bool:
+        """Whether a flank comes to another side of its dead zone."""
+        gap = self.rows.gap
+        sides = [(edge * law.compression[..., None] > gap) & self.dead for edge in (1.0, -1.0)]
+        return any(bool(np.any(side != side[0])) for side in sides)
+
+    def _crossings(self, pieces: Pieces, rows: Rows, law: Law) -> _Crossings:
+        """Ends of the dead zones, from the polynomials of the clearances over the pieces."""
+        contact, spring = np.nonzero(self.dead)
+        gap, distance = rows.gap[:, contact, spring], law.compression[:, contact]
+        clearance = np.concatenate((distance - gap, -distance - gap), axis=1)
+        node, share = legendre.leggauss(_GAUSS)
+        degrees = np.arange(_GAUSS)
+        into = (legendre.legvander(node, _GAUSS - 1) * share[:, None] * (degrees + 0.5)).T
+        terms = into @ clearance.reshape(pieces.width.size, _GAUSS, -1 if contact.size else 0)
+        places = np.linspace(-1.0, 1.0, _INTERVALS + 1)
+        closed = legendre.legvander(places, _GAUSS - 1) @ terms > 0.0
+        piece, interval, column = np.nonzero(closed[:, 1:] != closed[:, :-1])
+        chosen = terms[piece, :, column].T
+        slopes = legendre.legder(chosen, axis=0)
+        x = 0.5 * (places[interval] + places[interval + 1])
+        for _ in range(_NEWTON):
+            step = legendre.legval(x, chosen, False) / legendre.legval(x, slopes, False)
+            x = np.clip(x - step, places[interval], places[interval + 1])
+        half = 0.5 * pieces.width[piece]
+        at = Cut(pieces.begin.line[piece], (pieces.begin.place[piece] + half * (1.0 + x)) % 1.0)
+        edge = np.where(column < contact.size, 1.0, -1.0)
+        column = column % max(1, contact.size)
+        slope = legendre.legval(x, slopes, False) / half
+        return _Crossings(at, contact[column], spring[column], edge, slope)
+
+    def _jumped(
+        self, crossings: _Crossings, rows: Rows, law: Law, moved: tuple[Array, Array]
+    ) -> Array:
+        """Derivative of the force by the motion where a damper begins or ceases to act."""
+        each, contact = np.arange(crossings.contact.size), crossings.contact
+        y, rate = (part[len(part) - each.size :] for part in moved)
+
+        def of_contact(values: Array) -> Array:
+            return np.asarray(values[each if len(values) > 1 else 0 * each, contact])
+
+        along = of_contact(rows.along)
+        speed = np.einsum("br,br->b", along, rate) - of_contact(rows.nodes.error_slope)
+        speed += np.einsum("br,br->b", of_contact(rows.along_slope), y)
+        steady = self.damped_in_gap[contact] | (crossings.spring > 0)
+        force = np.where(steady, 0.0, of_contact(rows.nodes.damping)) * speed
+        factor = crossings.edge * force / np.abs(crossings.slope)
+        push = of_contact(law.push[-each.size :])
+        return np.asarray(-factor[:, None, None] * push[:, :, None] * along[:, None, :])
+
+
+def axis_of(cycles: Array) -> int:
+    """Phase over which a mesh has the fewest cycles, but some."""
+    return int(np.argmin(np.where(cycles == 0.0, np.inf, np.abs(cycles))))
+
+
+def _jumps(rows: PhaseRows, grid: PhaseGrid, axis: int, mesh: Mesh) -> Cut:
+    """Places where a mesh passes its jumps, on every line along its phase."""
+    start = grid.points[grid.lines(axis)]
+    turns = mesh.cycles[axis]
+    mesh_phase = start @ mesh.cycles + mesh.offset
+    if rows.system.lead is not None:  # it is a function of other phases
+        mesh_phase = mesh_phase + rows.rate(mesh.cycles) * rows.system.lead(start)[0]
+    cycles = np.arange(int(abs(turns)))
+    at = (mesh.jumps[:, None, None] - mesh_phase[:, None] + cycles) / turns % 1.0 % 1.0
+    lines = np.broadcast_to(np.arange(len(start))[:, None], at.shape)
+    return Cut(lines.reshape(-1), at.reshape(-1))
