@@ -14,15 +14,18 @@ from tribodyn.exchange.gearbox import GearboxModel, StageGear, add_remark
 from tribodyn.exchange.rexs_file import Component
 from tribodyn.types import Array
 
-#: Stiffness of a bearing without data, and of one that the file calls rigid [N/m, N*m/rad].
-_STIFF, _TILTING = 1e9, 1e8
+#: Stiffness of a bearing without data, and of one that the file calls rigid [N/m, N*m/rad], which
+#: is one above the others.
+_STIFF, _TILTING, _RIGID, _RIGID_TILTING = 1e9, 1e8, 1e12, 1e10
 _GAP = 1e-6
-#: Types of bearings by what the name of the REXS type contains, and names of their elements.
-_TYPES = {
-    "tapered": ("tapered-roller", "roller"),
-    "cylindrical": ("cylindrical-roller", "roller"),
-    "angular": ("angular-contact", "ball"),
-    "grooved": ("deep-groove", "ball"),
+#: Types of bearings by what the name of the REXS type contains, names of their elements, and the
+#: name of the type; cylindrical roller bearings are mere roller bearings in REXS 1.0 to 1.4.
+BEARING_TYPES = {
+    "tapered": ("tapered-roller", "roller", "radial_tapered_roller_bearing"),
+    "cylindrical": ("cylindrical-roller", "roller", "radial_roller_bearing"),
+    "radial_roller": ("cylindrical-roller", "roller", "radial_roller_bearing"),
+    "angular": ("angular-contact", "ball", "angular_contact_ball_bearing"),
+    "grooved": ("deep-groove", "ball", "radial_grooved_ball_bearing"),
 }
 
 
@@ -31,17 +34,13 @@ class Axis:
     """A shaft of the file: its axis in space, and its sections from small to large x, in SI."""
 
     component: Component
+    name: str  #: of the shaft in the machine
     start: Array | None
     along: Array  #: direction of its u axis in the file
     sense: int  #: -1 if this direction points against x of the machine
     sections: list[list[float]]  #: length, outer, inner diameter, and both of the end
     offset: float  #: where its first section begins on the u axis
     length: float
-
-    @property
-    def name(self) -> str:
-        """Name of the shaft in the machine."""
-        return f"shaft_{self.component.id}"
 
     @property
     def table(self) -> dict[str, Any]:
@@ -71,6 +70,14 @@ class Axis:
         return self.sense * float(self.start @ self.along + coordinate)
 
 
+def part_name(model: GearboxModel, number: int) -> str:
+    """Name of a part in a machine: its kind and number, in a file of ours that of the case."""
+    part = model.file.components[number]
+    kinds = (k for k in ("carrier", "gear", "stage", "shaft") if part.kind.endswith(k))
+    name = f"{next(kinds, 'bearing')}_{number}"
+    return part.name or name if model.file.stored_case else name
+
+
 def point(component: Component, name: str = "support_vector") -> Array | None:
     """Position or direction in space [m]; None where the file has none."""
     vector = component.vector(name, "m")
@@ -96,9 +103,10 @@ def axes_of(model: GearboxModel, shafts: list[int]) -> tuple[dict[int, Axis], Ar
             sections = [[s[0], s[3], s[4], s[1], s[2]] for s in reversed(sections)]
         length = sum(section[0] for section in sections)
         axes[component.id] = Axis(
-            component, point(component), along, sense, sections, offset, length
-        )
-    upward = _unit(components[0], "w_axis_vector")
+            component, part_name(model, component.id), point(component), along, sense, sections,
+            offset, length,
+        )  # fmt: skip
+    upward = _unit(components[0], "w_axis_vector") if components else None
     directions = None if upward is None else np.array([np.cross(upward, first), upward])
     return axes, directions
 
@@ -143,13 +151,14 @@ def _sections(model: GearboxModel, shaft: Component) -> tuple[list[list[float]],
     return [section for _, section in rows], begin
 
 
-def gear_table(model: GearboxModel, gear: StageGear, axis: Axis) -> dict[str, Any]:
-    """Table of a gear."""
-    component = model.file.components[gear.id]
-    coordinate = axis.coordinate(component, "u_coordinate_on_shaft")
-    table: dict[str, Any] = {"shaft": axis.name, "teeth": gear.teeth}
-    if coordinate is not None:
-        table["position"] = axis.position(coordinate)
+def gear_table(model: GearboxModel, gear: StageGear, axis: Axis | None) -> dict[str, Any]:
+    """Table of a gear, of one without a shaft of the machine without its place."""
+    table: dict[str, Any] = {"teeth": gear.teeth}
+    if axis is not None:
+        table = {"shaft": axis.name, **table}
+        coordinate = axis.coordinate(model.file.components[gear.id], "u_coordinate_on_shaft")
+        if coordinate is not None:
+            table["position"] = axis.position(coordinate)
     names = ("profile_shift_coefficient", "face_width", "tip_diameter", "roughness_ra")
     table |= {name: value for name in names if (value := getattr(gear, name)) is not None}
     return {**table, "modification": gear.modification} if gear.modification else table
@@ -180,7 +189,7 @@ def bearing_tables(
             shafts = " and ".join(axes[number].name for number in sides.values())
             note = f"it joins {shafts} in the file; it holds {axis.name} against the housing"
             reason = f"{note}; {reason}" if reason else note
-        yield f"bearing_{bearing.id}", table | rolling, reason
+        yield part_name(model, bearing.id), table | rolling, reason
 
 
 def _bearings(model: GearboxModel) -> list[Component]:
@@ -200,12 +209,14 @@ def _sides(model: GearboxModel, bearing: Component, axes: dict[int, Axis]) -> di
 def _rolling(bearing: Component, axis: Axis) -> tuple[dict[str, Any], str]:
     """Type and dimensions of a rolling bearing, and a note; empty where the file has none."""
     kind = bearing.text("bearing_type")
-    matches = [t for stem, t in _TYPES.items() if stem in kind and not kind.startswith("axial")]
+    matches = [
+        t for stem, t in BEARING_TYPES.items() if stem in kind and not kind.startswith("axial")
+    ]
     bore, outer = (bearing.number(f"{side}_diameter", "m") for side in ("inner", "outer"))
     rows = bearing.number("number_of_bearing_rows", "") or 1.0
     if not matches or not bore or not outer or rows > 1.0:
         return {}, ""
-    name, element = matches[0]
+    name, element, _ = matches[0]
     absorption, note = bearing.text("axial_force_absorption"), ""
     table: dict[str, Any] = {"type": name, "bore_diameter": bore, "outer_diameter": outer}
     values = {
@@ -241,10 +252,13 @@ def _support(bearing: Component) -> tuple[dict[str, Any], str]:
     holds = bearing.values.get("radial_force_absorption")
     is_radial = holds is None or holds.content is not False
     is_axial = bearing.text("axial_force_absorption") not in ("", "no_direction")
+    missing = not radial or (is_axial and not axial)
+    rigid = max(radial or 0.0, axial or 0.0) > _RIGID or tilting > _RIGID_TILTING
+    radial, axial = (_STIFF if (v or _RIGID) >= _RIGID else v for v in (radial, axial))
     table = {
-        "radial_stiffness": min(radial or _STIFF, _STIFF) if is_radial else 0.0,
-        "axial_stiffness": min(axial or _STIFF, _STIFF) if is_axial else 0.0,
-        "tilting_stiffness": min(tilting, _TILTING),
+        "radial_stiffness": radial if is_radial else 0.0,
+        "axial_stiffness": axial if is_axial else 0.0,
+        "tilting_stiffness": _TILTING if tilting > _RIGID_TILTING else tilting,
     }
     designation = bearing.text("catalogue_designation") or bearing.text("name")
     notes = []
@@ -254,9 +268,9 @@ def _support(bearing: Component) -> tuple[dict[str, Any], str]:
             f"the file has no dimensions of the bearing{label}; set type, bore_diameter and "
             "outer_diameter for its stiffness at the working load"
         )
-    if not radial or (is_axial and not axial):
+    if missing:
         notes.append(f"{_STIFF:g} N/m where the file has no stiffness")
-    if max(radial or 0.0, axial or 0.0) > _STIFF or tilting > _TILTING:
+    if rigid:
         notes.append(f"rigid in the file: {_STIFF:g} N/m, {_TILTING:g} N*m/rad against tilting")
     filled = {k: value for k, value in table.items() if value or k == "radial_stiffness"}
     return filled, "; ".join(notes)

@@ -34,6 +34,8 @@ _UNITS = {
     "N/(mmmum)": "N/mm/um",
     "kgm^2": "kg*m^2",
 }
+#: Attribute of the gear unit that holds the complete case.
+WHOLE_CASE = "custom_tribodyn_case"
 #: Names of later versions -> the first name, of attributes that are read.
 RENAMED = {
     "operating_time_fraction": "load_duration_fraction",  # 1.3
@@ -158,6 +160,11 @@ class RexsFile:
                 listed = [n for n in filled if n not in _READ and not n.startswith("custom_")]
                 names.setdefault(part.kind, {}).update(dict.fromkeys(listed))
         return {kind: list(each) for kind, each in sorted(names.items()) if each}
+
+    @property
+    def stored_case(self) -> str:
+        """Text of the case that tribodyn stored in the file; empty in files of other programs."""
+        return next((unit.text(WHOLE_CASE) for unit in self.of_kind("gear_unit")), "")
 
     def of_kind(self, *kinds: str) -> list[Component]:
         """Components of some kinds, in the order of their numbers."""

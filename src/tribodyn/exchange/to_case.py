@@ -8,12 +8,20 @@ from typing import Any
 
 from tribodyn import units
 from tribodyn.errors import InputError
-from tribodyn.exchange.gearbox import GearboxModel, Load, Stage, StageGear, add_remark
-from tribodyn.exchange.rexs_file import model_of
-from tribodyn.exchange.write import WHOLE_CASE, tree_of
+from tribodyn.exchange.case_tree import tree_of
+from tribodyn.exchange.gearbox import (
+    GearboxModel,
+    Load,
+    Stage,
+    StageGear,
+    add_remark,
+)
+from tribodyn.exchange.machine_parts import part_name
+from tribodyn.exchange.rexs_file import WHOLE_CASE, model_of
 from tribodyn.lubricant import Lubricant
 from tribodyn.study.case.case import Case
-from tribodyn.study.case.read import read_case
+from tribodyn.study.case.read import parse_toml, read_case
+from tribodyn.study.machine.read import is_machine
 
 #: Values closer than this are the same: files hold decimal fractions of millimetres.
 _SAME = 1e-9
@@ -77,12 +85,12 @@ def _case(model: GearboxModel, stage: Stage, load: Load, changes: dict[str, Any]
     _require_external(model, stage)
     if "lubricant.temperature" in changes:  # the viscosity of the file depends on it
         load = replace(load, oil_temperature=_kelvin(changes["lubricant.temperature"]))
-    file_values, notes = _values(model, stage, load)
+    file_values, notes = pair_values(model, stage, load)
     if "lubricant.name" in changes:  # another oil than that of the file
         file_values = {key: v for key, v in file_values.items() if not key.startswith("lubricant.")}
         notes = {key: note for key, note in notes.items() if not key.startswith("lubricant.")}
-    if text := stored_case_text(model):
-        stored_case = read_case(text, f"{model.path}: {WHOLE_CASE}")
+    if model.file.stored_case and not is_machine(parse_toml(model.file.stored_case, model.path)):
+        stored_case = read_case(model.file.stored_case, f"{model.path}: {WHOLE_CASE}")
         return _updated(model, stored_case, file_values).replace(changes)
     data: dict[str, Any] = {**file_values, **MODELS, **changes}
     for key in ("operation.speed", "operation.torque"):
@@ -104,11 +112,6 @@ def _case(model: GearboxModel, stage: Stage, load: Load, changes: dict[str, Any]
     origin = f"REXS {model.version} file of {model.application or 'an unnamed program'}"
     assumed = {key: note for key, note in notes.items() if key not in changes}
     return Case(title=title, origin=origin, **nested(data), assumed=assumed)
-
-
-def stored_case_text(model: GearboxModel) -> str:
-    """Text of the case that tribodyn stored in the file; empty in files of other programs."""
-    return next((u.text(WHOLE_CASE) for u in model.file.of_kind("gear_unit")), "")
 
 
 def _kelvin(value: Any) -> float:
@@ -139,7 +142,9 @@ def in_order(stage: Stage) -> tuple[StageGear, StageGear]:
     return (first, second) if first.teeth <= second.teeth else (second, first)
 
 
-def _values(model: GearboxModel, stage: Stage, load: Load) -> tuple[dict[str, Any], dict[str, str]]:
+def pair_values(
+    model: GearboxModel, stage: Stage, load: Load
+) -> tuple[dict[str, Any], dict[str, str]]:
     """Values of the case from the file, in SI, and notes on those that are partly assumed."""
     pinion, wheel = in_order(stage)
     data: dict[str, Any] = {
@@ -186,6 +191,21 @@ def rack_values(model: GearboxModel, pinion: StageGear, wheel: StageGear) -> dic
         "gears.dedendum_coefficient": float(dedendum or 0.0),
         "gears.rack_tip_radius_coefficient": float(round_ or 0.0),
     }
+
+
+def teeth_table(model: GearboxModel, stage: Stage) -> dict[str, Any]:
+    """Keys of a mesh or a planetary stage that describe the teeth, the hand that of gear 1."""
+    gear = stage.gear_1
+    table: dict[str, Any] = {
+        "normal_module": gear.normal_module,
+        "normal_pressure_angle": gear.normal_pressure_angle,
+        "center_distance": stage.center_distance,
+    }
+    if abs(gear.helix_angle) > SPUR:
+        table["helix_angle"] = abs(gear.helix_angle)
+        table["hand"] = "right" if gear.helix_angle > 0.0 else "left"
+    rack = rack_values(model, gear, stage.gear_2)
+    return table | {key.partition(".")[2]: value for key, value in rack.items()}
 
 
 def _racks(model: GearboxModel, gear: StageGear) -> list[tuple[float | None, float | None]]:
@@ -272,21 +292,32 @@ def oil_values(model: GearboxModel, load: Load) -> tuple[dict[str, Any], dict[st
 
 def _updated(model: GearboxModel, case: Case, file_values: dict[str, Any]) -> Case:
     """Case stored in the file, with the changes that another program has made since."""
-    written = GearboxModel(model_of(tree_of(case), "the case in the file"))
-    before, _ = _values(written, written.stage(), written.load())
+    written = GearboxModel(model_of(tree_of(case).model, "the case in the file"))
+    before, _ = pair_values(written, written.stage(), written.load())
+    changes = changed_values(model, before, file_values)
+    return case.replace(changes) if changes else case
+
+
+def changed_values(
+    model: GearboxModel, before: dict[str, Any], now: dict[str, Any]
+) -> dict[str, Any]:
+    """Values that another program has changed since a case was written, with a remark on each."""
     changes = {
         key: value
-        for key, value in file_values.items()
-        if not _same(before.get(key), value) and not key.startswith("lubricant.")
+        for key, value in now.items()
+        if not same_value(before.get(key), value) and not key.startswith("lubricant.")
     }
     for key, value in changes.items():
         shown_value = f"{value:.9g} (SI)" if isinstance(value, float) else value
         model.remarks.append(f"{key} was changed to {shown_value} by another program")
-    return case.replace(changes) if changes else case
+    return changes
 
 
-def _same(first: Any, second: Any) -> bool:
-    if isinstance(first, float) and isinstance(second, float):
+def same_value(first: Any, second: Any) -> bool:
+    """Whether two values differ by no more than the digits of a file."""
+    if isinstance(first, list | tuple) and isinstance(second, list | tuple):
+        return len(first) == len(second) and all(map(same_value, first, second))
+    if isinstance(first, float) and isinstance(second, float | int):
         return math.isclose(first, second, rel_tol=_SAME, abs_tol=1e-15)
     return bool(first == second)
 
@@ -307,7 +338,9 @@ def shared_models(
     model: GearboxModel, load: Load, changes: dict[str, Any]
 ) -> tuple[dict[str, Any], dict[str, str]]:
     """Tables of models that all meshes share, and what is assumed for their teeth."""
-    computed = [s for s in model.stages if f"meshes.stage_{s.id}.stiffness" not in changes]
+    computed = [
+        s for s in model.stages if f"meshes.{part_name(model, s.id)}.stiffness" not in changes
+    ]
     values: dict[str, Any] = {"dynamics.backlash": ASSUMED["dynamics.backlash"][0]}
     notes = {"dynamics.backlash": NOT_THERE + str(ASSUMED["dynamics.backlash"][1])}
     if computed:
@@ -323,6 +356,6 @@ def shared_models(
     for stage in computed:
         for gear in (stage.gear_1, stage.gear_2):
             if gear.roughness_ra is None:
-                values[f"gears.gear_{gear.id}.roughness_ra"] = 0.4e-6
-                notes[f"gears.gear_{gear.id}.roughness_ra"] = NOT_THERE + "ground flanks"
+                key = f"gears.{part_name(model, gear.id)}.roughness_ra"
+                values[key], notes[key] = 0.4e-6, NOT_THERE + "ground flanks"
     return nested(values), notes

@@ -3,31 +3,33 @@
 from __future__ import annotations
 
 import math
+from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from tribodyn.errors import InputError, Problem
+from tribodyn.exchange.case_tree import tree_of
 from tribodyn.exchange.gearbox import GearboxModel, Load, Stage, add_remark
-from tribodyn.exchange.machine_parts import (
-    Axis,
-    axes_of,
-    bearing_tables,
-    gear_table,
-)
+from tribodyn.exchange.machine_parts import Axis, axes_of, bearing_tables, gear_table, part_name
+from tribodyn.exchange.planet_stages import PlanetStage, planet_stages
+from tribodyn.exchange.rexs_file import model_of
 from tribodyn.exchange.to_case import (
-    SPUR,
+    NOT_THERE,
     case_from_rexs,
+    changed_values,
     material_values,
-    rack_values,
+    nested,
     shared_models,
-    stored_case_text,
+    teeth_table,
 )
-from tribodyn.exchange.to_planets import stage_from_rexs
 from tribodyn.study.case.case import Case
+from tribodyn.study.case.section import flat_keys
 from tribodyn.study.case.user_input import Source, plain
 from tribodyn.study.machine.case import MachineCase
+from tribodyn.study.machine.read import read_any_case
 from tribodyn.study.machine.unused_keys import changed_machine
+from tribodyn.types import Array
 
 #: Part of a face without a mate that is rounding of the positions [m].
 _FACE = 1e-5
@@ -63,33 +65,33 @@ def machine_from_rexs(
     MachineCase
         Parts are named after their numbers in the file: ``shaft_12``, ``gear_15``, ``stage_19``,
         ``bearing_33``. Values that the file does not contain are in its ``assumptions``, and so
-        are the remarks on the model.
+        are the remarks on the model. From a machine written by tribodyn the complete case is
+        restored, with the changes by other programs, which ``model.remarks`` lists.
 
     Raises
     ------
     InputError
-        Naming each stage that is not computed (planetary, bevel, worm), or if the machine cannot
-        be composed.
+        Naming each stage that is not computed (bevel, worm, other planetary designs), or if the
+        machine cannot be composed.
     """
     changes = dict(changes or {})
-    if problems := _unsupported(model):
-        raise InputError(problems)
-    model.stage(model.stages[0].id if model.stages else None)  # refuses a model without stages
+    if load_case is None and (stored := _stored_machine(model)) is not None:
+        return stored.replace(changes, by=by) if changes else stored
     load = model.load(load_case)
-    shafts = _shaft_senses(model, load)
-    data, assumed = _parts(model, shafts, changes)
-    data |= _operation(model, load, data, shafts)
+    data, assumed = file_tables(model, load, changes)
     shared, notes = shared_models(model, load, changes)
     for name, values in shared.pop("gears", {}).items():
-        data["gears"][name] |= values
+        if name in data["gears"]:  # of equal planets the first one stands for all
+            data["gears"][name] |= values
     data |= shared
-    assumed |= notes
+    assumed |= {k: v for k, v in notes.items() if _of_case(k, data["gears"])}
     _remark_on_forces(model)
     assumed |= {f"remark {n}": text for n, text in enumerate(model.remarks, 1)}
     data["assumed"] = {key: reason for key, reason in assumed.items() if key not in changes}
     origin = f"REXS {model.version} file of {model.application or 'an unnamed program'}"
-    title = f"Gearbox of {len(model.stages)} stage{'s' * (len(model.stages) > 1)}"
-    tables = changed_machine(plain({"title": title, "origin": origin, **data}), changes, by=by)
+    tables = changed_machine(
+        plain({"title": _title(data), "origin": origin, **data}), changes, by=by
+    )
     if "operation" not in tables or {"speed", "torque"} - tables["operation"].keys():
         remedy = 'Give both: --set "operation.speed=1500 rpm" --set "operation.torque=100 N*m"'
         what = "the speed and the torque of the gearbox are not known"
@@ -98,27 +100,114 @@ def machine_from_rexs(
     return MachineCase(source, **tables)
 
 
+def stage_from_rexs(
+    model: GearboxModel,
+    load_case: int | None = None,
+    *,
+    changes: dict[str, Any] | None = None,
+    by: str = "",
+) -> MachineCase:
+    """Case of the planetary stage of a gearbox model that has no other stage.
+
+    Parameters
+    ----------
+    model : GearboxModel
+        Result of :func:`read_rexs`.
+    load_case : int, optional
+        Number of the load case that is the operating point; the first by default.
+    changes : dict, optional
+        Values by dotted key that replace those of the file, as in :meth:`MachineCase.replace`.
+    by : str
+        Source of the changes, for messages; then a bare number for a dimension is refused.
+
+    Returns
+    -------
+    MachineCase
+        Its gears are named after their numbers in the file, such as ``gear_53``. Values that the
+        file does not contain are in its ``assumptions``, and so are the remarks on the model.
+
+    Raises
+    ------
+    InputError
+        If the gearbox is another one than a single stage with a sun, a ring and equal planets, or
+        speed and torque are not known.
+    """
+    planetary, others = planet_stages(model)
+    if len(planetary) != 1 or others:
+        what = f"there are {len(planetary)} planetary stages and {len(others)} other stages"
+        remedy = "Compute the machine: machine_from_rexs, or tribodyn import FILE --machine"
+        raise InputError(what, model.path, "A planetary stage by itself is one", remedy)
+    return machine_from_rexs(model, load_case, changes=changes, by=by)
+
+
 def case_from_model(model: GearboxModel, changes: dict[str, Any], by: str) -> Case | MachineCase:
     """Case of a REXS file: the one that tribodyn stored in it, or that of its stages."""
-    if stored_case_text(model):
+    if model.file.stored_case and _stored_machine(model) is None:
         case = case_from_rexs(model)
         return case.replace(changes, by=by) if changes else case
-    if model.file.of_kind("planetary_stage"):
-        return stage_from_rexs(model, changes=changes, by=by)
     return machine_from_rexs(model, changes=changes, by=by)
 
 
+def _stored_machine(model: GearboxModel) -> MachineCase | None:
+    """Machine that tribodyn stored in the file, with the changes made since."""
+    if not model.file.stored_case:
+        return None
+    stored = read_any_case(model.file.stored_case, model.path, Path(model.path).parent)
+    if stored.lumped:
+        return None
+    written = GearboxModel(model_of(tree_of(stored).model, "the case in the file"))
+    before, now = (dict(flat_keys(file_tables(m, m.load(), {})[0])) for m in (written, model))
+    changes = changed_values(model, before, now)
+    return stored.replace(changes) if changes else stored
+
+
+def file_tables(
+    model: GearboxModel, load: Load, changes: dict[str, Any]
+) -> tuple[dict[str, Any], dict[str, str]]:
+    """Tables of a machine with the values of the file in SI, and what of them is assumed."""
+    if problems := _unsupported(model):
+        raise InputError(problems)
+    model.stage(model.stages[0].id if model.stages else None)  # refuses a model without stages
+    planetary, stages = planet_stages(model)
+    lone = len(planetary) == 1 and not stages
+    senses = _shaft_senses(model, load, planetary, stages)
+    names = {number: part_name(model, number) for number in senses}
+    alone = [] if lone else list(names)
+    for stage in planetary:
+        names |= stage.shaft_names(lone=lone)
+    shared = material_values(model, *(s.sun.id for s in planetary if lone), *senses)
+    axes, directions = axes_of(model, [n for n in alone if names[n] == part_name(model, n)])
+    tables, assumed = _parts(model, axes, directions, stages, shared, changes)
+    for stage in planetary:
+        tables.setdefault("planets", {})[stage.name] = stage.table(lone=lone)
+        tables["gears"] |= stage.gear_tables(axes)
+    operation, note = _operation(model, load, senses, names)
+    tables = {group: body for group, body in tables.items() if body}
+    return tables | nested(shared) | operation, assumed | note
+
+
+def _title(data: dict[str, Any]) -> str:
+    meshes, planets = data.get("meshes", {}), data.get("planets", {})
+    if not meshes:
+        counts = " and ".join(str(stage["count"]) for stage in planets.values())
+        return f"Planetary stage with {counts} planets"
+    count = len(meshes) + len(planets)
+    return f"Gearbox of {count} stage{'s' * (count > 1)}"
+
+
+def _of_case(key: str, gears: dict[str, Any]) -> bool:
+    """Whether a note is on a gear of the case, or on no gear."""
+    group, _, inner = key.partition(".")
+    return group != "gears" or inner.rpartition(".")[0] in gears
+
+
 def _unsupported(model: GearboxModel) -> list[Problem]:
-    problems = []
-    for kind in ("planetary_stage", "bevel_stage", "worm_stage"):
-        for stage in model.file.of_kind(kind):
-            teeth = next((r for r in model.remarks if r.startswith(str(stage))), "")
-            teeth = teeth.removeprefix(f"{stage}: ")
-            what = f"{stage} is not computed" + (f" ({teeth})" if teeth else "")
-            why = "The axes of a machine are parallel and fixed in the housing"
-            remedy = f"List the data of its gears: tribodyn import {model.path}"
-            problems.append(Problem(what, model.path, why, remedy))
-    return problems
+    why = "The axes of a machine are parallel"
+    remedy = f"List the data of its gears: tribodyn import {model.path}"
+    return [
+        Problem(f"{stage} is not computed", model.path, why, remedy)
+        for stage in model.file.of_kind("bevel_stage", "worm_stage")
+    ]
 
 
 def _shafts_of(model: GearboxModel, stage: Stage) -> tuple[int, int]:
@@ -133,9 +222,12 @@ def _shafts_of(model: GearboxModel, stage: Stage) -> tuple[int, int]:
     return numbers[0], numbers[1]
 
 
-def _shaft_senses(model: GearboxModel, load: Load) -> dict[int, int]:
+def _shaft_senses(
+    model: GearboxModel, load: Load, planetary: list[PlanetStage], stages: list[Stage]
+) -> dict[int, int]:
     """Shafts from the input on, with 1 or -1 where they turn against it."""
-    edges = [(*_shafts_of(model, stage), -1 if stage.ratio > 0.0 else 1) for stage in model.stages]
+    edges = [edge for stage in planetary for edge in stage.senses()]
+    edges += [(*_shafts_of(model, stage), -1 if stage.ratio > 0.0 else 1) for stage in stages]
     joined = {shaft for edge in edges for shaft in edge[:2]}
     named = [load.source, *load.speeds, edges[0][0]]
     senses = {next(number for number in named if number in joined): 1}
@@ -150,24 +242,27 @@ def _shaft_senses(model: GearboxModel, load: Load) -> dict[int, int]:
 
 
 def _parts(
-    model: GearboxModel, shafts: dict[int, int], changes: dict[str, Any]
+    model: GearboxModel,
+    axes: dict[int, Axis],
+    directions: Array | None,
+    stages: list[Stage],
+    shared: dict[str, float],
+    changes: dict[str, Any],
 ) -> tuple[dict[str, Any], dict[str, str]]:
     """Tables of shafts, gears, meshes and bearings, and what is assumed."""
-    axes, directions = axes_of(model, list(shafts))
-    shared = material_values(model, *shafts)
     assumed: dict[str, str] = {}
     tables: dict[str, Any] = {"shafts": {}, "bearings": {}, "gears": {}, "meshes": {}}
     for number, axis in axes.items():
         material = {**shared, **material_values(model, number)}
         values = {k.partition(".")[2]: v for k, v in material.items() if shared.get(k) != v}
         tables["shafts"][axis.name] = axis.table | values
-    for stage in model.stages:
+    for stage in stages:
         numbers = _shafts_of(model, stage)
         if not set(numbers) <= axes.keys():
             continue
         for gear, number in zip((stage.gear_1, stage.gear_2), numbers, strict=True):
-            tables["gears"][f"gear_{gear.id}"] = gear_table(model, gear, axes[number])
-        name = f"stage_{stage.id}"
+            tables["gears"][part_name(model, gear.id)] = gear_table(model, gear, axes[number])
+        name = part_name(model, stage.id)
         ends = axes[numbers[0]], axes[numbers[1]]
         _check_faces(model, stage, ends)
         tables["meshes"][name], note = _mesh(model, stage, ends, directions)
@@ -179,8 +274,6 @@ def _parts(
         tables["bearings"][name] = table
         if reason:
             assumed[f"bearings.{name}"] = reason
-    if shared:
-        tables["material"] = {key.partition(".")[2]: value for key, value in shared.items()}
     return tables, assumed
 
 
@@ -188,18 +281,10 @@ def _mesh(
     model: GearboxModel, stage: Stage, ends: tuple[Axis, Axis], directions: Any
 ) -> tuple[dict[str, Any], str]:
     """Table of a stage as a mesh, and the reason of its angle where that is assumed."""
-    gear = stage.gear_1
     table = {
-        "gears": [f"gear_{g.id}" for g in (stage.gear_1, stage.gear_2)],
-        "normal_module": gear.normal_module,
-        "normal_pressure_angle": gear.normal_pressure_angle,
-        "center_distance": stage.center_distance,
+        "gears": [part_name(model, g.id) for g in (stage.gear_1, stage.gear_2)],
+        **teeth_table(model, stage),
     }
-    if abs(gear.helix_angle) > SPUR:
-        table["helix_angle"] = abs(gear.helix_angle)
-        table["hand"] = "right" if gear.helix_angle > 0.0 else "left"
-    rack = rack_values(model, stage.gear_1, stage.gear_2)
-    table |= {key.partition(".")[2]: value for key, value in rack.items()}
     first, second = (axis.start for axis in ends)
     if directions is None or first is None or second is None:
         return table, "the file has no positions of the axes"
@@ -241,38 +326,46 @@ def _check_faces(model: GearboxModel, stage: Stage, ends: tuple[Axis, Axis]) -> 
 
 
 def _operation(
-    model: GearboxModel, load: Load, data: dict[str, Any], shafts: dict[int, int]
-) -> dict[str, Any]:
-    """Operating point, and load cases where there are several."""
-    first = next(iter(shafts))
+    model: GearboxModel, load: Load, senses: dict[int, int], names: dict[int, str]
+) -> tuple[dict[str, Any], dict[str, str]]:
+    """Operating point, and load cases where there are several; and what is assumed of the ends."""
+    first, *others = names
     loaded = [
-        number
-        for number in list(shafts)[1:]
-        if any(
+        names[number]
+        for number in others
+        if names[number] != names[first] and any(
             relation.of("assembly") == number
             for c in model.file.of_kind("external_load")
-            if (flag := c.values.get("transmits_torque")) is not None and flag.content is True
+            if (flag := c.values.get("transmits_torque")) is None or flag.content is True
             for relation in model.file.related("assembly", part=c.id)
         )
-    ]
-    last = (loaded or list(shafts))[-1]
-    run = {"input": f"shaft_{first}", "output": f"shaft_{last}"}
-    tables: dict[str, Any] = {"operation": run | _point(model, load, shafts)}
+    ]  # fmt: skip
+    rings = {model.shaft_of(c.id) for c in model.file.of_kind("ring_gear")}
+    usual = [name for n, name in names.items() if n not in rings and name != names[first]]
+    run = {"input": names[first], "output": [names[first], *usual, *loaded][-1]}
+    tables: dict[str, Any] = {"operation": run | _point(model, load, senses)}
     if len(model.loads) > 1:
         tables["load_cases"] = [
-            {"name": f"case_{each.id}"}
+            {"name": _load_name(model, each)}
             | ({} if each.share is None else {"share": each.share})
-            | _point(model, each, shafts)
+            | _point(model, each, senses)
             for each in model.loads
         ]
-    return tables
+    return tables, {} if loaded else {"operation.output": NOT_THERE + "the last shaft"}
+
+
+def _load_name(model: GearboxModel, load: Load) -> str:
+    """Name of a load case: its number, in a file of ours that of the case."""
+    parts = model.file.load_cases[load.id].values()
+    names = (part.name for part in parts if part.kind == "gear_unit" and model.file.stored_case)
+    return next(names, "") or f"case_{load.id}"
 
 
 def _point(model: GearboxModel, load: Load, shafts: dict[int, int]) -> dict[str, float]:
     """Speed and torque of the input under a load case, as far as the file has them."""
     first, point = next(iter(shafts)), {}
     if first in load.speeds:
-        point["speed"] = load.speeds[first] * _sense(model, load, shafts)
+        point["speed"] = abs(load.speeds[first]) * _sense(model, load, shafts)
     if first in load.torques:
         drives = load.driven == (load.source != first)
         point["torque"] = load.torques[first] * (1.0 if drives else -1.0)

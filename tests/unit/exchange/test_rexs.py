@@ -17,8 +17,7 @@ import tribodyn as td
 from tribodyn.errors import InputError
 from tribodyn.exchange import case_from_rexs, read_rexs, write_rexs
 from tribodyn.exchange.gearbox import GearboxModel
-from tribodyn.exchange.rexs_file import RENAMED, model_of
-from tribodyn.exchange.write import WHOLE_CASE
+from tribodyn.exchange.rexs_file import RENAMED, WHOLE_CASE, model_of
 from tribodyn.gear import zero_backlash_center_distance
 from tribodyn.lubricant import Lubricant
 

@@ -51,7 +51,7 @@ def import_(
     json : bool
         Write one JSON object in SI to stdout.
     """
-    from tribodyn.exchange import case_from_rexs, machine_from_rexs, read_rexs, stage_from_rexs
+    from tribodyn.exchange import case_from_rexs, machine_from_rexs, read_rexs
     from tribodyn.study.pipeline.save import write_file
 
     if machine and (out is None or stage is not None):
@@ -72,9 +72,7 @@ def import_(
     check_file(out, force)
     changes = read_changes(set_ or [])
     if machine:
-        planetary = model.file.of_kind("planetary_stage")
-        convert = stage_from_rexs if planetary else machine_from_rexs
-        text = convert(model, load_case, changes=changes, by="--set").to_toml()
+        text = machine_from_rexs(model, load_case, changes=changes, by="--set").to_toml()
     else:
         text = case_from_rexs(model, stage, load_case, changes=changes).to_toml()
     write_file(out, text)
@@ -119,7 +117,9 @@ def export(
     if rexs is not None:
         from tribodyn.exchange import write_rexs
 
-        write_rexs(changed_case(case, set_ or [], "export"), rexs, force=force)
+        omitted = write_rexs(changed_case(case, set_ or [], "export"), rexs, force=force)
+        if omitted:
+            tell(f"note: only tribodyn reads back from the model: {', '.join(omitted)}")
     elif tables is not None:
         from tribodyn.cases.stored_result import load_result
         from tribodyn.exchange import write_tables
