@@ -1,8 +1,9 @@
-"""Matrices of a housing from files: NumPy archives and Matrix Market files."""
+"""Matrices of a housing from files: NumPy archives, Matrix Market and Nastran punch files."""
 
 from __future__ import annotations
 
 import io
+import re
 import shutil
 from collections.abc import Callable, Mapping
 from pathlib import Path
@@ -26,6 +27,8 @@ _MATRICES = {"stiffness": "K", "mass": "M", "damping": "C"}
 HOUSING = "housing-"
 #: Rows of a matrix in a file, at most.
 _MOST = 10_000
+#: Units of length, mass and time of punch files, and how many of the length a metre has.
+_UNITS = {"m-kg-s": 1.0, "mm-t-s": 1e3}
 _NODES = "Write [housing.nodes] with six coordinate numbers a node, counted from 0, -1 at rest"
 
 
@@ -55,7 +58,11 @@ def read_housing(table: Any, problems: KeyedProblems) -> Housing | None:
 def _read_files(table: Any) -> tuple[dict[str, Array], dict[str, list[int]]]:
     """Matrices by name, and the nodes of a NumPy archive."""
     if table.matrices is not None:
-        archive = _read("matrices", table.matrices, "a NumPy archive with K and M", _archive)
+        kind = "a NumPy archive with K and M, or a Nastran punch file with DMIG entries"
+        archive = _read("matrices", table.matrices, kind, _archive)
+        if isinstance(archive, PunchFile):
+            return _of_punch_file(archive, table.units)
+        _refuse_units(table.units)
         missing = [name for name in ("K", "M") if name not in archive]
         if missing:
             why, remedy = f"It has: {', '.join(archive)}", "Save it by numpy.savez(K=.., M=..)"
@@ -63,6 +70,7 @@ def _read_files(table: Any) -> tuple[dict[str, Array], dict[str, list[int]]]:
         matrices = {k: archive[n] for k, n in _MATRICES.items() if n in archive}
         names = [str(name) for name in archive.get("nodes", ())]
         return matrices, {name: list(range(6 * i, 6 * i + 6)) for i, name in enumerate(names)}
+    _refuse_units(table.units)
     files = {name: getattr(table, f"{name}_file") for name in _MATRICES}
     paths = {name: path for name, path in files.items() if path is not None}
     absent = [name for name in ("stiffness", "mass") if name not in paths]
@@ -85,7 +93,116 @@ def _read(key: str, path: str, kind: str, load: Callable[[io.BytesIO], Any]) -> 
         raise InputError(what, key, f"It is {kind}", "Write the file again") from None
 
 
-def _archive(file: io.BytesIO) -> dict[str, Array]:
+def _refuse_units(units: str | None) -> None:
+    if units is not None:
+        why, remedy = "Matrices of other files are in SI: N/m, N, N*m, kg", "Remove it"
+        raise InputError(f'units = "{units}" has no effect here', "units", why, remedy)
+
+
+def _of_punch_file(
+    punched: PunchFile, units: str | None
+) -> tuple[dict[str, Array], dict[str, list[int]]]:
+    """Matrices in SI, and the six coordinates of each grid point, named by its number."""
+    if units is None:
+        why, remedy = "A punch file does not state its units", f"Write one of {', '.join(_UNITS)}"
+        raise InputError("units is missing", "units", why, remedy)
+    matrices, points = {}, punched.points()
+    for name, letter in (("stiffness", "K"), ("mass", "M"), ("damping", "B")):
+        named = [each for each in punched.matrices if each == f"{letter}AAX"]
+        named = named or [n for n in punched.matrices if n[0] == letter and n[:2] != "K4"]
+        if len(named) == 1:
+            matrices[name] = punched.matrix(named[0], points)
+        elif named or name != "damping":
+            what = f"the file has {len(named) or 'no'} DMIG matrices of the {name}"
+            why = f"Its matrices: {', '.join(punched.matrices) or 'none'}"
+            remedy = f"Write one whose name begins with {letter}, such as {letter}AAX"
+            raise InputError(what, "matrices", why, remedy)
+    # the energy is the same with lengths in metres; coordinate 0 is a generalized one
+    along = np.array([_UNITS[units] if 1 <= c <= 3 else 1.0 for _, c in points])
+    scale = np.outer(along, along) / _UNITS[units]
+    nodes: dict[str, list[int]] = {}
+    for row, (point, component) in enumerate(points):
+        if component:
+            nodes.setdefault(str(point), [-1] * 6)[component - 1] = row
+    return {name: matrix * scale for name, matrix in matrices.items()}, nodes
+
+
+class PunchFile:
+    """DMIG entries of a Nastran file: values by name and by both points and components.
+
+    Entries are those of the bulk data: eight fields of 8 characters, four of 16 (``DMIG*``), or
+    between commas; NAME, column, component, a blank, then row, component, value, imaginary part.
+    Source: DMIG in the references of Autodesk Nastran (2025) and Altair OptiStruct (2021).
+    """
+
+    def __init__(self, text: str) -> None:
+        self.matrices: dict[str, dict[tuple[tuple[int, int], tuple[int, int]], float]] = {}
+        self.symmetric: dict[str, bool] = {}
+        entry: list[str] | None = None
+        for line in (*text.splitlines(), "END"):
+            if not line.strip() or line.startswith("$"):
+                continue
+            head, *fields = _fields(line)
+            if head in ("", "*") or head.startswith(("+", "*")):
+                if entry is not None:
+                    entry += fields
+                continue
+            if entry is not None:
+                self._add(entry)
+            entry = fields if head.rstrip("*") == "DMIG" else None
+
+    def _add(self, fields: list[str]) -> None:
+        name, column, component, kind, *rest = *fields, "", "", ""
+        if column == "0":
+            form, kind = int(component or 0), kind or "2"
+            if form not in (1, 6) or kind not in ("1", "2"):
+                raise ValueError(f"{name} is not a real square or symmetric matrix")
+            self.matrices[name], self.symmetric[name] = {}, form == 6
+            return
+        if name not in self.matrices:
+            raise ValueError(f"{name} has no header")
+        at = int(column), int(component or 0)
+        for row, its_component, value, _ in zip(*(rest[n::4] for n in range(4)), strict=False):
+            if row:
+                self.matrices[name][(int(row), int(its_component or 0)), at] = _number(value)
+
+    def points(self) -> list[tuple[int, int]]:
+        """Points and components of all matrices, in rising order."""
+        listed = {p for values in self.matrices.values() for at in values for p in at}
+        if len(listed) >= _MOST or not all(0 <= component <= 6 for _, component in listed):
+            raise InputError("its components are not 0 to 6, or too many", "matrices")
+        return sorted(listed)
+
+    def matrix(self, name: str, points: list[tuple[int, int]]) -> Array:
+        """One matrix with its rows and columns at these points."""
+        rows = {point: number for number, point in enumerate(points)}
+        matrix = np.zeros((len(rows), len(rows)))
+        for (row, column), value in self.matrices[name].items():
+            matrix[rows[row], rows[column]] = value
+            if self.symmetric[name]:
+                matrix[rows[column], rows[row]] = value
+        return matrix
+
+
+def _fields(line: str) -> list[str]:
+    """Fields of a line of bulk data; the head and eight of 8 characters, or four of 16."""
+    if "," in line:
+        fields = [field.strip() for field in line.split(",")]
+        return (fields + [""] * 9)[: 5 if "*" in fields[0] else 9]
+    head = line[:8].strip().upper()
+    width = 16 if "*" in head else 8
+    return [head, *(line[n : n + width].strip() for n in range(8, 72, width))]
+
+
+def _number(text: str) -> float:
+    """Number as Nastran writes it: 1.5D+3, or without a letter 1.5+3."""
+    return float(re.sub(r"(?<=[0-9.])(?=[+-])", "E", re.sub("[Dd]", "E", text)))
+
+
+def _archive(file: io.BytesIO) -> dict[str, Array] | PunchFile:
+    content = file.getvalue()
+    if content[:2] != b"PK":
+        return PunchFile(content.decode("ascii"))
     with np.load(file, allow_pickle=False) as archive:
         return {name: np.asarray(archive[name]) for name in archive.files}
 

@@ -375,7 +375,14 @@ class HousingTable(Section):
         '{ "seat A" = [0, 1, 2, -1, -1, -1] }',
     )
     matrices: str | None = file_path(
-        meaning="NumPy file with K, M, optional C, and names of the nodes", example='"housing.npz"'
+        meaning="NumPy file with K, M, optional C, and names of the nodes, or a Nastran punch file "
+        "with DMIG entries, whose grid points are the nodes",
+        example='"housing.npz"',
+    )
+    units: str | None = choice(
+        None,
+        {"m-kg-s": "metres, kilograms", "mm-t-s": "millimetres, tonnes"},
+        meaning="units of a punch file, which does not state them",
     )
     stiffness_file: str | None = file_path(meaning="Matrix Market file", example='"K.mtx"')
     mass_file: str | None = file_path(meaning="Matrix Market file", example='"M.mtx"')
