@@ -128,12 +128,11 @@ def _of_punch_file(
 
 
 class PunchFile:
-    """DMIG entries of a Nastran file: values by name and by both points and components.
+    """DMIG entries of a Nastran file: values by name and by both points and components."""
 
-    Entries are those of the bulk data: eight fields of 8 characters, four of 16 (``DMIG*``), or
-    between commas; NAME, column, component, a blank, then row, component, value, imaginary part.
-    Source: DMIG in the references of Autodesk Nastran (2025) and Altair OptiStruct (2021).
-    """
+    # Entries have eight fields of 8 characters, four of 16 (``DMIG*``), or fields between commas:
+    # NAME, column, component, a blank, then row, component, value, imaginary part. Source: DMIG in
+    # the references of Autodesk Nastran (2025) and Altair OptiStruct (2021).
 
     def __init__(self, text: str) -> None:
         self.matrices: dict[str, dict[tuple[tuple[int, int], tuple[int, int]], float]] = {}
