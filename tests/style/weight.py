@@ -70,6 +70,7 @@ __all__ = ["ANY", "FILES", "LINES", "import_circles", "lines_of_code", "measures
 #: dynamics: motions over phases with forces that jump, to 1e-5
 #: exchange, study: machines as REXS models, housings from Nastran punch files
 #: exchange, study: machines as REXS models, housings from Nastran punch files
+#: plot, report: a machine in space, with its flow of power and its modes.
 LINES: dict[str, int] = {
     "__init__": 105,
     "__main__": 3,
