@@ -19,7 +19,7 @@ from tribodyn.arrays.linear_algebra import each_times
 from tribodyn.arrays.memory import Memo
 from tribodyn.dynamics.equations.compiled import Compiled
 from tribodyn.dynamics.equations.grid import unrepeated
-from tribodyn.dynamics.equations.motion import compression
+from tribodyn.dynamics.equations.motion import compression, forces
 from tribodyn.dynamics.equations.nodes import (
     Nodes,
     carried_load,
@@ -37,6 +37,8 @@ _RANK = 1e-9
 _MANY = 4096
 #: Share of the acceleration by the forces in free motions above which a warning is issued.
 _UNBALANCED = 1e-3
+#: Part of the friction at rest that is not balanced, but may be in motion, without a warning.
+_ROUGH = 0.5
 
 
 @dataclass(frozen=True)
@@ -160,23 +162,31 @@ def _coordinates(mass: Array, stiffness: Array, damping: Array, used: Array) -> 
 
 
 def warn_of_unbalanced(compiled: Compiled, coordinates: OrbitCoordinates) -> None:
-    """Warn if forces accelerate a free motion of the drive that no torque balances."""
+    """Warn if loads and friction accelerate a free motion of the drive that no torque balances."""
     system, nodes = compiled.system, compiled.nodes
     inverse, free = coordinates.inverse, coordinates.free
     if system.balance is not None or not 0 < free.shape[1] < system.size:
         return
     force = np.einsum("rs,rsi->i", nodes.weight, nodes.force)
     pushed = inverse @ force
-    gained = (free.T @ pushed) @ free.T @ inverse
-    if np.linalg.norm(free.T @ pushed) <= _UNBALANCED * np.linalg.norm(pushed):
+    driven = free.T @ pushed
+    if np.linalg.norm(driven) <= _UNBALANCED * np.linalg.norm(pushed):
         return
+    if system.frictions or nodes.force_direction is not nodes.direction:
+        still = np.broadcast_to(static_start(compiled)[: system.size], nodes.force.shape)
+        moved = forces(system, nodes, 0.0, still, 0.0 * still).acceleration
+        total = free.T @ coordinates.lower.T @ np.einsum("rs,rsi->i", nodes.weight, moved)
+        if np.linalg.norm(total) <= _ROUGH * np.linalg.norm(total - driven):
+            return
+        driven = total
+    gained = driven @ free.T @ inverse
     most = int(np.argmax(np.abs(gained) * np.sqrt(np.diag(np.asarray(system.mass)))))
     warn(
         "unbalanced-drive",
-        f"the forces of the system do not balance: the whole drive speeds up, {system.names[most]} "
-        f"by {gained[most]:.4g} rad/s^2 (m/s^2 for a translation), and the orbit leaves this "
-        "out. Check magnitudes and signs in System.force, or give System.balance, the direction of "
-        "a balancing torque",
+        "loads and friction of the system do not balance: the whole drive speeds up, "
+        f"{system.names[most]} by {gained[most]:.4g} rad/s^2 (m/s^2 for a translation), and the "
+        "orbit leaves this out. Check magnitudes and signs in System.force, or give "
+        "System.balance, the direction of a balancing torque",
         stacklevel=5,
     )
 
