@@ -87,7 +87,7 @@ LINES: dict[str, int] = {
     "contact": 422,
     "cookbook": 107,
     "drawing": 195,
-    "dynamics": 15366,
+    "dynamics": 15375,
     "ehl": 9649,
     "errors": 224,
     "exchange": 2190,
