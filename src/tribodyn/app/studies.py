@@ -14,8 +14,9 @@ from tribodyn.model import REQUIRED, Option, choice, file_path, integer, number,
 from tribodyn.nomenclature import GEARS
 from tribodyn.report.study_report_data import MEASUREMENT
 from tribodyn.study.case.values import FaultError, Plain, read_value
-from tribodyn.study.studies.needs import PAIR_MESH, study_meshes, takes
+from tribodyn.study.mesh_inputs import PAIR_MESH
 from tribodyn.study.studies.needs import STUDIES as NEEDS
+from tribodyn.study.studies.needs import study_meshes, takes
 from tribodyn.study.studies.range_syntax import toml_value
 
 if TYPE_CHECKING:

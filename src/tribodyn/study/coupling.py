@@ -1,28 +1,31 @@
-"""Two-way coupling of load, load shares, film, friction and stiffness by fixed-point iteration.
+"""What follows from the teeth of a pair: its load at rest by the balance of torques, or in motion.
 
-A mesh table is computed for the force of all pairs at each mesh phase. Friction takes part of the
-torque, so that this force depends on the table: at rest by the torque balance, in motion by the
-steady orbit. Both are iterated to their fixed point.
+The force of all pairs at each mesh phase is that of the torque less the friction, or that of the
+steady orbit.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Any, Protocol, Self, TypeVar
+from functools import cached_property, partial
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from tribodyn.errors import ComputationError, Problem, collected, warn
+from tribodyn.errors import ComputationError
 from tribodyn.mesh.gears import column_of
 from tribodyn.nomenclature import GEARS
-from tribodyn.progress import Progress
+from tribodyn.progress import SILENT, Progress
 from tribodyn.record import Record, fact, quantity, record
-from tribodyn.study.mesh_inputs import MeshInputs, mesh_inputs
+from tribodyn.study.heat_balance import Temperatures
+from tribodyn.study.mesh_inputs import PAIR_MESH, MeshInputs, mesh_inputs
 from tribodyn.study.pipeline.assembly import geometry, whole_system
 from tribodyn.study.pipeline.motion import motion_of
+from tribodyn.study.pipeline.preview import gearbox_losses_of
 from tribodyn.study.pipeline.response_series import mesh_force, one_sided_phase
 from tribodyn.study.pipeline.tooth_contact import fitted_law, hypoid_friction_of, mesh_of
+from tribodyn.study.settle import Settled, Tables
 from tribodyn.types import Array
 
 if TYPE_CHECKING:
@@ -30,17 +33,9 @@ if TYPE_CHECKING:
     from tribodyn.mesh import MeshTable
     from tribodyn.study.case.case import Case
 
-#: Mesh tables by the name of the mesh, and the name of that of a pair.
-Tables = Mapping[str, "MeshTable"]
-_MESH = "mesh"
-Point = TypeVar("Point", bound="Settling")
 #: Takes a case and its mesh; returns the case updated by the mesh, such as with warmer oil.
 Follow = Callable[["Case", "MeshTable"], "Case"]
 
-#: Largest number of passes, and smallest relaxation factor before the iteration fails.
-_MAX_PASSES, _MIN_RELAXATION = 60, 1.0 / 64.0
-#: Lower limit of the force ratio at which film and friction are computed.
-_LIGHT = 0.04
 #: Distance of two samples below which they coincide [mesh cycles].
 _PHASE_TOLERANCE = 1e-9
 #: Changes recorded in each pass, in the order of its row.
@@ -89,100 +84,71 @@ class Coupling(Record):
         return float(last[-1] / last[0]) if last.size > 1 and last[0] > 0.0 else 0.0
 
 
-class Settling(Protocol):
-    """Teeth that are to agree with their load: of a pair, or of all meshes of a machine."""
-
-    def required(self, tables: Tables) -> dict[str, Array]:
-        """Force of all pairs that results from the teeth, over its nominal force, by mesh."""
-
-    def following(self, tables: Tables) -> tuple[Self, float]:
-        """The same with what else follows from the teeth, such as warmer oil, and its change."""
-
-    def under(self, loading: Mapping[str, Array]) -> Tables:
-        """Teeth under given forces."""
-
-
 @dataclass(frozen=True)
-class _Pair:
-    """A pair, whose oil may follow from its mesh."""
+class PairTeeth:
+    """The teeth of a pair under its load, whose oil may follow from its mesh."""
 
     case: Case
-    nominal: MeshTable
-    progress: Progress
-    follow: Follow | None
+    progress: Progress = SILENT
+    follow: Follow | None = None
+    mesh_source: Callable[[], MeshTable] | None = None  #: of a study that has the loads and films
+
+    @cached_property
+    def tables(self) -> Tables:
+        """Teeth under the nominal load."""
+        source = self.mesh_source or partial(mesh_of, self.case, self.progress)
+        return {PAIR_MESH: source()}
+
+    def aligned(self) -> PairTeeth:
+        """The same: the misalignment of a pair is given."""
+        return self
+
+    def at(self, to: Temperatures) -> PairTeeth:
+        """The same at other temperatures."""
+        changes = {f"lubricant.{name}": value for name, value in to.changes().items()}
+        return replace(self, case=self.case.replace(changes), mesh_source=None)
 
     def required(self, tables: Tables) -> dict[str, Array]:
-        (mesh,) = tables.values()
-        return {_MESH: _loading(self.case.solver.coupling, self.case, mesh, self.progress)}
+        """Force of all pairs that results from the teeth, over its nominal force."""
+        loading = _loading(self.case.solver.coupling, self.case, tables[PAIR_MESH], self.progress)
+        return {PAIR_MESH: loading}
 
-    def following(self, tables: Tables) -> tuple[_Pair, float]:
-        changed = self.case if self.follow is None else self.follow(self.case, tables[_MESH])
+    def following(self, tables: Tables) -> tuple[PairTeeth, float]:
+        """The same with the oil that follows from the teeth, and the change of its viscosity."""
+        changed = self.case if self.follow is None else self.follow(self.case, tables[PAIR_MESH])
         if changed == self.case:
             return self, 0.0
-        nominal = mesh_of(changed, self.progress)
-        point = replace(self, case=changed, nominal=nominal)
+        point = replace(self, case=changed, mesh_source=None)
         return point, _viscosity_change(self.case, changed)
 
     def under(self, loading: Mapping[str, Array]) -> Tables:
-        return {_MESH: mesh_under_load(mesh_inputs(self.case), self.nominal, loading[_MESH])}
+        """Teeth under a given force."""
+        inputs, nominal = mesh_inputs(self.case), self.tables[PAIR_MESH]
+        return {PAIR_MESH: mesh_under_load(inputs, nominal, loading[PAIR_MESH])}
+
+    def friction(self, tables: Tables) -> float:
+        """Power that the friction of the teeth takes [W]."""
+        return tables[PAIR_MESH].mean_friction_power
+
+    def lost(self, tables: Tables, to: Temperatures) -> float:
+        """Power that teeth, bearings, seals and oil lose [W]."""
+        return float(gearbox_losses_of(self.at(to).case, self.friction(tables)).total[0, 0])
 
 
-def coupled(
-    case: Case, progress: Progress, follow: Follow | None
-) -> tuple[Case, MeshTable, Coupling]:
-    """Iterate mesh and load to convergence; return the case, the mesh and the iteration."""
-    nominal, solver = mesh_of(case, progress), case.solver
-    start = _Pair(case, nominal, progress, follow)
-    point, tables, loading, rows = settled(
-        start, {_MESH: nominal}, solver.coupling, solver.coupling_tolerance
-    )
-    mesh = tables[_MESH]
-    columns: dict[str, Any] = dict(zip(_CHANGES, np.array(rows).T, strict=True))
-    record = Coupling(
-        iteration=np.arange(1.0, len(rows) + 1.0),
-        phase=mesh.phase,
-        loading=loading[_MESH],
+def coupling_of(settled: Settled[PairTeeth]) -> Coupling | None:
+    """Convergence of the teeth and the load of a pair; None without coupling."""
+    if not settled.rows:
+        return None
+    solver = settled.point.case.solver
+    columns: dict[str, Any] = dict(zip(_CHANGES, np.array(settled.rows).T, strict=True))
+    return Coupling(
+        iteration=np.arange(1.0, len(settled.rows) + 1.0),
+        phase=settled.tables[PAIR_MESH].phase,
+        loading=settled.loading[PAIR_MESH],
         kind=solver.coupling,
         tolerance=solver.coupling_tolerance,
         **columns,
     )
-    return point.case, mesh, record
-
-
-def settled(
-    point: Point, tables: Tables, kind: str, tolerance: float
-) -> tuple[Point, Tables, dict[str, Array], list[tuple[float, ...]]]:
-    """Iterate teeth and load until they agree, from the teeth under the nominal load."""
-    loading = {name: np.ones(table.phase.size) for name, table in tables.items()}
-    relaxation, last_change, rows = 1.0, np.inf, list[tuple[float, ...]]()
-    while True:
-        with collected():  # The teeth under the nominal load and the motion have these warnings.
-            required = point.required(tables)
-            steps = {n: np.maximum(required[n], _LIGHT) - loading[n] for n in tables}
-            change = max(float(np.abs(step).max()) for step in steps.values())
-            if change > last_change:
-                relaxation *= 0.5
-            last_change = change
-            loading = {name: loading[name] + relaxation * step for name, step in steps.items()}
-            point, other = point.following(tables)
-            solved = point.under(loading)
-        of_meshes = [_changes(tables[name], solved[name]) for name in tables]
-        rows.append((change, *map(max, zip(*of_meshes, strict=True)), other))
-        tables = solved
-        if max(rows[-1]) < tolerance:
-            break
-        if not np.isfinite(change) or relaxation < _MIN_RELAXATION or len(rows) == _MAX_PASSES:
-            raise ComputationError(_not_converged(kind, rows))
-    for name, mesh in tables.items():
-        light = (required[name] < _LIGHT).astype(float)
-        if light.any():
-            warn(
-                "coupling-light-load",
-                f"the teeth carry less than {100.0 * _LIGHT:g} % of their nominal force in "
-                f"{100.0 * float(mesh.grid.mean(light)):.2g} % of the mesh "
-                "cycle; film and friction there are computed at that force",
-            )
-    return point, tables, loading, rows
 
 
 def mesh_under_load(
@@ -278,47 +244,8 @@ def force_at_knots(mesh: MeshTable, response: Response) -> Array:
     return forces
 
 
-def _changes(before: MeshTable, after: MeshTable) -> tuple[float, float, float, float]:
-    """Return the largest changes of shares, films, friction and stiffness between two meshes."""
-    film = 0.0
-    for name in ("central_film", "minimum_film"):
-        old, new = getattr(before, name), getattr(after, name)
-        if new is not None:
-            positive = (old > 0.0) & (new > 0.0)
-            film = max(film, float(np.abs(np.log(new[positive] / old[positive])).max(initial=0.0)))
-    scales = {
-        "load_share": 1.0,
-        "friction_coefficient": float(after.friction_coefficient.max()) or 1.0,
-        "mesh_stiffness": after.mean_mesh_stiffness,
-    }
-    scales["mesh_stiffness_tangent"] = after.mean_mesh_stiffness_tangent
-    share, friction, secant, tangent = (
-        float(np.abs(getattr(after, name) - getattr(before, name)).max()) / scale
-        for name, scale in scales.items()
-    )
-    return share, film, friction, max(secant, tangent)
-
-
 def _viscosity_change(before: Case, after: Case) -> float:
     viscous_before, viscous_after = before.film_lubricant, after.film_lubricant
     if viscous_before is None or viscous_after is None:
         return 0.0
     return abs(float(np.log(viscous_after.dynamic_viscosity / viscous_before.dynamic_viscosity)))
-
-
-def _not_converged(kind: str, rows: list[tuple[float, ...]]) -> Problem:
-    last = rows[-1][0]
-    factor = last / rows[-2][0] if len(rows) > 1 else np.inf
-    remedy = (
-        'Set solver.coupling = "static", which uses the static load; or increase damping or torque'
-        if kind == "dynamic"
-        else "Increase the torque or reduce the friction coefficient"
-    )
-    return Problem(
-        f"load, film and friction do not settle: the load still changes by {100.0 * last:.2g} % in "
-        f"pass {len(rows)}, {factor:.2g} times the change before",
-        "solver.coupling",
-        "The changes grow from pass to pass: loss of contact, a resonance, or "
-        "friction that nearly balances the torque",
-        f'{remedy}, or set solver.coupling = "none"',
-    )

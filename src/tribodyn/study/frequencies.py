@@ -18,7 +18,8 @@ from tribodyn.checks import require_whole
 from tribodyn.faults import BearingImpacts
 from tribodyn.record import Record, fact, quantity, record
 from tribodyn.study.faults.machine_section import defects_of
-from tribodyn.study.studies.needs import PAIR_MESH, PAIRS, kind_of
+from tribodyn.study.mesh_inputs import PAIR_MESH
+from tribodyn.study.studies.needs import PAIRS, kind_of
 from tribodyn.types import Array
 
 if TYPE_CHECKING:

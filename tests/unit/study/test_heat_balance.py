@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
@@ -12,7 +13,8 @@ import tribodyn as td
 from tribodyn.errors import ComputationError, InputError
 from tribodyn.lubricant import library, temperature_range
 from tribodyn.mesh import MeshTable
-from tribodyn.study.pipeline.run import _at_balance as at_balance
+from tribodyn.study import coupling
+from tribodyn.study.pipeline.run import prepare_run
 from tribodyn.study.pipeline.tooth_contact import mesh_of
 
 pytestmark = pytest.mark.filterwarnings("ignore::tribodyn.errors.ModelWarning")
@@ -27,15 +29,22 @@ def _case(transfer: str = "4 W/K", **more: Any) -> Any:
     return td.load_case("fzg-roughness").replace({**changes, **more})
 
 
+def _balanced(case: Any, mesh_at: Callable[[Any], MeshTable]) -> Any:
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(coupling, "mesh_of", lambda point, progress: mesh_at(point))
+        prepared = prepare_run(case)
+    return prepared.case, prepared.heat
+
+
 def _balance(case: Any) -> Any:
     """The balance of the mesh alone, without the motion."""
     calls: list[float] = []
 
-    def mesh_at(point: Any) -> tuple[Any, MeshTable, None]:
+    def mesh_at(point: Any) -> MeshTable:
         calls.append(point.lubricant.temperature)
-        return point, mesh_of(point), None
+        return mesh_of(point)
 
-    summary, _, _, heat = at_balance(case, mesh_at)
+    summary, heat = _balanced(case, mesh_at)
     gears = heat.temperature if heat.gear_temperature is None else heat.gear_temperature
     assert calls == gears.tolist()
     return summary, heat
@@ -97,11 +106,11 @@ def test_losses_that_jump_are_reported() -> None:
     case, mesh = _case(), mesh_of(_case())
     lossy, smooth = (_scaled(mesh, factor) for factor in (8.0, 0.01))
 
-    def mesh_at(point: Any) -> tuple[Any, MeshTable, None]:
-        return point, lossy if point.lubricant.temperature < 320.0 else smooth, None
+    def mesh_at(point: Any) -> MeshTable:
+        return lossy if point.lubricant.temperature < 320.0 else smooth
 
     with pytest.raises(ComputationError, match="do not settle"):
-        at_balance(case, mesh_at)
+        _balanced(case, mesh_at)
 
 
 def _scaled(mesh: MeshTable, factor: float) -> MeshTable:

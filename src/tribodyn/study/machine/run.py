@@ -7,7 +7,7 @@ import re
 import sys
 import warnings
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, NamedTuple
 
@@ -32,8 +32,8 @@ from tribodyn.machine import (
 )
 from tribodyn.machine import system as system_of
 from tribodyn.progress import SILENT, Progress
-from tribodyn.study.coupling import load_of_torque, mesh_under_load, settled
-from tribodyn.study.heat_balance import HeatBalance, Temperatures, balanced
+from tribodyn.study.coupling import load_of_torque, mesh_under_load
+from tribodyn.study.heat_balance import HeatBalance, Temperatures
 from tribodyn.study.machine.case import MachineCase
 from tribodyn.study.machine.first_look import over_phases, warn_of_motion
 from tribodyn.study.machine.load_cases import LoadCase
@@ -51,6 +51,7 @@ from tribodyn.study.pipeline.assembly import mesh_contacts, mesh_damping
 from tribodyn.study.pipeline.store import Stored, StoredLoad, figures_of_load
 from tribodyn.study.pipeline.stored_motion import read_passes
 from tribodyn.study.pipeline.tooth_contact import load_friction_of, mesh_table
+from tribodyn.study.settle import settle
 
 if TYPE_CHECKING:
     from tribodyn.dynamics import LoadFriction, Response
@@ -150,68 +151,99 @@ def rehearse_machine(case: MachineCase) -> Balanced:
 def balanced_machine(
     case: MachineCase, load: LoadCase, progress: Progress = SILENT, *, rehearsal: bool = False
 ) -> Balanced:
-    """Static balance of a machine with computed teeth, at the temperature of its heat balance."""
-    if rehearsal:
-        return _settled(case, load, progress, rehearsal=True)
-    if case.heat is None:
-        return _coupled(case, load, progress)
-    state: Balanced | None = None
-
-    def solve(to: Temperatures) -> tuple[Balanced, float]:
-        nonlocal state
-        warm = replace(load, temperature=to.oil, gear_temperature=to.gears)
-        state = _coupled(case, warm, progress, state)
-        return state, sum(power_with_friction(state.static.machine, state.tables)[1].values())
-
-    def loss(solved: Balanced, to: Temperatures) -> float:
-        parts = part_losses(case, replace(load, temperature=to.oil), solved.static)
-        friction = power_with_friction(solved.static.machine, solved.tables)[1]
-        return sum((*friction.values(), *parts.values()))
-
-    pairs = [read_teeth(case, n, teeth_under(case, n, load))[0] for n in case.meshes_with_teeth]
+    """Static balance of a machine with computed teeth that agree with load and temperature."""
+    start, heat = MachineTeeth(case, load, progress, rehearsal), None if rehearsal else case.heat
+    coupling = "none" if rehearsal else case.solver.coupling
+    names = case.meshes_with_teeth if heat is not None else ()
+    pairs = [read_teeth(case, n, teeth_under(case, n, load))[0] for n in names]
     try:
         oils = [pair.lubricant for pair in pairs if pair.lubricant is not None]
-        warm_state, at, heat = balanced(case.heat, oils, solve, loss)
+        settled = settle(start, coupling, case.solver.coupling_tolerance, heat, oils)
     except ComputationError as error:
         raise ComputationError(case._located(error)) from None
-    warm = replace(load, temperature=at.oil, gear_temperature=at.gears)
-    return warm_state._replace(load=warm, heat=heat)
+    point, tables = settled.point, dict(settled.tables)
+    warm = load if settled.temperatures is None else warmed(load, settled.temperatures)
+    parts = point.balance(tables), tables, point.misalignment, point.warnings
+    return Balanced(warm, *parts, settled.heat)
 
 
-def _coupled(
-    case: MachineCase, load: LoadCase, progress: Progress, start: Balanced | None = None
-) -> Balanced:
-    """Static balance of a machine with teeth that agree with their load, where the case says so."""
-    state, solver = _settled(case, load, progress, start=start), case.solver
-    if solver.coupling == "none":
-        return state
-    meshes = _Meshes(case, load, progress, state)
-    meshes, tables, *_ = settled(meshes, state.tables, solver.coupling, solver.coupling_tolerance)
-    return meshes.state._replace(static=meshes.balance(tables), tables=dict(tables))
+def warmed(load: LoadCase, to: Temperatures) -> LoadCase:
+    """A load at the temperatures of a heat balance."""
+    return replace(load, temperature=to.oil, gear_temperature=to.gears)
 
 
 @dataclass(frozen=True)
-class _Meshes:
-    """Teeth of all meshes of a machine, whose shafts deflect under their forces."""
+class MachineTeeth:
+    """The teeth of all meshes of a machine under a load, whose forces bend the shafts."""
 
     case: MachineCase
     load: LoadCase
     progress: Progress
-    state: Balanced  #: with the teeth under the nominal load
+    rehearsal: bool = False
+    misalignment: Mapping[str, float | Misalignment] = field(default_factory=dict)
+
+    @cached_property
+    def teeth(self) -> dict[str, tuple[MeshTable, dict[str, Any], list[ModelWarning]]]:
+        """Mesh table, force law and warnings of each mesh under the nominal load."""
+        return _teeth(self.case, self.load, self.misalignment, self.rehearsal, self.progress)
+
+    @cached_property
+    def tables(self) -> Mapping[str, MeshTable]:
+        """Teeth under the nominal load."""
+        return {name: table for name, (table, _, _) in self.teeth.items()}
+
+    @cached_property
+    def static(self) -> StaticBalance:
+        """Static balance with the teeth under the nominal load."""
+        laws = {name: law for name, (_, law, _) in self.teeth.items()}
+        return _static(self.case, self.load, laws, self.misalignment)
+
+    @property
+    def warnings(self) -> list[MeshWarning]:
+        """Warnings of the teeth."""
+        listed = ((name, each) for name, (_, _, of_mesh) in self.teeth.items() for each in of_mesh)
+        return [MeshWarning(name, self.load.name, each) for name, each in listed]
 
     @cached_property
     def inputs(self) -> dict[str, MeshInputs]:
         """What the teeth are computed from."""
-        misaligned = self.state.misalignment.items()
+        misaligned = self.misalignment.items()
         return {name: inputs_under(self.case, name, self.load, m) for name, m in misaligned}
+
+    def aligned(self) -> MachineTeeth:
+        """The same with the misalignment by the shafts that these teeth bend."""
+        # Deflected shafts misalign the flanks, which changes the stiffness of the teeth and so, a
+        # little, the deflection: teeth and balance are repeated until they agree.
+        if not self.case.meshes_with_teeth:
+            return self
+        heated = self.case.heat is not None and not self.rehearsal
+        passes, same = (_HEATED_PASSES, _SETTLED) if heated else (_PASSES, _SAME)
+        point = self if self.misalignment else self._misaligned(_static(self.case, self.load))
+        for _ in range(passes - 1):
+            if _moved(point.misalignment, point.static)[0] <= same:
+                break
+            point = point._misaligned(point.static)
+        self.progress.finish()
+        return point
+
+    def _misaligned(self, static: StaticBalance) -> MachineTeeth:
+        names = self.case.meshes_with_teeth
+        return replace(self, misalignment={n: misalignment_of(static.meshes[n]) for n in names})
+
+    def at(self, to: Temperatures) -> MachineTeeth:
+        """The same at other temperatures."""
+        point = self._misaligned(self.static) if self.misalignment else self
+        return replace(point, load=warmed(self.load, to))
 
     def balance(self, tables: Mapping[str, MeshTable]) -> StaticBalance:
         """Static balance with the force laws of mesh tables."""
-        return _balance(self.case, self.load, tables, self.state.misalignment)
+        if all(tables[name] is table for name, table in self.tables.items()):
+            return self.static
+        return _balance(self.case, self.load, tables, self.misalignment)
 
     def required(self, tables: Mapping[str, MeshTable]) -> dict[str, Array]:
         """Forces that hold the torques which reach the meshes, less the friction before them."""
-        machine = self.state.static.machine
+        machine = self.static.machine
         flow, nominal = power_with_friction(machine, tables)[0].meshes, machine.kinematics.meshes
         return {
             name: flow[name].power
@@ -220,20 +252,15 @@ class _Meshes:
             for name, table in tables.items()
         }
 
-    def following(self, tables: Mapping[str, MeshTable]) -> tuple[_Meshes, float]:
+    def following(self, tables: Mapping[str, MeshTable]) -> tuple[MachineTeeth, float]:
         """The same with the misalignments by these teeth, and their change."""
-        static, before = self.balance(tables), self.state.misalignment
-        change, after = _moved(before, static)
-        if change <= _SETTLED:
-            return self, change
-        teeth = _teeth(self.case, self.load, after, False, self.progress)
-        nominal = {name: table for name, (table, _, _) in teeth.items()}
-        state = self.state._replace(static=static, tables=nominal, misalignment=after)
-        return replace(self, state=state), change
+        static = self.balance(tables)
+        change, _ = _moved(self.misalignment, static)
+        return (self if change <= _SETTLED else self._misaligned(static)), change
 
     def under(self, loading: Mapping[str, Array]) -> dict[str, MeshTable]:
         """Teeth under given forces; planets with equal teeth and forces share them."""
-        nominal = self.state.tables
+        nominal = self.tables
         keys = {n: (id(nominal[n]), of.round(12).tobytes()) for n, of in loading.items()}
         first = {key: name for name, key in reversed(keys.items())}
 
@@ -245,36 +272,14 @@ class _Meshes:
         tables = dict(zip(first, listed, strict=True))
         return {name: tables[key] for name, key in keys.items()}
 
+    def friction(self, tables: Mapping[str, MeshTable]) -> float:
+        """Power that the friction of all teeth takes [W]."""
+        return sum(power_with_friction(self.static.machine, tables)[1].values())
 
-def _settled(
-    case: MachineCase,
-    load: LoadCase,
-    progress: Progress,
-    *,
-    rehearsal: bool = False,
-    start: Balanced | None = None,
-) -> Balanced:
-    """Static balance of a machine with computed teeth, from that of a similar load."""
-    # Deflected shafts misalign the flanks, which changes the stiffness of the teeth and so, a
-    # little, the deflection: teeth and balance are repeated until they agree.
-    static = _static(case, load) if start is None else start.static  # with a usual stiffness
-    heated = case.heat is not None and not rehearsal
-    passes, same = (_HEATED_PASSES, _SETTLED) if heated else (_PASSES, _SAME)
-    for _ in range(passes):
-        misalignment = {n: misalignment_of(static.meshes[n]) for n in case.meshes_with_teeth}
-        teeth = _teeth(case, load, misalignment, rehearsal, progress)
-        tables = {name: table for name, (table, _, _) in teeth.items()}
-        laws = {name: law for name, (_, law, _) in teeth.items()}
-        mesh_warnings = [  # those of the last pass are in force
-            MeshWarning(name, load.name, warning)
-            for name, (_, _, of_mesh) in teeth.items()
-            for warning in of_mesh
-        ]
-        static = _static(case, load, laws, misalignment)
-        if _moved(misalignment, static)[0] <= same:
-            break
-    progress.finish()
-    return Balanced(load, static, tables, misalignment, mesh_warnings)
+    def lost(self, tables: Mapping[str, MeshTable], to: Temperatures) -> float:
+        """Power that teeth, bearings, seals and oil lose [W]."""
+        others = part_losses(self.case, warmed(self.load, to), self.balance(tables))
+        return self.friction(tables) + sum(others.values())
 
 
 def _teeth(

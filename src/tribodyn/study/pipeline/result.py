@@ -14,6 +14,7 @@ from tribodyn.study.case.hypoid import mounting
 from tribodyn.study.case.provenance import Assumption, assumptions
 from tribodyn.study.coupling import Coupling
 from tribodyn.study.faults.sensors import PairSensors
+from tribodyn.study.mesh_inputs import PAIR_MESH
 from tribodyn.study.pipeline.assembly import static_error
 from tribodyn.study.pipeline.result_of_case import ResultOfCase
 from tribodyn.study.pipeline.store import MOTIONS
@@ -64,7 +65,7 @@ class Result(ResultOfCase, Record):
         Heat balance of gears and oil, if ``lubricant.heat_transfer`` is given.
     """
 
-    _MESH = "mesh"
+    _MESH = PAIR_MESH
     _MOTION = MOTIONS[1]
     _COMPARISON = "result_comparison"
 

@@ -13,10 +13,9 @@ from tribodyn.errors import ModelWarning, collected, frames
 from tribodyn.progress import SILENT, Progress
 from tribodyn.study.case.read import unchanged_files
 from tribodyn.study.case.to_models import locate_errors
-from tribodyn.study.coupling import Coupling, Follow, coupled
+from tribodyn.study.coupling import Coupling, Follow, PairTeeth, coupling_of
 from tribodyn.study.first_use import compile_in_parallel
-from tribodyn.study.heat_balance import Temperatures, balanced
-from tribodyn.study.mesh_inputs import mesh_inputs
+from tribodyn.study.mesh_inputs import PAIR_MESH, mesh_inputs
 from tribodyn.study.pipeline.assembly import damping_of, system_of, whole_system
 from tribodyn.study.pipeline.cautions import (
     case_cautions,
@@ -28,7 +27,6 @@ from tribodyn.study.pipeline.cautions import (
     teeth_cautions,
 )
 from tribodyn.study.pipeline.motion import motion_of, motions_of, steps_of
-from tribodyn.study.pipeline.preview import gearbox_losses_of
 from tribodyn.study.pipeline.result import Result
 from tribodyn.study.pipeline.store import Stored
 from tribodyn.study.pipeline.stored_motion import NOMINAL, read_friction, read_passes, read_response
@@ -39,6 +37,7 @@ from tribodyn.study.pipeline.tooth_contact import (
     meshes_of,
     teeth_contact_ratio,
 )
+from tribodyn.study.settle import settle
 
 if TYPE_CHECKING:
     from tribodyn.dynamics import Response, System
@@ -46,9 +45,6 @@ if TYPE_CHECKING:
     from tribodyn.study.case.case import Case
     from tribodyn.study.heat_balance import HeatBalance
     from tribodyn.study.pipeline.assembly import Damping
-
-    #: A case with its mesh and its coupling.
-    Meshed = tuple[Case, MeshTable, Coupling | None]
 
 
 def run(
@@ -182,23 +178,20 @@ def prepare_run(
     """Compute mesh and structure of a case; the motion follows in :meth:`PreparedRun.result`."""
     with unchanged_files(case), locate_errors(case), collected() as model_warnings:
         progress.start("Tooth contact")
-
-        def mesh_at(point: Case) -> Meshed:
-            if case.solver.coupling != "none":
-                return coupled(point, progress, follow)
-            return point, mesh_of(point, progress) if mesh_source is None else mesh_source(), None
-
-        heat = None
-        if case.lubricant is not None and case.lubricant.heat_transfer is not None:
-            mesh_source = None  # loads and films of the study belong to another temperature
-            case, mesh, coupling, heat = _at_balance(case, mesh_at)
-        else:
-            case, mesh, coupling = mesh_at(case)
+        oils = [] if case.lubricant is None else [case.lubricant]
+        start = PairTeeth(case, progress, follow, mesh_source)
+        coupling = case.solver.coupling, case.solver.coupling_tolerance
+        settled = settle(start, *coupling, case.lubricant, oils)
+        point, mesh = settled.point, settled.tables[PAIR_MESH]
+        if settled.temperatures is not None:
+            point = point.at(settled.temperatures)
+        case = point.case
         friction = load_friction_of(mesh_inputs(case), mesh)
         damping = damping_of(case, mesh)
         system = system_of(case, mesh, damping, friction)
         progress.finish()
-    return PreparedRun(case, mesh, coupling, heat, friction, damping, system, model_warnings)
+    parts = case, mesh, coupling_of(settled), settled.heat, friction, damping, system
+    return PreparedRun(*parts, model_warnings)
 
 
 def restored(case: Case, stored: Stored) -> Result:
@@ -218,29 +211,6 @@ def restored(case: Case, stored: Stored) -> Result:
     result = Result(*parts, friction, compared, *passes)
     vars(result)["figures"] = stored.summary
     return result
-
-
-def _at_balance(
-    case: Case, mesh_at: Callable[[Case], Meshed]
-) -> tuple[Case, MeshTable, Coupling | None, HeatBalance]:
-    """Case, mesh and coupling at the temperature at which the losses are dissipated."""
-
-    def warmed(point: Case, temperatures: Temperatures) -> Case:
-        return point.replace({f"lubricant.{k}": v for k, v in temperatures.changes().items()})
-
-    def solve(temperatures: Temperatures) -> tuple[Meshed, float]:
-        solved = mesh_at(warmed(case, temperatures))
-        return solved, solved[1].mean_friction_power
-
-    def loss(solved: Meshed, temperatures: Temperatures) -> float:
-        point, mesh, _ = solved
-        losses = gearbox_losses_of(warmed(point, temperatures), mesh.mean_friction_power)
-        return float(losses.total[0, 0])
-
-    oil = case.lubricant
-    assert oil is not None
-    (solved, mesh, coupling), temperatures, heat = balanced(oil, [oil], solve, loss)
-    return warmed(solved, temperatures), mesh, coupling, heat
 
 
 class PendingRun(NamedTuple):

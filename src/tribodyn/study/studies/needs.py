@@ -10,6 +10,7 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from tribodyn.errors import Argument, InputError, did_you_mean
+from tribodyn.study.mesh_inputs import PAIR_MESH
 
 if TYPE_CHECKING:
     from tribodyn.study.case.case import Case
@@ -20,8 +21,6 @@ PAIRS = ("cylindrical pair", "hypoid pair", "mesh table")
 PARTS = ("machine", "planetary stage")
 KINDS = (*PAIRS, *PARTS)
 _CYLINDRICAL, _TOOTHED = PAIRS[:1], PAIRS[:2]
-#: Name of the mesh of a pair of gears.
-PAIR_MESH = "mesh"
 
 
 class Need(NamedTuple):
