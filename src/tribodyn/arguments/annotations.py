@@ -227,14 +227,24 @@ _SIMPLE = {
 }
 
 
+def _without_alias(hint: Any) -> Any:
+    """What a name of an annotation stands for, such as that of arrays from NumPy 2.5 on."""
+    alias = typing.get_origin(hint)
+    if hasattr(alias, "__value__"):
+        return alias.__value__[typing.get_args(hint)]
+    named = hasattr(hint, "__value__") and hint != ArrayLike
+    return _without_alias(hint.__value__) if named else hint
+
+
 def wanted(hint: Any, sized: int, strict: bool = False, several: bool = False) -> Wanted:
     """Check of an annotation; ``strict`` after a function has failed.
 
     ``sized`` is 0 for records, whose numbers may be NaN, 1 for methods, and 2 for functions;
     ``several`` accepts an array for a number.
     """
+    hint = _without_alias(hint)
     origin, args = typing.get_origin(hint), typing.get_args(hint)
-    every, kind = set(typing.get_args(ArrayLike)), origin or hint
+    every, kind = set(typing.get_args(ArrayLike)) or {ArrayLike}, origin or hint
     if hint in (float, int):
         several = several and hint is float and not strict
         read = functools.partial(_number, sized=sized, integer=hint is int, several=several)
