@@ -26,7 +26,11 @@ from tribodyn.stiffness.fe2d.root_stress import (
     surface_stress,
     virtual_spur_gear,
 )
-from tribodyn.stiffness.fe2d.tooth_mesh import grid_elements
+from tribodyn.stiffness.fe2d.tooth_mesh import MeshSize, grid_elements
+from tribodyn.stiffness.fe3d import SolidSize
+from tribodyn.stiffness.fe3d.face import FaceSize
+from tribodyn.stiffness.fe3d.provider import gear_sector
+from tribodyn.stiffness.fe3d.root_spread import SIZE, RootSpread, computed_spread
 
 NU = 0.3
 PAIRS = {"spur": spur_example, "helical": helical_example, "ring": ring_example}
@@ -153,3 +157,54 @@ def test_slices_of_hardly_inclined_teeth_are_stressed_as_straight_ones(gear):
     )
     assert sliced.ratio == pytest.approx(whole.ratio, rel=1e-3)
     assert sliced.greatest == pytest.approx(whole.greatest, rel=0.03)
+
+
+FINER = SolidSize(section=MeshSize(0.19, 0.19, 1.3, 0.7, 0.4, 3), face=FaceSize(0.3, 1.2))
+#: Face width and slices of a load, over the module.
+WIDTH, SLICES = 6.0, 18
+
+
+def spread_of(pair, gear, size=SIZE) -> RootSpread:
+    return computed_spread(gear_sector(getattr(pair, gear), NU, size))
+
+
+def wide(**changes):
+    return spur_example(pinion_face_width=27e-3, **changes)
+
+
+@pytest.mark.parametrize("gear", ["pinion", "wheel"])
+def test_an_even_load_stresses_a_straight_tooth_as_in_a_plane_section(gear):
+    parts = spread_of(wide(), gear).between(SLICES, WIDTH)
+    assert parts.sum(axis=2) == pytest.approx(1.0, abs=0.01)
+    # a load in the middle bends the whole root as much as an even one; at an end it has one side
+    assert parts.sum(axis=1)[:, 6:12] == pytest.approx(1.0, abs=0.06)
+    assert np.all(parts[:, 0, 0] > 1.5 * parts[:, SLICES // 2, SLICES // 2])
+
+
+@pytest.mark.slow
+def test_the_ends_of_an_inclined_tooth_are_stressed_unlike():
+    """Of loads near the root the end that lines of contact leave at the tip carries more."""
+    inclined = wide(helix_angle=math.radians(15.0), center_distance=None)
+    even = spread_of(inclined, "pinion").between(SLICES, WIDTH).sum(axis=2)
+    assert even[:, 8:10] == pytest.approx(1.0, abs=0.03)
+    assert np.all(even[:4, 1] > 1.05 * even[:4, -2])
+
+
+@pytest.mark.slow
+def test_finer_solid_elements_spread_an_oblique_load_alike():
+    pair = wide(helix_angle=math.radians(15.0), center_distance=None)
+    stresses = []
+    for size in (SIZE, FINER):
+        spread = spread_of(pair, "pinion", size)
+        low, high = np.quantile(spread_of(pair, "pinion").curvature_radius, [0.25, 0.9])
+        lines = [np.linspace(high, low, SLICES), np.full(SLICES, high)]
+        loads = [np.ones(SLICES), (np.arange(SLICES) < 5) * 1.0]
+        for radii, load in zip(lines, loads, strict=True):
+            stresses.append(float((spread.at_radii(radii[None], WIDTH)[0] @ load).max()))
+    assert stresses[:2] == pytest.approx(stresses[2:], rel=0.01)
+
+
+def test_both_hands_are_stressed_alike():
+    pairs = [helical_example(hand=hand) for hand in ("left", "right")]
+    left, right = (root_stress_by_elements(pair, "wheel", mesh_of(pair)) for pair in pairs)
+    assert left.greatest == pytest.approx(right.greatest, rel=1e-9)

@@ -1,7 +1,8 @@
 """Root stress by finite elements of the tooth, beside Y_F Y_S of ISO 6336-3.
 
 Plane stress in the transverse section of spur gears; of helical gears in the normal section, the
-virtual spur gear with a whole number of teeth, slice by slice without support of its neighbours.
+virtual spur gear with a whole number of teeth. Where the tooth contact has slices of the face,
+solid elements tell how the load of each spreads along the root, with the free ends of the face.
 The stress is that along the surface of the fillet on the side of the loaded flank. A load per
 length of the line of contact counts ``cos(beta)/cos(beta_b)`` per length of the tooth, as in Y_F.
 """
@@ -27,6 +28,7 @@ from tribodyn.stiffness.fe2d.root_stress import (
     root_stress,
     virtual_spur_gear,
 )
+from tribodyn.stiffness.fe3d.root_spread import RootSpread, root_spread
 from tribodyn.types import Array
 
 
@@ -87,6 +89,17 @@ def _same_load_point(gear: CylindricalGear, contact_ratio: float) -> tuple[float
     return y_f * y_s, gear.base_radius * math.tan(lever.pressure_angle)
 
 
+def _spread(
+    spread: RootSpread, pair: CylindricalPair, gear: CylindricalGear, radii: Array
+) -> Array:
+    """Part (n, stressed, loaded) of the load of each slice that the root of one feels."""
+    width, module = pair.common_face_width / gear.normal_module, gear.normal_module
+    falls = gear.sign * float((np.abs(radii[:, -1]) - np.abs(radii[:, 0])).mean()) <= 0.0
+    along = slice(None, None, 1 if falls else -1)  # the lines of its elements fall from the tip
+    parts = spread.at_radii(np.abs(radii[:, along]) / module, width)
+    return parts[:, along, along]
+
+
 def root_stress_by_elements(
     pair: CylindricalPair, gear: str, table: MeshTable | None = None, poissons_ratio: float = 0.3
 ) -> RootStress:
@@ -116,7 +129,8 @@ def root_stress_by_elements(
     -----
     Quadratic elements of a twelfth of the fillet radius at the fillet, the body held at its bore,
     of a ring at its rim. The fillet is that of the rack, of a ring the arc of its drawing. Loads
-    of neighbouring teeth count.
+    of neighbouring teeth count. Loads along oblique lines, or uneven over the face, spread along
+    the root as solid elements of the tooth say; finer ones change the stress by less than 1 %.
 
     Examples
     --------
@@ -144,6 +158,7 @@ def root_stress_by_elements(
     load, radii = (by_pair(column, slices) for column in columns)
     load = load * math.cos(pair.helix_angle) / share / part.normal_module
     greatest = np.zeros(len(load))
+    spread = None if slices == 1 else root_spread(part, poissons_ratio)
     for tooth in range(load.shape[1]):
         stress = np.zeros((*load[:, tooth].shape, unit.position.shape[0]))
         for other in range(load.shape[1]):
@@ -151,8 +166,10 @@ def root_stress_by_elements(
             for number in NEIGHBOURS:
                 pressed = np.where((shift == number) & (load[:, tooth] > 0.0), load[:, other], 0.0)
                 if pressed.any():
-                    unit_stress = at_places(unit, number, radii[:, other] / share)
-                    stress += pressed[..., None] * unit_stress
+                    pressed = pressed[..., None] * at_places(unit, number, radii[:, other] / share)
+                    if spread is not None and number == 0:
+                        pressed = _spread(spread, pair, part, radii[:, other]) @ pressed
+                    stress += pressed
         greatest = np.maximum(greatest, stress.max(axis=(1, 2)))
     over_phase = PhaseFunction(table.grid, greatest)
     return RootStress(stress_ratio, table.phase, greatest, table.total_normal_force, over_phase)

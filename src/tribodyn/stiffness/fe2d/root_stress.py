@@ -48,7 +48,7 @@ def surface_stress(nodes: Array, line: Index, displacement: Array) -> tuple[Arra
     return strain, np.einsum("ga,eax->egx", values, nodes[edges]).reshape(-1, 2)
 
 
-def _fillet(mesh: SectorMesh, side: ToothSide) -> Index:
+def fillet_nodes(mesh: SectorMesh, side: ToothSide) -> Index:
     """Nodes of the loaded side from the middle of the root up to the form circle."""
     foot = int(np.flatnonzero(mesh.outline == mesh.tooth[0, -1])[0])
     below = int(np.count_nonzero(mesh.flank_length <= side.form_length + 1e-9))
@@ -65,7 +65,7 @@ def computed_root_stress(
     mesh = tooth_mesh(gear, held_radius(gear), size, ends)
     ring, radii = Ring(mesh, plane_stress(1.0, poissons_ratio)), _places(gear)[0]
     solution = ring.solve(flank_loads(gear, mesh, radii, _HALF_WIDTH, inside=True).forces)
-    line, shape = _fillet(mesh, side), (len(mesh.nodes), 2, radii.size)
+    line, shape = fillet_nodes(mesh, side), (len(mesh.nodes), 2, radii.size)
     stress = []
     for neighbour in NEIGHBOURS:  # the loaded tooth lies to the side of larger radii of number 1
         moved = ring.displacement(solution, gear.sign * neighbour).reshape(shape)

@@ -6,6 +6,7 @@
 | `sector` | section of one tooth with the top of the body, reduced to its flank and borders |
 | `ring` | all teeth, harmonic by harmonic around the axis |
 | `sections` | elements of a solid whose section turns along the face |
+| `root_spread` | root stress along the face under a load at one place |
 | `face` | functions over the face width |
 | `condense` | elimination of freedoms |
 | `bevel` | influence over the flank of a hypoid or spiral bevel gear |
