@@ -67,7 +67,7 @@ class Sketch:
         try:
             return json.dumps(parts, default=_packed, allow_nan=False, separators=(",", ":"))
         except ValueError:  # JSON has no NaN.
-            return json.dumps(_finite(parts), default=_packed, separators=(",", ":"))
+            return json.dumps(finite(parts), default=_packed, separators=(",", ":"))
 
 
 def _packed(value: Any) -> Any:
@@ -80,17 +80,17 @@ def _packed(value: Any) -> Any:
         fitting = (k for k in kinds if np.iinfo(k).min <= ends[0] and ends[1] <= np.iinfo(k).max)
         value = value.astype(next(fitting, object)) if value.itemsize == 8 else value
     if value.dtype.kind not in "fiu" or value.itemsize > 8 or not value.size:
-        return _finite(value.tolist())
+        return finite(value.tolist())
     packed = {"dtype": value.dtype.str[1:], "bdata": b64encode(value.tobytes()).decode("ascii")}
     return packed if value.ndim == 1 else {**packed, "shape": str(value.shape)[1:-1]}
 
 
-def _finite(part: Any) -> Any:
+def finite(part: Any) -> Any:
     """The same data with None instead of NaN and infinity."""
     if isinstance(part, dict):
-        return {name: _finite(each) for name, each in part.items()}
+        return {name: finite(each) for name, each in part.items()}
     if isinstance(part, list | tuple):
-        return [_finite(each) for each in part]
+        return [finite(each) for each in part]
     return None if isinstance(part, float) and not math.isfinite(part) else part
 
 

@@ -8,7 +8,15 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from tribodyn.app.case_form import field_of
-from tribodyn.app.study_functions import FUNCTIONS, MEASURED, RANGE, Shown, Values
+from tribodyn.app.study_functions import (
+    FUNCTIONS,
+    MEASURED,
+    RANGE,
+    WRITERS,
+    Shown,
+    Values,
+    shown,
+)
 from tribodyn.errors import InputError
 from tribodyn.model import REQUIRED, Option, choice, file_path, integer, number, text
 from tribodyn.nomenclature import GEARS
@@ -231,7 +239,10 @@ def compute(
     kind: str, case: Case | MachineCase, texts: Mapping[str, str], progress: Progress, target: Path
 ) -> Shown:
     """Check the typed values of a study, compute it and write its directory."""
-    return FUNCTIONS[kind](case, STUDIES[kind].read(texts), progress, target)
+    values = STUDIES[kind].read(texts)
+    if kind in WRITERS:
+        return WRITERS[kind](case, values, progress, target)  # type: ignore[arg-type]
+    return shown(FUNCTIONS[kind](case, values, progress), kind, case, target)  # type: ignore[arg-type]
 
 
 def numeric_keys(options: Mapping[str, Option]) -> list[str]:
@@ -288,16 +299,8 @@ def form_of(
         if option.unit:  # what is typed may have a unit of its own
             field |= {"value": values.get(name, ""), "units": [option.display_unit]}
         fields.append(field)
-    group = {
-        "key": kind,
-        "title": study.title,
-        "meaning": study.meaning,
-        "note": "",
-        "open": True,
-        "fields": fields,
-        "more": [],
-        "groups": [],
-    }
+    group: dict[str, Any] = {"key": kind, "title": study.title, "meaning": study.meaning}
+    group |= {"note": "", "open": True, "fields": fields, "more": [], "groups": []}
     return {"groups": [group], "faults": []}
 
 

@@ -6,12 +6,15 @@ from collections.abc import Callable, Iterator, Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from tribodyn import plot
 from tribodyn.errors import InputError
+from tribodyn.report import nonlinear_report_data as nonlinear
+from tribodyn.report import study_report_data as of_studies
+from tribodyn.report.study_report_data import StudyReportData, figure_with_caption, save_study
 from tribodyn.study.studies.range_syntax import UnreadError, read_list, read_range, read_values
 
 if TYPE_CHECKING:
     from tribodyn.progress import Progress
-    from tribodyn.report.study_report_data import StudyReportData
     from tribodyn.study.case.case import Case
 
 #: Values of a study by name: numbers and choices checked, others as text; None or empty: default.
@@ -20,6 +23,8 @@ Values = Mapping[str, Any]
 Shown = dict[str, Any]
 
 RANGE = "400..3500 rpm:20, or 50, 150, 300 N*m"
+#: Studies that the report calls differently.
+_KINDS = {"friction-from-loss": "friction from losses"}
 #: Data of a measurement of losses that the page asks for.
 MEASURED = ("gear_sets", "no_load_torque", "other_loss")
 
@@ -54,29 +59,26 @@ def _operation(case: Case, values: Values) -> list[list[float] | None]:
     return [_points(case, f"operation.{n}", values[n] or "") for n in ("torque", "speed")]
 
 
-def _of(answer: StudyReportData, kind: str, case: Case, target: Path) -> Shown:
-    from tribodyn.report.study_report_data import save_study
-
-    save_study(kind, case, target, answer)
+def shown(answer: StudyReportData, kind: str, case: Case, target: Path) -> Shown:
+    """Write the directory of a study, and return what the page shows of it."""
+    save_study(_KINDS.get(kind, kind), case, target, answer)
     table = ["Table", list(answer.head), [list(row) for row in answer.rows]]
-    return {"sentences": list(answer.statements), "tables": [table], "figures": answer.figures}
+    parts = {"sentences": list(answer.statements), "tables": [table], "figures": answer.figures}
+    changes = getattr(answer.data, "changes", None)
+    return parts if changes is None else {**parts, "relief": changes}
 
 
 def _sweep(case: Case, values: Values, progress: Progress, target: Path) -> Shown:
-    from tribodyn import plot
-    from tribodyn.report.study_report_data import figure_with_caption
     from tribodyn.study.pipeline.summary_figures import in_words
     from tribodyn.study.studies.sweep import sweep
 
     result = sweep(case, dict(_varied(values)), by="study", progress=progress)
     result.save(target)
-    names = result.displayed_figures()
     if not plot.machine_sweep.missing(result):
-        names = []
-    figures = [(in_words(name), result.plot(name), "") for name in names]
-    figures[:1] = [(*figures[0][:2], plot.sweep.caption_of(result))] if figures else []
-    if not names:
         figures = [figure_with_caption(plot.machine_sweep, result)]
+    else:
+        figures = [(in_words(n), result.plot(n), "") for n in result.displayed_figures()]
+        figures[:1] = [(*each[:2], plot.sweep.caption_of(result)) for each in figures[:1]]
     failed = dict.fromkeys(point.failed for point in result.points if point.failed)
     return {
         "sentences": [f"{len(result.points)} values.", *failed],
@@ -86,8 +88,6 @@ def _sweep(case: Case, values: Values, progress: Progress, target: Path) -> Show
 
 
 def _bifurcation(case: Case, values: Values, progress: Progress, target: Path) -> Shown:
-    from tribodyn import plot
-    from tribodyn.report.study_report_data import figure_with_caption, save_bifurcation
     from tribodyn.study.studies.bifurcation import Findings, bifurcation
 
     low, high, points = _read("values", values["values"], read_range)
@@ -103,7 +103,7 @@ def _bifurcation(case: Case, values: Values, progress: Progress, target: Path) -
         **options,
     )
     findings = Findings(case, result)
-    save_bifurcation(result, case, findings, target)
+    of_studies.save_bifurcation(result, case, findings, target)
     head, rows = findings.rows()
     return {
         "sentences": list(findings.sentences()),
@@ -112,109 +112,78 @@ def _bifurcation(case: Case, values: Values, progress: Progress, target: Path) -
     }
 
 
-def _losses(case: Case, values: Values, progress: Progress, target: Path) -> Shown:
-    from tribodyn.report.study_report_data import losses_report_data
-
-    torque, speed = _operation(case, values)
-    answer = losses_report_data(case, torque, speed, progress, values["mesh"])
-    return _of(answer, "losses", case, target)
-
-
-def _film(case: Case, values: Values, progress: Progress, target: Path) -> Shown:
-    from tribodyn.report.study_report_data import film_report_data
-
-    torque, speed = _operation(case, values)
-    answer = film_report_data(case, torque, speed, progress, values["mesh"])
-    return _of(answer, "film", case, target)
-
-
-def _friction_from_loss(case: Case, values: Values, progress: Progress, target: Path) -> Shown:
-    from tribodyn.losses import friction_from_power_loss
-    from tribodyn.report.study_report_data import friction_report_data, measured_losses
-
-    progress.start("Friction coefficients")
-    options = {name: values[name] for name in MEASURED}
-    losses = measured_losses(values["file"], case, values["mesh"], options)
-    answer = friction_report_data(losses, friction_from_power_loss(losses))
-    return _of(answer, "friction from losses", case, target)
-
-
 def _recording(case: Case, values: Values, progress: Progress, target: Path) -> Shown:
     from tribodyn.report.signal_report import recorded_motion, recording_report_data
 
     settings = {k: values[k] for k in ("duration", "sample_rate", "noise", "seed")}
     sensor = values["sensor"]
     recorded, truth = recorded_motion(case, [sensor], progress, **settings)
-    content = _of(recording_report_data(recorded, sensor), "recording", case, target)
+    content = shown(recording_report_data(recorded, sensor), "recording", case, target)
     recorded.save(target / f"recording.{values['format']}", truth={"title": case.title, **truth})
     return content
 
 
-def _relief(case: Case, values: Values, progress: Progress, target: Path) -> Shown:
-    from tribodyn.report.study_report_data import relief_report_data
+#: Studies that write directories of their own form.
+WRITERS = {"sweep": _sweep, "bifurcation": _bifurcation, "recording": _recording}
 
+
+def _friction_from_loss(case: Case, values: Values, progress: Progress) -> StudyReportData:
+    from tribodyn.losses import friction_from_power_loss
+
+    progress.start("Friction coefficients")
+    options = {name: values[name] for name in MEASURED}
+    losses = of_studies.measured_losses(values["file"], case, values["mesh"], options)
+    return of_studies.friction_report_data(losses, friction_from_power_loss(losses))
+
+
+def _torques(values: Values) -> list[str] | None:
+    return _read("torque", values["torque"], read_list) if values["torque"] else None
+
+
+def _relief(case: Case, values: Values, progress: Progress) -> StudyReportData:
     progress.start("Tip relief")
-    torque = _read("torque", values["torque"], read_list) if values["torque"] else None
-    answer = relief_report_data(case, torque, values["gears"], values["mesh"])
-    return {**_of(answer, "relief", case, target), "relief": answer.data.changes}
+    how = _torques(values), values["gears"], values["mesh"]
+    return of_studies.relief_report_data(case, *how)
 
 
-def _harris(case: Case, values: Values, progress: Progress, target: Path) -> Shown:
-    from tribodyn.report.study_report_data import harris_report_data
+def _lead(case: Case, values: Values, progress: Progress) -> StudyReportData:
+    chosen = {name: values[name] for name in ("gear", "misalignment", "mesh")}
+    return of_studies.lead_report_data(case, _torques(values), progress, **chosen)
 
+
+def _harris(case: Case, values: Values, progress: Progress) -> StudyReportData:
     progress.start("Static transmission error")
-    torque = _read("torque", values["torque"], read_list) if values["torque"] else None
-    return _of(harris_report_data(case, torque, values["mesh"]), "harris", case, target)
+    return of_studies.harris_report_data(case, _torques(values), values["mesh"])
 
 
-def _modes(case: Case, values: Values, progress: Progress, target: Path) -> Shown:
+def _modes(case: Case, values: Values, progress: Progress) -> StudyReportData:
     from tribodyn.report.modes_report_data import any_modes_report_data
 
     ends = _ends("speeds", values["speeds"]) if values["speeds"] else None
-    return _of(any_modes_report_data(case, ends, progress), "modes", case, target)
+    return any_modes_report_data(case, ends, progress)
 
 
-def _run_up(case: Case, values: Values, progress: Progress, target: Path) -> Shown:
-    from tribodyn.report.study_report_data import run_up_report_data
-
-    ends = _ends("speeds", values["speeds"])
-    answer = run_up_report_data(case, ends, values["duration"], progress=progress)
-    return _of(answer, "run-up", case, target)
+def _run_up(case: Case, values: Values, progress: Progress) -> StudyReportData:
+    ends, duration = _ends("speeds", values["speeds"]), values["duration"]
+    return of_studies.run_up_report_data(case, ends, duration, progress=progress)
 
 
-def _continuation(case: Case, values: Values, progress: Progress, target: Path) -> Shown:
-    from tribodyn.report.nonlinear_report_data import continuation_report_data
-
+def _continuation(case: Case, values: Values, progress: Progress) -> StudyReportData:
     ends, step = _ends("ends", values["ends"]), values["longest_step"]
-    answer = continuation_report_data(
-        case, values["key"], ends, values["periods"], step, "study", progress, values["mesh"]
-    )
-    return _of(answer, "continuation", case, target)
+    how = values["periods"], step, "study", progress, values["mesh"]
+    return nonlinear.continuation_report_data(case, values["key"], ends, *how)
 
 
-def _basins(case: Case, values: Values, progress: Progress, target: Path) -> Shown:
-    from tribodyn.report.nonlinear_report_data import basins_report_data
-
+def _basins(case: Case, values: Values, progress: Progress) -> StudyReportData:
     error, rate = (
         _ends(name, values[name]) if values[name] else None
         for name in ("transmission_error", "rate")
     )
-    answer = basins_report_data(
-        case, error, rate, values["points"], progress=progress, mesh=values["mesh"]
-    )
-    return _of(answer, "basins", case, target)
+    how = values["points"], False, progress, values["mesh"]
+    return nonlinear.basins_report_data(case, error, rate, *how)
 
 
-def _lyapunov(case: Case, values: Values, progress: Progress, target: Path) -> Shown:
-    from tribodyn.report.nonlinear_report_data import lyapunov_report_data
-
-    answer = lyapunov_report_data(case, values["cycles"], values["transient"], progress)
-    return _of(answer, "lyapunov", case, target)
-
-
-def _sobol(case: Case, values: Values, progress: Progress, target: Path) -> Shown:
-    from tribodyn.report.nonlinear_report_data import sobol_report_data
-
+def _sobol(case: Case, values: Values, progress: Progress) -> StudyReportData:
     pairs = (("key", "tolerance"), ("second_key", "second_tolerance"))
     spread = {values[key]: values[tolerance] or "" for key, tolerance in pairs if values[key]}
     for key, tolerance in spread.items():
@@ -225,27 +194,18 @@ def _sobol(case: Case, values: Values, progress: Progress, target: Path) -> Show
             raise InputError(what, "tolerance", why, remedy)
     figures = (values["figures"] or "").replace(",", " ").split()
     spread_case = case.replace(spread, by="study")
-    answer = sobol_report_data(spread_case, figures, values["size"], 0, progress)
-    return _of(answer, "sobol", case, target)
+    return nonlinear.sobol_report_data(spread_case, figures, values["size"], 0, progress)
 
 
-def _lead(case: Case, values: Values, progress: Progress, target: Path) -> Shown:
-    from tribodyn.report.study_report_data import lead_report_data
-
-    torque = _read("torque", values["torque"], read_list) if values["torque"] else None
-    chosen = {name: values[name] for name in ("gear", "misalignment", "mesh")}
-    answer = lead_report_data(case, torque, progress, **chosen)
-    return {**_of(answer, "lead", case, target), "relief": answer.data.changes}
-
-
-#: Functions of the studies by the names of their commands.
-FUNCTIONS: Mapping[str, Callable[[Any, Values, Progress, Path], Shown]] = {
-    "sweep": _sweep,
-    "bifurcation": _bifurcation,
-    "losses": _losses,
-    "film": _film,
+#: Report data of the other studies, by the names of their commands.
+FUNCTIONS: Mapping[str, Callable[[Any, Values, Progress], StudyReportData]] = {
+    "losses": lambda case, values, progress: of_studies.losses_report_data(
+        case, *_operation(case, values), progress, values["mesh"]
+    ),
+    "film": lambda case, values, progress: of_studies.film_report_data(
+        case, *_operation(case, values), progress, values["mesh"]
+    ),
     "friction-from-loss": _friction_from_loss,
-    "recording": _recording,
     "relief": _relief,
     "lead": _lead,
     "harris": _harris,
@@ -253,6 +213,8 @@ FUNCTIONS: Mapping[str, Callable[[Any, Values, Progress, Path], Shown]] = {
     "run-up": _run_up,
     "continuation": _continuation,
     "basins": _basins,
-    "lyapunov": _lyapunov,
+    "lyapunov": lambda case, values, progress: nonlinear.lyapunov_report_data(
+        case, values["cycles"], values["transient"], progress
+    ),
     "sobol": _sobol,
 }

@@ -2,15 +2,23 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from contextlib import ExitStack
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import ExitStack, contextmanager
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
 from cyclopts import Parameter
 
 from tribodyn.cli.console import show_warnings
-from tribodyn.errors import InputError, OutputExistsError, Problem, collected
+from tribodyn.errors import (
+    Argument,
+    InputError,
+    OutputExistsError,
+    Problem,
+    TribodynError,
+    collected,
+)
 from tribodyn.study.studies.range_syntax import UnreadError, read_range, read_values, toml_value
 
 if TYPE_CHECKING:
@@ -37,6 +45,82 @@ Settings = Annotated[
     ),
 ]
 
+
+@Parameter(name="*")
+@dataclass(frozen=True)
+class Place:
+    """Where a study is written, and what its case has else.
+
+    Parameters
+    ----------
+    out : Path
+        Directory to write; by default that of the case with "-" and the name of the command.
+    set_ : list of str
+        Values of the case to change, for example "operation.torque=120 N*m".
+    force : bool
+        Replace an earlier result in that directory.
+    json : bool
+        Write the results in SI as one JSON object to stdout.
+    """
+
+    out: Output = None
+    set_: Words = None
+    force: Flag = False
+    json: Flag = False
+
+    def reserved(self, source: str, kind: str) -> Path:
+        """Directory of a study of a case or a file, reserved until the command ends."""
+        target = self.out if self.out is not None else Path(f"{Path(source).stem}-{kind}")
+        check_place(target, self.force)
+        return target
+
+    def case(self, kind: str, case: str) -> tuple[Any, Path]:
+        """The case of a study with its changes, and the directory to write."""
+        ready = changed_case(case, self.set_ or [], kind)
+        return ready, self.reserved(case, kind)
+
+
+@Parameter(name="*")
+@dataclass(frozen=True)
+class Best(Place):
+    """Where a study and the best case are written.
+
+    Parameters
+    ----------
+    out : Path
+        Directory to write; by default that of the case with "-" and the name of the command. It
+        holds best.toml.
+    """
+
+
+@Parameter(name="*")
+@dataclass(frozen=True)
+class Spread(Place):
+    """Where a study of tolerances is written, and what is spread.
+
+    Parameters
+    ----------
+    set_ : list of str
+        Tolerances and other changes of the case, such as "operation.torque=150 N*m +- 2 %".
+    """
+
+
+@Parameter(name="*")
+@dataclass(frozen=True)
+class Measured(Place):
+    """Where the coefficients are written, and further data of the measurement.
+
+    Parameters
+    ----------
+    set_ : list of str
+        Further data: gear_loss_factor, gear_sets (2: equal slave gears), no_load_torque,
+        other_loss, and the standard uncertainties torque_loss_uncertainty, torque_uncertainty,
+        other_loss_uncertainty and gear_loss_factor_uncertainty, as in "no_load_torque=5 N*m".
+    """
+
+
+#: A directory called like the case and the command.
+USUAL, BEST, SPREAD, MEASURED = Place(), Best(), Spread(), Measured()
 #: Directories that the running command writes, released when it ends.
 reserved_outputs = ExitStack()
 
@@ -141,3 +225,27 @@ def read_ends(text: str, example: str = "400..3500 rpm") -> tuple[Any, Any]:
         what, remedy = f'cannot read "{text}"', f'Write "{example}"'
         raise InputError(what, "", str(fault), remedy) from None
     return first, last
+
+
+def in_si(option: str, text: str, unit: str, example: str) -> float:
+    """A number with its unit, in SI."""
+    from tribodyn.units import UnitProblemError, parse
+
+    try:
+        return parse(text, unit)
+    except UnitProblemError as error:
+        raise InputError(f'"{text}"', option, str(error), f'Write {option} "{example}"') from None
+
+
+@contextmanager
+def with_options(options: Mapping[str, str]) -> Iterator[None]:
+    """Name the options of the command line where a function complains about its arguments."""
+    try:
+        yield
+    except TribodynError as error:
+        names = {Argument(name): option for name, option in options.items()}
+        names |= {f"argument {name}": option for name, option in options.items()}
+        problems = [
+            replace(each, where=names.get(each.where, each.where)) for each in error.problems
+        ]
+        raise type(error)(problems) from None

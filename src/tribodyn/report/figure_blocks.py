@@ -19,73 +19,38 @@ from tribodyn.study.studies.needs import PAIRS, kind_of
 if TYPE_CHECKING:
     from tribodyn.study import MachineResult, Result
 
-#: Figures of the report in order, by topic.
+#: Figures of reports by topic; others have a topic of their own.
 TOPICS = {
-    "Gears": ("gear_pair", "path_of_contact", "flank_modification"),
-    "Stiffness": ("mesh_stiffness", "load_sharing", "static_transmission_error"),
-    "Friction and film": ("friction", "film", "lubrication", "film_pressure", "film_stiffness"),
-    "Motion": ("mesh_force", "friction_force", "transmission_error", "acceleration", "spectrum"),
-    "Bearings": ("bearing_force", "bearing_spectrum"),
-    "Natural modes": ("mode_shapes", "campbell"),
+    "Gears": "gear_pair path_of_contact flank_modification hypoid_pair ease_off hypoid_contact "
+    "planetary_stage",
+    "Stiffness": "mesh_stiffness load_sharing static_transmission_error face_maps hypoid_load "
+    "hypoid_misalignment",
+    "Friction and film": "friction film lubrication film_pressure film_stiffness coupling "
+    "hypoid_pressure hypoid_friction",
+    "Motion": "mesh_force friction_force tooth_force transmission_error acceleration spectrum "
+    "turning_motion machine_orders machine_forces planetary_forces ring_sensor",
+    "Bearings": "bearing_force bearing_spectrum",
+    "Natural modes": "mode_shapes campbell machine_modes machine_campbell planetary_modes",
+    "Machine": "machine machine_space machine_power",
 }
-#: Order of the figures in the report.
-SECTIONS = tuple(name for names in TOPICS.values() for name in names)
-
-#: Order of the figures in the report of a hypoid pair.
-HYPOID_SECTIONS = (
-    "hypoid_pair",
-    "ease_off",
-    "hypoid_contact",
-    "hypoid_load",
-    "hypoid_pressure",
-    "hypoid_friction",
-    "mesh_force",
-    "tooth_force",
-    "transmission_error",
-    "acceleration",
-    "spectrum",
-    "bearing_force",
-    "bearing_spectrum",
-    "mode_shapes",
-    "campbell",
+_TOPIC_OF = {name: topic for topic, names in TOPICS.items() for name in names.split()}
+_OF_BEARINGS = ("bearing_force", "bearing_spectrum", "mode_shapes", "campbell")
+#: Order of the figures in the report of a pair, and of one of hypoid gears.
+SECTIONS = (
+    *("gear_pair", "path_of_contact", "flank_modification", "mesh_stiffness", "load_sharing"),
+    *("static_transmission_error", "friction", "film", "lubrication", "film_pressure"),
+    *("film_stiffness", "mesh_force", "friction_force", "transmission_error", "acceleration"),
+    *("spectrum", *_OF_BEARINGS),
 )
-
-#: Topics of the figures that are not in TOPICS.
-_OTHER_TOPICS = {
-    "hypoid_pair": "Gears",
-    "ease_off": "Gears",
-    "hypoid_contact": "Gears",
-    "hypoid_load": "Stiffness",
-    "hypoid_pressure": "Friction and film",
-    "hypoid_friction": "Friction and film",
-    "tooth_force": "Motion",
-    "coupling": "Friction and film",
-    "face_maps": "Stiffness",
-    "turning_motion": "Motion",
-    "machine": "Machine",
-    "machine_power": "Machine",
-    "machine_space": "Machine",
-    "machine_orders": "Motion",
-    "machine_forces": "Motion",
-    "machine_modes": "Natural modes",
-    "machine_campbell": "Natural modes",
-    "planetary_stage": "Gears",
-    "planetary_forces": "Motion",
-    "ring_sensor": "Motion",
-    "planetary_modes": "Natural modes",
-    "hypoid_misalignment": "Stiffness",
-}
-
+HYPOID_SECTIONS = (
+    *("hypoid_pair", "ease_off", "hypoid_contact", "hypoid_load", "hypoid_pressure"),
+    *("hypoid_friction", "mesh_force", "tooth_force", "transmission_error", "acceleration"),
+    *("spectrum", *_OF_BEARINGS),
+)
 #: Margin above the panels for marks and buttons [px].
 _MARGIN = 44
 #: Height of a figure that states none [px].
 _HEIGHT = 420
-
-
-def topic_of(name: str) -> str:
-    """Topic of a figure of the report."""
-    matches = (topic for topic, names in TOPICS.items() if name in names)
-    return next(matches, _OTHER_TOPICS.get(name, "Figures"))
 
 
 @dataclass(frozen=True)
@@ -142,7 +107,7 @@ class _Place(NamedTuple):
             block = Block(name, heading, missing=reason)
         else:
             block = block_of_figure(name, heading, sketch, figure.caption_of(subject))
-        return replace(block, topic=topic_of(figure.name))
+        return replace(block, topic=_TOPIC_OF.get(figure.name, "Figures"))
 
 
 def _joined(blocks: Iterable[Block]) -> list[Block]:

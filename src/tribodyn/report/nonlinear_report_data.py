@@ -9,7 +9,7 @@ import numpy as np
 
 from tribodyn import plot
 from tribodyn.progress import SILENT, Progress
-from tribodyn.report.study_report_data import StudyReportData, figure_with_caption
+from tribodyn.report.study_report_data import StudyReportData, facts_of, figure_with_caption
 from tribodyn.study.pipeline.summary_figures import figure_of
 from tribodyn.study.studies.study_axes import Axis
 
@@ -44,21 +44,11 @@ def lyapunov_report_data(
         [str(number), f"{value:.6g}", f"{error:.2g}", "free rotation" if free else "vibration"]
         for number, (value, error, free) in enumerate(values, 1)
     ]
-    facts = {
-        "exponents": spectrum.exponents.tolist(),
-        "standard_error": _numbers(spectrum.standard_error),
-        "free_rotation": spectrum.free_rotation.tolist(),
-        "rotating": list(spectrum.rotating),
-        "largest": spectrum.largest,
-        "largest_error": _number(spectrum.largest_error),
-        "chaotic": spectrum.chaotic,
-        "repeats": spectrum.repeats,
-        "divergence": spectrum.divergence,
-        "kaplan_yorke_dimension": spectrum.kaplan_yorke_dimension,
-        "mesh_frequency": spectrum.mesh_frequency,
-        "cycles": spectrum.cycles,
-        "verdict": spectrum.verdict,
-    }
+    facts = facts_of(
+        spectrum,
+        "exponents standard_error free_rotation rotating largest largest_error chaotic repeats "
+        "divergence kaplan_yorke_dimension mesh_frequency cycles verdict",
+    )
     head = ("Exponent", "Value [1/s]", "Standard error [1/s]", "Belongs to")
     figures = [figure_with_caption(plot.lyapunov, spectrum)]
     return StudyReportData(spectrum, figures, _exponent_statements(spectrum), head, rows, facts)
@@ -89,18 +79,11 @@ def basins_report_data(
     """Basins of attraction of a case over transmission error and its rate."""
     from tribodyn.study.studies.nonlinear import basins
 
-    plane = basins(
-        case,
-        transmission_error,
-        rate,
-        points=points,
-        mesh=mesh,
-        keep_partial=keep_partial,
-        progress=progress,
-    )
+    how: dict[str, Any] = {"mesh": mesh, "keep_partial": keep_partial, "progress": progress}
+    plane = basins(case, transmission_error, rate, points=points, **how)
     if not plane.finished.any():
         raise KeyboardInterrupt
-    rows, attractors = [], []
+    rows = []
     for number, each in enumerate(plane.attractors, 1):
         assert each.section is not None
         at, moving = each.section[0]
@@ -111,22 +94,13 @@ def basins_report_data(
             "" if np.isnan(each.largest_multiplier) else f"{each.largest_multiplier:.4g}",
             each.verdict,
         ])  # fmt: skip
-        attractors.append({
-            "share": each.share, "period": each.period, "rms": each.rms,
-            "contact_loss_share": each.contact_loss_share, "section": each.section.tolist(),
-            "largest_multiplier": _number(each.largest_multiplier), "verdict": each.verdict,
-        })  # fmt: skip
+    names = "share period rms contact_loss_share section largest_multiplier verdict"
     facts = {
-        "coordinates": list(plane.coordinates),
-        "units": list(plane.units),
-        "transmission_error": [float(plane.first[0]), float(plane.first[-1])],
-        "rate": [float(plane.second[0]), float(plane.second[-1])],
-        "points": [int(plane.first.size), int(plane.second.size)],
-        "mesh_frequency": plane.mesh_frequency,
-        "attractors": attractors,
-        "unresolved": plane.unresolved,
-        "changed": _number(plane.changed),
-        "complete": plane.complete,
+        **facts_of(plane, "coordinates units mesh_frequency unresolved changed complete"),
+        "transmission_error": plane.first[[0, -1]].tolist(),
+        "rate": plane.second[[0, -1]].tolist(),
+        "points": [plane.first.size, plane.second.size],
+        "attractors": [facts_of(each, names) for each in plane.attractors],
     }
     head = ("Attractor", "Share [%]", "Period [mesh cycles]", "Rms [um]", "Contact loss [%]",
             "Transmission error at phase 0 [um]", "Its rate [um/s]", "Largest multiplier",
@@ -255,12 +229,11 @@ def sobol_report_data(
         "variants": len(shares.value),
         "figures": {
             str(name): {
-                "mean": float(shares.mean[n]),
-                "standard_deviation": float(shares.standard_deviation[n]),
-                "first_order": shares.first_order[n].tolist(),
-                "total_order": shares.total_order[n].tolist(),
-                "first_order_band": shares.first_order_band[n].tolist(),
-                "total_order_band": shares.total_order_band[n].tolist(),
+                name: getattr(shares, name)[n].tolist()
+                for name in (
+                    *("mean", "standard_deviation", "first_order", "total_order"),
+                    *("first_order_band", "total_order_band"),
+                )
             }
             for n, name in enumerate(shares.figure)
         },
@@ -277,14 +250,8 @@ def sobol_report_data(
     statements = [f"{len(shares.value)} variants over {', '.join(map(str, shares.input))}."]
     statements += [f"{key} = {text}" for key, text in case.uncertain.items()]
     statements += [_spread_statement(shares, n) for n in range(len(shares.figure))]
-    return StudyReportData(
-        shares,
-        [figure_with_caption(plot.sensitivity, shares)],
-        statements,
-        head,
-        rows,
-        facts,
-    )
+    figure = figure_with_caption(plot.sensitivity, shares)
+    return StudyReportData(shares, [figure], statements, head, rows, facts)
 
 
 def _spread_statement(sensitivity: CaseSensitivity, number: int) -> str:
@@ -296,12 +263,3 @@ def _spread_statement(sensitivity: CaseSensitivity, number: int) -> str:
         f"{name}: {figure.show(float(sensitivity.mean[number]))}, standard deviation {spread}; "
         f"{share:.0f} % of the variance with {sensitivity.input[largest]}."
     )
-
-
-def _number(value: float) -> float | None:
-    """A number for JSON: None in place of NaN and infinity."""
-    return float(value) if np.isfinite(value) else None
-
-
-def _numbers(values: Any) -> list[float | None]:
-    return [_number(value) for value in values]

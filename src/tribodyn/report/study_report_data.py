@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
@@ -11,6 +10,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from tribodyn import plot
+from tribodyn.drawing import finite
 from tribodyn.errors import InputError
 from tribodyn.model import Option, number
 from tribodyn.progress import SILENT, Progress
@@ -54,6 +54,12 @@ class StudyReportData(NamedTuple):
 def figure_with_caption(figure: Drawing, result: Any) -> Picture:
     """Heading, figure and caption of a study result."""
     return figure.heading, figure(result), figure.caption_of(result)
+
+
+def facts_of(result: object, names: str) -> dict[str, Any]:
+    """Fields of a result for JSON, by their names in one text."""
+    values = {name: getattr(result, name) for name in names.split()}
+    return {n: finite(v.tolist() if hasattr(v, "tolist") else v) for n, v in values.items()}
 
 
 def _title(picture: Picture) -> str:
@@ -118,19 +124,16 @@ def harris_report_data(
     from tribodyn.study.studies.static import harris_map
 
     study = harris_map(case, torque, mesh=mesh)
-    columns = {
-        "torque": study.torque,
-        "mean_transmission_error": study.mean_transmission_error,
-        "peak_to_peak_transmission_error": study.peak_to_peak_transmission_error,
-        "mean_mesh_stiffness_secant": study.mean_mesh_stiffness_secant,
-    }
+    facts = facts_of(
+        study,
+        "torque mean_transmission_error peak_to_peak_transmission_error mean_mesh_stiffness_secant",
+    )
     rows = [
         [f"{t:.4g}", f"{m * 1e6:.4g}", f"{p * 1e6:.4g}", f"{k * 1e-6:.4g}"]
-        for t, m, p, k in zip(*columns.values(), strict=True)
+        for t, m, p, k in zip(*facts.values(), strict=True)
     ]
     head = ["Pinion torque [N*m]", "Mean error [um]", "Peak to peak [um]", "Stiffness [N/um]"]
     figure = figure_with_caption(plot.harris_map, study)
-    facts = {name: values.tolist() for name, values in columns.items()}
     return StudyReportData(study, [figure], [f"{_title(figure)}."], head, rows, facts)
 
 
@@ -141,10 +144,10 @@ def relief_report_data(
     from tribodyn.study.studies.static import optimize_tip_relief
 
     optimum = optimize_tip_relief(case, torque, gears=gears, mesh=mesh)
-    before, after = optimum.peak_to_peak_before, optimum.peak_to_peak_after
+    facts = facts_of(optimum, "torque peak_to_peak_before peak_to_peak_after amount length on_edge")
     rows = [
         [f"{t:.4g}", f"{b * 1e6:.4g}", f"{a * 1e6:.4g}"]
-        for t, b, a in zip(optimum.torque, before, after, strict=True)
+        for t, b, a in zip(*list(facts.values())[:3], strict=True)
     ]
     head = ["Pinion torque [N*m]", "Peak to peak before [um]", "Peak to peak after [um]"]
     statements = [
@@ -156,14 +159,6 @@ def relief_report_data(
             "It is at the edge of the search range: a wider range may contain a better relief."
         )
     figures = [figure_with_caption(plot.tip_relief_map, optimum)]
-    facts = {
-        "amount": optimum.amount,
-        "length": optimum.length,
-        "torque": optimum.torque.tolist(),
-        "peak_to_peak_before": before.tolist(),
-        "peak_to_peak_after": after.tolist(),
-        "on_edge": bool(optimum.on_edge),
-    }
     return StudyReportData(optimum, figures, statements, head, rows, facts, optimum.case)
 
 
@@ -174,20 +169,15 @@ def lead_report_data(
     from tribodyn.study.studies.static import optimize_lead
 
     optimum = optimize_lead(case, torque, progress=progress, **values)
-    columns = (
-        optimum.torque, optimum.face_load_factor_before, optimum.face_load_factor_after
-    )  # fmt: skip
-    rows = [[f"{value:.4g}" for value in row] for row in zip(*columns, strict=True)]
+    columns = facts_of(optimum, "torque face_load_factor_before face_load_factor_after")
+    rows = [[f"{value:.4g}" for value in row] for row in zip(*columns.values(), strict=True)]
     head = ["Pinion torque [N*m]", "Face load factor before", "Face load factor after"]
     statements = [
         f"A crowning of {optimum.crowning * 1e6:.4g} um and a lead slope of "
         f"{optimum.lead_slope * 1e6:.4g} um on the {optimum.gear}; best.toml is the case with them."
     ]
     figures = [figure_with_caption(plot.lead_optimum, optimum)]
-    names = ("torque", "face_load_factor_before", "face_load_factor_after")
-    facts = {"crowning": optimum.crowning, "lead_slope": optimum.lead_slope} | {
-        name: column.tolist() for name, column in zip(names, columns, strict=True)
-    }
+    facts = facts_of(optimum, "crowning lead_slope") | columns
     return StudyReportData(optimum, figures, statements, head, rows, facts, optimum.case)
 
 
@@ -262,11 +252,9 @@ def losses_report_data(
     figure = figure_with_caption(plot.losses, gearbox)
     counted = [label for part, label in PARTS.items() if getattr(gearbox, part).any()]
     scope = _ALONE if counted == ["teeth"] else f"Included losses: {', '.join(counted)}."
-    names = ("pinion_torque", "pinion_speed", *PARTS, "total", "gear_efficiency", "efficiency")
-    facts = {name: getattr(gearbox, name).tolist() for name in names}
-    return StudyReportData(
-        gearbox, [figure], [f"{_title(figure)}.", scope], *_losses(gearbox), facts
-    )
+    names = f"pinion_torque pinion_speed {' '.join(PARTS)} total gear_efficiency efficiency"
+    statements, facts = [f"{_title(figure)}.", scope], facts_of(gearbox, names)
+    return StudyReportData(gearbox, [figure], statements, *_losses(gearbox), facts)
 
 
 def _losses(gearbox: GearboxLosses) -> tuple[list[str], list[list[str]]]:
@@ -324,11 +312,7 @@ def film_report_data(
         [f"{load:.4g} N*m", *(f"{film * 1e6:.4g}" for film in line)]
         for load, line in zip(films.pinion_torque, least, strict=True)
     ]
-    facts = {
-        "pinion_torque": films.pinion_torque.tolist(),
-        "pinion_speed": films.pinion_speed.tolist(),
-        "least_film": least.tolist(),
-    }
+    facts = {**facts_of(films, "pinion_torque pinion_speed"), "least_film": least.tolist()}
     return StudyReportData(films, figures, [f"{_title(figures[0])}."], head, rows, facts)
 
 
@@ -385,32 +369,11 @@ def friction_report_data(losses: PowerLossTable, friction: FrictionFromLoss) -> 
         f"{figure[1].layout.title.text}.",
         f"H_V = {losses.gear_loss_factor:.5g}. Source: {losses.source}.",
     ]
-    facts = _friction_facts(friction, losses)
-    return StudyReportData(
-        friction, [figure], statements, head, rows, facts, table_file="friction.csv"
-    )
-
-
-_COLUMNS = (
-    "speed",
-    "torque",
-    "friction_coefficient",
-    "standard_uncertainty",
-    "monte_carlo_uncertainty",
-    "degrees_of_freedom",
-    "low",
-    "high",
-    "sensitivity",
-)
-
-
-def _friction_facts(friction: FrictionFromLoss, loss_table: PowerLossTable) -> dict[str, Any]:
-    """Return columns in SI; infinite degrees of freedom, which JSON cannot express, are null."""
-    columns = {name: getattr(friction, name).tolist() for name in _COLUMNS}
-    freedom = columns["degrees_of_freedom"]
-    columns["degrees_of_freedom"] = [None if math.isinf(value) else value for value in freedom]
-    facts = {"gear_loss_factor": loss_table.gear_loss_factor, "source": loss_table.source}
-    return {**facts, **columns, "verdict": list(friction.verdict)}
+    names = "speed torque friction_coefficient standard_uncertainty monte_carlo_uncertainty "
+    names += "degrees_of_freedom low high sensitivity verdict"
+    facts = facts_of(losses, "gear_loss_factor source") | facts_of(friction, names)
+    file = "friction.csv"
+    return StudyReportData(friction, [figure], statements, head, rows, facts, table_file=file)
 
 
 def _friction_rows(friction: FrictionFromLoss) -> tuple[list[str], list[list[str]]]:

@@ -18,37 +18,34 @@ if TYPE_CHECKING:
     from tribodyn.measurement import Comparison
 
 
-def _help(text: str) -> Any:
-    return Parameter(help=text)
-
-
-Words = Annotated[list[str] | None, Parameter(negative="")]
-
-
 @Parameter(name="*")
 @dataclass(frozen=True)
 class RecordingOptions:
-    """How a recording is compared."""
+    """How a recording is compared.
 
-    gain: Annotated[str, _help('Measured over computed signal of the transfer path, or "fit".')] = (
-        "1"
-    )
-    harmonics: Annotated[int, _help("Mesh harmonics that are compared with a recording.")] = 5
-    tacho: Annotated[
-        str | None,
-        _help(
-            "Channel of the recording with the pulses of a tachometer. Without one, the speed is "
-            "found from the mesh lines of the compared channels, within 5 % of the computed speed."
-        ),
-    ] = None
-    pulses: Annotated[int | None, _help("Pulses of the tachometer in one revolution.")] = None
-    gear: Annotated[
-        Literal["pinion", "wheel"],
-        _help("Gear on whose shaft the tachometer is: pinion or wheel; first or second of a mesh."),
-    ] = "pinion"
-    mesh: Annotated[
-        str | None, _help("Mesh of a machine whose harmonics are compared; the first by default.")
-    ] = None
+    Parameters
+    ----------
+    gain : str
+        Measured over computed signal of the transfer path, or "fit".
+    harmonics : int
+        Mesh harmonics that are compared with a recording.
+    tacho : str
+        Channel of the recording with the pulses of a tachometer. Without one, the speed is found
+        from the mesh lines of the compared channels, within 5 % of the computed speed.
+    pulses : int
+        Pulses of the tachometer in one revolution.
+    gear : str
+        Gear on whose shaft the tachometer is: pinion or wheel; first or second of a mesh.
+    mesh : str
+        Mesh of a machine whose harmonics are compared; the first by default.
+    """
+
+    gain: str = "1"
+    harmonics: int = 5
+    tacho: str | None = None
+    pulses: int | None = None
+    gear: Literal["pinion", "wheel"] = "pinion"
+    mesh: str | None = None
 
     def arguments(self, result: Any) -> dict[str, Any]:
         """Arguments of the comparison: mesh of a machine and tachometer, where there are any."""
@@ -78,7 +75,7 @@ def compare(
     second: Path,
     /,
     *,
-    channel: Words = None,
+    channel: Annotated[list[str] | None, Parameter(negative="")] = None,
     options: RecordingOptions = RecordingOptions(),
     out: Path | None = None,
     force: Flag = False,
@@ -215,26 +212,15 @@ def _cells(
 
 def _facts(comparison: Comparison) -> dict[str, Any]:
     """Figures for ``--json``; what was not found is null."""
+    from tribodyn.drawing import finite
+    from tribodyn.report.study_report_data import facts_of
+
     names = ("channel", "measure", "unit", "computed", "measured", "error", "noise")
-    low, high = comparison.speed_range
+    facts = facts_of(comparison, "speed_ratio speed_uncertainty speed_range speed_method base")
     return {
-        "speed_ratio": _number(comparison.speed_ratio),
-        "speed_uncertainty": _number(comparison.speed_uncertainty),
-        "speed_range": [_number(low), _number(high)],
-        "speed_method": comparison.speed_method,
+        **facts,
         "gains": dict(comparison.gains),
         "fitted": comparison.fitted,
-        "base": comparison.base,
         "harmonic_shares": dict(comparison.shares),
-        "rows": [
-            {
-                name: _number(value) if isinstance(value, float) else value
-                for name, value in zip(names, row, strict=True)
-            }
-            for row in _rows(comparison)
-        ],
+        "rows": [finite(dict(zip(names, row, strict=True))) for row in _rows(comparison)],
     }
-
-
-def _number(value: float) -> float | None:
-    return float(value) if math.isfinite(value) else None

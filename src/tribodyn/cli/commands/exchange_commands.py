@@ -4,12 +4,10 @@ from __future__ import annotations
 
 import math
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
-
-from cyclopts import Parameter
+from typing import TYPE_CHECKING, Any
 
 from tribodyn.cli.console import say, say_json, table, tell
-from tribodyn.cli.settings import Flag, changed_case, check_file, read_changes
+from tribodyn.cli.settings import Flag, Words, changed_case, check_file, read_changes
 from tribodyn.errors import InputError
 
 if TYPE_CHECKING:
@@ -26,7 +24,7 @@ def import_(
     stage: int | None = None,
     load_case: int | None = None,
     machine: Flag = False,
-    set_: Annotated[list[str] | None, Parameter(name="--set", negative="")] = None,
+    set_: Words = None,
     force: Flag = False,
     json: Flag = False,
 ) -> None:
@@ -90,7 +88,7 @@ def export(
     *,
     rexs: Path | None = None,
     tables: Path | None = None,
-    set_: Annotated[list[str] | None, Parameter(name="--set", negative="")] = None,
+    set_: Words = None,
     force: Flag = False,
     json: Flag = False,
 ) -> None:

@@ -9,7 +9,16 @@ from cyclopts import Parameter
 
 from tribodyn.cli.commands.sweep_command import INTERRUPTED, report_exit_code, run_checkpointed
 from tribodyn.cli.console import say, say_json, table, tell
-from tribodyn.cli.settings import CaseName, Flag, Force, Settings, changed_case, read_ranges
+from tribodyn.cli.settings import (
+    USUAL,
+    CaseName,
+    Flag,
+    Force,
+    Place,
+    changed_case,
+    check_place,
+    read_ranges,
+)
 from tribodyn.errors import InputError
 
 if TYPE_CHECKING:
@@ -26,10 +35,7 @@ def experiment(
     *,
     roughness: str = "",
     laws: str = "",
-    out: Path | None = None,
-    set_: Settings = None,
-    force: Force = False,
-    json: Flag = False,
+    at: Place = USUAL,
 ) -> int:
     """Compare friction laws and roughnesses on one pair, and judge five published claims.
 
@@ -41,25 +47,21 @@ def experiment(
         Composite roughnesses such as "0.325,0.53,0.991 um".
     laws : str
         Friction laws such as "constant,xu-2007"; "none" is always among them.
-    out : Path
-        Directory to write; by default that of the case with "-friction".
-    json : bool
-        Write claims and all figures in SI as one JSON object to stdout.
     """
     if kind not in _EXPERIMENTS:
         remedy = f"Write: tribodyn experiment {_EXPERIMENTS[0]}"
         raise InputError(f'there is no experiment "{kind}"', "", "", remedy)
-    target = out if out is not None else Path(f"{Path(case).stem}-{kind}")
-    ready, options = changed_case(case, set_ or [], "experiment"), _options(roughness, laws)
+    ready, options = changed_case(case, at.set_ or [], "experiment"), _options(roughness, laws)
 
     def compute(**checkpointing: Any) -> FrictionExperiment:
         from tribodyn.cases.papers.friction_experiment import friction_experiment
 
         return friction_experiment(ready, **options, partial=True, **checkpointing)
 
-    result: Any = run_checkpointed(target, force, compute)
+    target = at.reserved(case, kind)
+    result: Any = run_checkpointed(target, at.force, compute)
     claims = [dict(zip(_keys(result), row, strict=True)) for row in result.claim_rows()]
-    if json:
+    if at.json:
         say_json({"complete": result.complete, "claims": claims, "rows": list(result.rows())})
     else:
         names = ("claim", "verdict", "holds_where")
@@ -136,6 +138,7 @@ def paper(
         return compare_with_paper(*names, partial=True, **checkpointing)
 
     target = out if out is not None else Path(f"{case}-paper" if case else "papers")
+    check_place(target, force)
     comparison: Any = run_checkpointed(target, force, compute)
     if json:
         say_json(list(comparison.rows))

@@ -4,21 +4,19 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import TYPE_CHECKING, Any
 
 from cyclopts import Parameter
 
-from tribodyn.cli.commands.study_commands import finish, prepare_study
+from tribodyn.cli.commands.study_commands import finish
 from tribodyn.cli.settings import (
+    MEASURED,
+    USUAL,
     CaseName,
-    Flag,
-    Force,
+    Measured,
     Mesh,
-    Output,
-    Words,
+    Place,
     changed_case,
-    check_place,
     read_changes,
     read_ranges,
 )
@@ -35,61 +33,51 @@ Text = str | None
 _EXAMPLES = {"torque": "50,150,300 N*m", "speed": "400..3500 rpm:8"}
 
 
+@Parameter(name="*")
 @dataclass(frozen=True)
-class _Points:
-    """Torques and speeds of a map."""
+class Points:
+    """Torques and speeds of a map.
 
-    torque: Annotated[
-        Text,
-        Parameter(
-            help='"50,150,300 N*m" or "50..300 N*m:6"; by default 8 up to twice that of the case.'
-        ),
-    ] = None
-    speed: Annotated[
-        Text,
-        Parameter(
-            help='"400,1400 rpm" or "400..3500 rpm:8"; by default 8 up to twice that of the case.'
-        ),
-    ] = None
+    Parameters
+    ----------
+    torque : str
+        "50,150,300 N*m" or "50..300 N*m:6"; by default 8 up to twice that of the case.
+    speed : str
+        "400,1400 rpm" or "400..3500 rpm:8"; by default 8 up to twice that of the case.
+    """
+
+    torque: Text = None
+    speed: Text = None
 
 
 #: Points at the torque and the speed of the case and about them.
-_USUAL = _Points()
+_ABOUT = Points()
 
 
 def losses(
     case: CaseName,
     /,
     *,
-    points: Annotated[_Points, Parameter(name="*")] = _USUAL,
+    points: Points = _ABOUT,
     rig: Text = None,
     mesh: Mesh = None,
-    out: Output = None,
-    set_: Words = None,
-    force: Force = False,
-    json: Flag = False,
+    at: Place = USUAL,
 ) -> None:
     """Find losses and efficiency of a case over torque and speed; no motion is computed.
 
     Parameters
     ----------
-    points : _Points
+    points : Points
         Torques and speeds.
     rig : str
         Bearings of the slave gearbox of a back-to-back rig, such as "QJ 308": the power flow of the
         rig is drawn too, at the torque and speed of the case and with its gears in both gearboxes.
-    out : Path
-        Directory to write; by default that of the case with "-losses".
-    set_ : list of str
-        Values to change, for example "losses.pinion.bearing=NJ 406".
-    json : bool
-        Write losses and efficiency in SI as one JSON object to stdout.
     """
     from tribodyn import plot
     from tribodyn.cli.progress_bar import progress_bar
     from tribodyn.report.study_report_data import figure_with_caption, losses_report_data
 
-    ready, target = prepare_study("losses", case, out, set_, force)
+    ready, target = at.case("losses", case)
     slave = _slave(ready, rig)
     values = {name: _values(ready, name, text) for name, text in vars(points).items()}
     with collected() as warnings:
@@ -99,7 +87,7 @@ def losses(
             rig_figure = figure_with_caption(plot.power_flow, _rig(ready, slave, answer.facts))
             statements = [*answer.statements, f"{rig_figure[1].layout.title.text}."]
             answer = answer._replace(figures=[*answer.figures, rig_figure], statements=statements)
-    finish("losses", ready, target, answer, force, json, warnings)
+    finish("losses", ready, target, answer, at, warnings)
 
 
 def _values(case: Case, name: str, text: Text) -> list[float] | None:
@@ -141,15 +129,7 @@ def _rig(case: Case, slave: Case, facts: dict[str, Any]) -> RigPowerFlow:
 
 
 def friction_from_loss(
-    file: str,
-    /,
-    *,
-    case: Text = None,
-    mesh: Mesh = None,
-    set_: Words = None,
-    out: Output = None,
-    force: Force = False,
-    json: Flag = False,
+    file: str, /, *, case: Text = None, mesh: Mesh = None, at: Measured = MEASURED
 ) -> None:
     """Find friction coefficients from the torque losses of a rig, each with its uncertainty.
 
@@ -160,22 +140,13 @@ def friction_from_loss(
         [N*m], repeats as rows of their own; or "fzg-wheel-driven", a printed table.
     case : str
         Case with the gears that were tested: their gear loss factor is taken.
-    set_ : list of str
-        Further data: gear_loss_factor, gear_sets (2: equal slave gears), no_load_torque,
-        other_loss, and the standard uncertainties torque_loss_uncertainty, torque_uncertainty,
-        other_loss_uncertainty and gear_loss_factor_uncertainty, as in "no_load_torque=5 N*m".
-    out : Path
-        Directory to write; by default called like the file, with "-friction".
-    json : bool
-        Write the coefficients in SI as one JSON object to stdout.
     """
     from tribodyn.losses import friction_from_power_loss
     from tribodyn.report.study_report_data import friction_report_data, measured_losses
 
-    target = out if out is not None else Path(f"{Path(file).stem}-friction")
-    check_place(target, force)
+    target = at.reserved(file, "friction")
     with collected() as warnings:
-        options = _options(set_ or [])
+        options = _options(at.set_ or [])
         if "gear_loss_factor" in options and case is not None:
             factor, why = options["gear_loss_factor"], "The gears of the case have their own"
             what = f"gear_loss_factor = {factor:g} and --case {case} are both given"
@@ -183,7 +154,7 @@ def friction_from_loss(
         gears = None if case is None else changed_case(case, [], "friction-from-loss")
         losses = measured_losses(file, gears, mesh, options)
         answer = friction_report_data(losses, friction_from_power_loss(losses))
-    finish("friction from losses", None, target, answer, force, json, warnings)
+    finish("friction from losses", None, target, answer, at, warnings)
 
 
 def _options(settings: Sequence[str]) -> dict[str, float]:

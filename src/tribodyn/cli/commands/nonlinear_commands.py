@@ -2,26 +2,19 @@
 
 from __future__ import annotations
 
-from pathlib import Path
-from typing import Annotated, Any, Literal
+from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 from cyclopts import Parameter
 
-from tribodyn.cli.commands.study_commands import finish, prepare_study
+from tribodyn.cli.commands.study_commands import answer
 from tribodyn.cli.commands.sweep_command import INTERRUPTED
 from tribodyn.cli.console import say, say_json, show_resumed, tell
-from tribodyn.cli.settings import (
-    RANGE,
-    CaseName,
-    Flag,
-    Force,
-    Mesh,
-    Output,
-    Settings,
-    read_ends,
-    read_ranges,
-)
+from tribodyn.cli.settings import RANGE, USUAL, CaseName, Mesh, Place, read_ends, read_ranges
 from tribodyn.errors import InputError
+
+if TYPE_CHECKING:
+    from tribodyn.progress import Progress
+    from tribodyn.report.study_report_data import StudyReportData
 
 #: Range whose first value may have a sign.
 _Signed = Annotated[str | None, Parameter(allow_leading_hyphen=True)]
@@ -36,10 +29,7 @@ def bifurcation(
     transient: int = 300,
     steps: int | None = None,
     mesh: Mesh = None,
-    out: Path | None = None,
-    set_: Settings = None,
-    force: Force = False,
-    json: Flag = False,
+    at: Place = USUAL,
 ) -> int:
     """Follow the motion of a case over one value; report periods, jumps and step errors.
 
@@ -56,19 +46,15 @@ def bifurcation(
         Mesh cycles before, fewer where the motion repeats.
     steps : int
         Steps per mesh cycle.
-    out : Path
-        Directory to write; by default that of the case with "-bifurcation".
-    json : bool
-        Write the findings in SI as one JSON object to stdout.
     """
     from tribodyn.checkpoints import Checkpoints
     from tribodyn.cli.progress_bar import progress_bar
 
     key, (first, last, points) = _single_range(over)
     _check_lengths(cycles, transient)
-    ready, target = prepare_study("bifurcation", case, out, set_, force)
+    ready, target = at.case("bifurcation", case)
     options: dict[str, Any] = {"cycles": cycles, "transient": transient, "keep": min(48, cycles)}
-    with Checkpoints(target, force) as checkpoints:
+    with Checkpoints(target, at.force) as checkpoints:
         with progress_bar() as progress:
             from tribodyn.study.studies.bifurcation import Findings
             from tribodyn.study.studies.bifurcation import bifurcation as compute
@@ -96,10 +82,10 @@ def bifurcation(
             progress.start("Report")
             from tribodyn.report.study_report_data import save_bifurcation
 
-            save_bifurcation(diagram, ready, findings, target, force)
+            save_bifurcation(diagram, ready, findings, target, at.force)
             progress.finish()
         checkpoints.close_after(complete)
-    if json:
+    if at.json:
         say_json({**findings.figures(), "complete": complete})
     else:
         say("\n".join([ready.title, *(f"  {line}" for line in findings.sentences())]))
@@ -115,10 +101,7 @@ def continuation(
     periods: int = 1,
     longest_step: float = 0.02,
     mesh: Mesh = None,
-    out: Output = None,
-    set_: Settings = None,
-    force: Force = False,
-    json: Flag = False,
+    at: Place = USUAL,
 ) -> None:
     """Follow the periodic motion of a case over one value, stable or not, and report its folds.
 
@@ -130,22 +113,16 @@ def continuation(
         Mesh cycles after which the motion repeats.
     longest_step : float
         Longest step along the branch, relative to the range.
-    out : Path
-        Directory to write; by default that of the case with "-continuation".
-    json : bool
-        Write the branch in SI as one JSON object to stdout.
     """
-    from tribodyn.cli.progress_bar import progress_bar
 
-    key, ends = _branch_range(over)
-    ready, target = prepare_study("continuation", case, out, set_, force)
-    with progress_bar() as progress:
+    def compute(ready: Any, progress: Progress) -> StudyReportData:
         from tribodyn.report.nonlinear_report_data import continuation_report_data
 
-        answer = continuation_report_data(
-            ready, key, ends, periods, longest_step, "continuation", progress, mesh
-        )
-    finish("continuation", ready, target, answer, force, json)
+        how = periods, longest_step, "continuation", progress, mesh
+        return continuation_report_data(ready, key, ends, *how)
+
+    key, ends = _branch_range(over)
+    answer("continuation", case, at, compute)
 
 
 def basins(
@@ -156,10 +133,7 @@ def basins(
     rate: _Signed = None,
     points: int = 31,
     mesh: Mesh = None,
-    out: Output = None,
-    set_: Settings = None,
-    force: Force = False,
-    json: Flag = False,
+    at: Place = USUAL,
 ) -> int:
     """Find which motion of a case a disturbed start comes to, over transmission error and its rate.
 
@@ -172,34 +146,21 @@ def basins(
         Range of its rate: "-400000..400000 um/s". By default what a free vibration reaches.
     points : int
         Values of each.
-    out : Path
-        Directory to write; by default that of the case with "-basins".
-    json : bool
-        Write the motions with their shares in SI as one JSON object to stdout.
     """
-    from tribodyn.cli.progress_bar import progress_bar
+
+    def compute(ready: Any, progress: Progress) -> StudyReportData:
+        from tribodyn.report.nonlinear_report_data import basins_report_data
+
+        return basins_report_data(ready, error, speed, points, True, progress, mesh)
 
     error = None if transmission_error is None else read_ends(transmission_error, "-20..40 um")
     speed = None if rate is None else read_ends(rate, "-400000..400000 um/s")
-    ready, target = prepare_study("basins", case, out, set_, force)
-    with progress_bar() as progress:
-        from tribodyn.report.nonlinear_report_data import basins_report_data
-
-        answer = basins_report_data(ready, error, speed, points, True, progress, mesh)
-    finish("basins", ready, target, answer, force, json)
-    return 0 if answer.facts["complete"] else INTERRUPTED
+    results = answer("basins", case, at, compute)
+    return 0 if results.facts["complete"] else INTERRUPTED
 
 
 def lyapunov(
-    case: CaseName,
-    /,
-    *,
-    cycles: int = 1000,
-    transient: int = 300,
-    out: Output = None,
-    set_: Settings = None,
-    force: Force = False,
-    json: Flag = False,
+    case: CaseName, /, *, cycles: int = 1000, transient: int = 300, at: Place = USUAL
 ) -> None:
     """Find the Lyapunov exponents of the motion of a case: whether it is chaos.
 
@@ -209,20 +170,15 @@ def lyapunov(
         Mesh cycles over which to average.
     transient : int
         Mesh cycles before.
-    out : Path
-        Directory to write; by default that of the case with "-lyapunov".
-    json : bool
-        Write the exponents in SI as one JSON object to stdout.
     """
-    from tribodyn.cli.progress_bar import progress_bar
 
-    _check_lengths(cycles, transient)
-    ready, target = prepare_study("lyapunov", case, out, set_, force)
-    with progress_bar() as progress:
+    def compute(ready: Any, progress: Progress) -> StudyReportData:
         from tribodyn.report.nonlinear_report_data import lyapunov_report_data
 
-        answer = lyapunov_report_data(ready, cycles, transient, progress)
-    finish("lyapunov", ready, target, answer, force, json)
+        return lyapunov_report_data(ready, cycles, transient, progress)
+
+    _check_lengths(cycles, transient)
+    answer("lyapunov", case, at, compute)
 
 
 _BRANCH = 'Write "operation.speed=400..3500 rpm"'

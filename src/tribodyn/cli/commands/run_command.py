@@ -28,19 +28,21 @@ if TYPE_CHECKING:
 @Parameter(name="*")
 @dataclass(frozen=True)
 class Printed:
-    """What a run writes to stdout."""
+    """What a run writes to stdout.
 
-    quiet: Annotated[
-        Flag,
-        Parameter(help="Omit the tables; warnings and the location of the report are printed."),
-    ] = False
-    all: Annotated[
-        Flag,
-        Parameter(help="Print every figure with its meaning, not the chief ones of each part."),
-    ] = False
-    json: Annotated[
-        Flag, Parameter(help="Write the summary as one flat JSON object in SI to stdout.")
-    ] = False
+    Parameters
+    ----------
+    quiet : bool
+        Omit the tables; warnings and the location of the report are printed.
+    all : bool
+        Print every figure with its meaning, not the chief ones of each part.
+    json : bool
+        Write the summary as one flat JSON object in SI to stdout.
+    """
+
+    quiet: Flag = False
+    all: Flag = False
+    json: Flag = False
 
 
 _CHIEF = Printed()

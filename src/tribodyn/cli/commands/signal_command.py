@@ -6,13 +6,19 @@ import math
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 from cyclopts import Parameter
 
 from tribodyn.cli.console import say, say_json, show_warnings, table, tell
-from tribodyn.cli.settings import Output, check_place
-from tribodyn.errors import Argument, InputError, Problem, TribodynError, collected, did_you_mean
+from tribodyn.cli.settings import (
+    Flag,
+    Output,
+    check_place,
+    in_si,
+    with_options,
+)
+from tribodyn.errors import InputError, Problem, collected, did_you_mean
 from tribodyn.nomenclature import GEARS
 
 if TYPE_CHECKING:
@@ -49,105 +55,97 @@ _EXAMPLES = {
 }
 
 
-def _help(text: str) -> Any:
-    return Parameter(help=text)
-
-
 @Parameter(name="*")
 @dataclass
 class Shaft:
-    """Speed and teeth of the shaft."""
+    """Speed and teeth of the shaft.
 
-    tacho: Annotated[
-        Text,
-        _help("Channel with the pulses of a tachometer, or with the speed in rpm or rad/s."),
-    ] = None
-    pulses: Annotated[int, _help("Pulses of the tachometer in one revolution.")] = 1
-    speed: Annotated[
-        Text,
-        _help(
-            'Speed where there is no tachometer: "1500 rpm". With teeth the exact speed is found '
-            "in the recording by its mesh lines, within 5 % of this."
-        ),
-    ] = None
-    line: Annotated[
-        Text,
-        _help(
-            'Frequency of the mesh, or of another line, instead of the speed: "725 Hz", or '
-            '"0.0283" cycles per sample where the file has no rate. Orders are relative to it.'
-        ),
-    ] = None
-    teeth: Annotated[
-        Text, _help('Teeth of the gear on that shaft, "29", or with those of its mate, "29/67".')
-    ] = None
-    case: Annotated[
-        Text,
-        _help(
-            "Built-in case or case file whose teeth are taken, and its speed where none is known."
-        ),
-    ] = None
-    gear: Annotated[
-        str, _help("Gear of the case on that shaft: pinion, wheel, or its name in a machine.")
-    ] = GEARS[0]
+    Parameters
+    ----------
+    tacho : str
+        Channel with the pulses of a tachometer, or with the speed in rpm or rad/s.
+    pulses : int
+        Pulses of the tachometer in one revolution.
+    speed : str
+        Speed where there is no tachometer: "1500 rpm". With teeth the exact speed is found in the
+        recording by its mesh lines, within 5 % of this.
+    line : str
+        Frequency of the mesh, or of another line, instead of the speed: "725 Hz", or "0.0283"
+        cycles per sample where the file has no rate. Orders are relative to it.
+    teeth : str
+        Teeth of the gear on that shaft, "29", or with those of its mate, "29/67".
+    case : str
+        Built-in case or case file whose teeth are taken, and its speed where none is known.
+    gear : str
+        Gear of the case on that shaft: pinion, wheel, or its name in a machine.
+    """
+
+    tacho: Text = None
+    pulses: int = 1
+    speed: Text = None
+    line: Text = None
+    teeth: Text = None
+    case: Text = None
+    gear: str = GEARS[0]
 
 
 @Parameter(name="*")
 @dataclass
 class Channel:
-    """Channel and part of the recording."""
+    """Channel and part of the recording.
 
-    channel: Annotated[Text, _help("Channel to analyse; without it the channels are listed.")] = (
-        None
-    )
-    sensitivity: Annotated[
-        Text, _help('Sensitivity of its sensor where it holds the voltage: "100 mV/g".')
-    ] = None
-    sample_rate: Annotated[Text, _help('Sampling rate where the file holds none: "25600 Hz".')] = (
-        None
-    )
-    between: Annotated[Text, _help('Part of the recording: "1..8 s".')] = None
-    band: Annotated[
-        Text,
-        _help(
-            'Band that the envelope is taken of: "2000..6000 Hz"; by default about the strongest '
-            "mesh harmonic, or the whole signal where the mesh is not known."
-        ),
-    ] = None
-    max_order: Annotated[float | None, _help("Highest order of the shaft.")] = None
-    earlier: Annotated[
-        Text,
-        _help(
-            'Earlier recordings of the same channel in their order, "may.mat,june.mat": NA4, NA4* '
-            "and NB4 compare with them."
-        ),
-    ] = None
+    Parameters
+    ----------
+    channel : str
+        Channel to analyse; without it the channels are listed.
+    sensitivity : str
+        Sensitivity of its sensor where it holds the voltage: "100 mV/g".
+    sample_rate : str
+        Sampling rate where the file holds none: "25600 Hz".
+    between : str
+        Part of the recording: "1..8 s".
+    band : str
+        Band that the envelope is taken of: "2000..6000 Hz"; by default about the strongest mesh
+        harmonic, or the whole signal where the mesh is not known.
+    max_order : float
+        Highest order of the shaft.
+    earlier : str
+        Earlier recordings of the same channel in their order, "may.mat,june.mat": NA4, NA4* and NB4
+        compare with them.
+    """
 
-
-File = Annotated[Path, _help("Recording: CSV, MAT, WAV, UFF 58, TDMS, HDF5 or netCDF.")]
-Report = Annotated[
-    Output,
-    _help("Directory for the report and the data; without it the figures are shown only."),
-]
-Replace = Annotated[
-    bool, Parameter(negative="", help="Replace an earlier report in that directory.")
-]
-Json = Annotated[
-    bool,
-    Parameter(negative="", help="Write channels or figures in SI as one JSON object to stdout."),
-]
+    channel: Text = None
+    sensitivity: Text = None
+    sample_rate: Text = None
+    between: Text = None
+    band: Text = None
+    max_order: float | None = None
+    earlier: Text = None
 
 
 def signal(
-    file: File,
+    file: Path,
     /,
     *,
     chosen: Channel | None = None,
     shaft: Shaft | None = None,
-    out: Report = None,
-    force: Replace = False,
-    json: Json = False,
+    out: Output = None,
+    force: Flag = False,
+    json: Flag = False,
 ) -> None:
-    """List the channels of a recording, or analyse one: spectra, envelope, orders, indicators."""
+    """List the channels of a recording, or analyse one: spectra, envelope, orders, indicators.
+
+    Parameters
+    ----------
+    file : Path
+        Recording: CSV, MAT, WAV, UFF 58, TDMS, HDF5 or netCDF.
+    out : Path
+        Directory for the report and the data; without it the figures are shown only.
+    force : bool
+        Replace an earlier report in that directory.
+    json : bool
+        Write channels or figures in SI as one JSON object to stdout.
+    """
     options, turning = chosen or Channel(), shaft or Shaft()
     if out is not None:
         check_place(out, force)
@@ -175,10 +173,11 @@ def _recording(file: Path, options: Channel, line: Text) -> Recording:
             raise InputError("no channel is named", "--sensitivity", why, remedy)
         sensor = {options.channel: options.sensitivity}
     try:
-        recording = read(file, sample_rate=rate, sensitivity=sensor)
+        with with_options(_OPTIONS):
+            recording = read(file, sample_rate=rate, sensitivity=sensor)
     except InputError as error:
         if not any("has no sampling rate" in each.what for each in error.problems):
-            raise InputError([_by_option(each) for each in error.problems]) from None
+            raise
         recording = read(file, sample_rate=1.0, sensitivity=sensor)
         if line is None or _per_sample(line) is None:
             raise _no_rate(error.problems[0], recording, options.channel) from None
@@ -188,7 +187,7 @@ def _recording(file: Path, options: Channel, line: Text) -> Recording:
     try:
         return recording.cut(start, end)
     except InputError as error:
-        raise InputError([_moved(each, "--between") for each in error.problems]) from None
+        raise InputError([replace(each, where="--between") for each in error.problems]) from None
 
 
 def _no_rate(problem: Problem, recording: Recording, channel: Text) -> InputError:
@@ -205,29 +204,10 @@ def _no_rate(problem: Problem, recording: Recording, channel: Text) -> InputErro
     return InputError(problem.what, "--sample-rate", problem.why, remedy)
 
 
-def _by_option(problem: Problem) -> Problem:
-    """A problem of reading with the option of the command line instead of the argument."""
-    for argument, option in _OPTIONS.items():
-        if problem.where in (Argument(argument), f"argument {argument}"):
-            example = f'Write {option} "{_EXAMPLES["--sample-rate"][1]}"'
-            remedy = example if option == "--sample-rate" else ""
-            return _moved(problem, option, remedy)
-    return problem
-
-
-def _moved(problem: Problem, where: str, remedy: str = "") -> Problem:
-    return Problem(problem.what, where, problem.why, remedy or problem.remedy)
-
-
 def _quantity(option: str, text: str) -> float:
-    """A number with its unit, in SI."""
-    from tribodyn.units import UnitProblemError, parse
-
+    """A number above zero with its unit, in SI."""
     unit, example = _EXAMPLES[option]
-    try:
-        value = parse(text, unit)
-    except UnitProblemError as error:
-        raise InputError(f'"{text}"', option, str(error), f'Write {option} "{example}"') from None
+    value = in_si(option, text, unit, example)
     if not value > 0.0:
         why = "It must be greater than zero"
         raise InputError(f'"{text}"', option, why, f'Write {option} "{example}"')
@@ -336,7 +316,7 @@ def _analysis(recording: Recording, name: str, options: Channel, turning: Shaft)
     files = [text.strip() for text in (options.earlier or "").split(",") if text.strip()]
     uncut = replace(options, between=None)
     earlier = [_recording(Path(text), uncut, turning.line) for text in files]
-    try:
+    with with_options(_OPTIONS):
         return analyse_signal(
             recording,
             name,
@@ -350,8 +330,6 @@ def _analysis(recording: Recording, name: str, options: Channel, turning: Shaft)
             line=_line(turning.line, recording.sample_rate),
             earlier=earlier,
         )
-    except TribodynError as error:
-        raise type(error)([_by_option(each) for each in error.problems]) from None
 
 
 def _check_channel(recording: Recording, name: str, option: str) -> None:

@@ -2,141 +2,93 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from pathlib import Path
+from collections.abc import Callable, Sequence
 from typing import TYPE_CHECKING, Any
 
 from tribodyn.cli.console import say, say_json, show_warnings, table, tell
-from tribodyn.cli.settings import (
-    CaseName,
-    Flag,
-    Force,
-    Mesh,
-    Output,
-    Settings,
-    Words,
-    changed_case,
-    check_place,
-    read_ends,
-)
+from tribodyn.cli.settings import BEST, USUAL, Best, CaseName, Flag, Mesh, Place, read_ends
 
 if TYPE_CHECKING:
+    from pathlib import Path
+
     from tribodyn.errors import ModelWarning
+    from tribodyn.progress import Progress
     from tribodyn.report.study_report_data import StudyReportData
     from tribodyn.study.case.case import Case
     from tribodyn.study.machine.case import MachineCase
 
 
-def prepare_study(
-    kind: str, case: str, out: Output, settings: Words, force: bool
-) -> tuple[Any, Path]:
-    """The case of a study with its changes, and the directory to write."""
-    ready = changed_case(case, settings or [], kind)
-    target = out if out is not None else Path(f"{Path(case).stem}-{kind}")
-    check_place(target, force)
-    return ready, target
+def answer(
+    kind: str, case: str, at: Place, compute: Callable[[Any, Progress], StudyReportData]
+) -> StudyReportData:
+    """Compute a study of a case with its changes, write its directory and print its results."""
+    from tribodyn.cli.progress_bar import progress_bar
 
-
-def stripped(texts: Sequence[str]) -> list[str]:
-    """Words of the command line without spaces around them."""
-    return [text.strip() for text in texts]
+    ready, target = at.case(kind, case)
+    with progress_bar() as progress:
+        results = compute(ready, progress)
+    finish(kind, ready, target, results, at)
+    return results
 
 
 def finish(
     kind: str,
     case: Case | MachineCase | None,
     target: Path,
-    answer: StudyReportData,
-    force: bool,
-    json: bool,
+    results: StudyReportData,
+    at: Place,
     warnings: Sequence[ModelWarning] = (),
 ) -> None:
     """Write the directory of a study and print its results, with warnings that it raised."""
     from tribodyn.report.study_report_data import save_study
 
     messages = [warning.message for warning in warnings]
-    report = answer._replace(statements=[*answer.statements, *messages])
-    save_study(kind, case, target, report, force)
-    if json:
-        say_json(answer.facts)
+    report = results._replace(statements=[*results.statements, *messages])
+    save_study(kind, case, target, report, at.force)
+    if at.json:
+        say_json(results.facts)
     else:
         heading = [] if case is None else [case.title]
-        say("\n".join([*heading, *answer.statements, table([answer.head, *answer.rows])]))
+        say("\n".join([*heading, *results.statements, table([results.head, *results.rows])]))
     show_warnings(warnings)
     tell(f"Report: {target / 'report.html'}")
 
 
-def modes(
-    case: CaseName,
-    /,
-    between: str | None = None,
-    *,
-    out: Output = None,
-    set_: Settings = None,
-    force: Force = False,
-    json: Flag = False,
-) -> None:
+def modes(case: CaseName, /, between: str | None = None, *, at: Place = USUAL) -> None:
     """Find natural frequencies and critical speeds of a case; no motion is computed.
 
     Parameters
     ----------
     between : str
         Speeds of the Campbell diagram: "400..3500 rpm".
-    out : Path
-        Directory to write; by default that of the case with "-modes".
-    json : bool
-        Write the modes in SI as one JSON object to stdout.
     """
-    from tribodyn.cli.progress_bar import progress_bar
     from tribodyn.report.modes_report_data import any_modes_report_data
 
-    ready, target = prepare_study("modes", case, out, set_, force)
     ends = None if between is None else read_ends(between)
-    with progress_bar() as progress:
-        answer = any_modes_report_data(ready, ends, progress)
-    finish("modes", ready, target, answer, force, json)
+    answer("modes", case, at, lambda ready, to: any_modes_report_data(ready, ends, to))
 
 
-def harris(
-    case: CaseName,
-    /,
-    *torque: str,
-    mesh: Mesh = None,
-    out: Output = None,
-    set_: Words = None,
-    force: Force = False,
-    json: Flag = False,
-) -> None:
+def _stripped(texts: Sequence[str]) -> list[str] | None:
+    """Torques of the command line without spaces around them; none by default."""
+    return [text.strip() for text in texts] or None
+
+
+def harris(case: CaseName, /, *torque: str, mesh: Mesh = None, at: Place = USUAL) -> None:
     """Find the static transmission error of a case over the torque (Harris map).
 
     Parameters
     ----------
     torque : str
         Torques such as "60 N*m" "120 N*m"; by default 20 up to twice that of the case.
-    out : Path
-        Directory to write; by default that of the case with "-harris".
-    set_ : list of str
-        Values to change, for example "gears.pinion.modification.tip_relief=10 um".
-    json : bool
-        Write transmission errors and stiffness over the torque in SI to stdout.
     """
     from tribodyn.report.study_report_data import harris_report_data
 
-    ready, target = prepare_study("harris", case, out, set_, force)
-    answer = harris_report_data(ready, stripped(torque) or None, mesh)
-    finish("harris", ready, target, answer, force, json)
+    torques = _stripped(torque)
+    answer("harris", case, at, lambda ready, _: harris_report_data(ready, torques, mesh))
 
 
 def relief(
-    case: CaseName,
-    /,
-    *torque: str,
-    gears: str = "both",
-    mesh: Mesh = None,
-    out: Output = None,
-    set_: Words = None,
-    force: Force = False,
-    json: Flag = False,
+    case: CaseName, /, *torque: str, gears: str = "both", mesh: Mesh = None, at: Best = BEST
 ) -> None:
     """Find the tip relief of a case that leaves least transmission error; write the better case.
 
@@ -146,32 +98,17 @@ def relief(
         Torques such as "60 N*m" "120 N*m"; by default from half that of the case to all of it.
     gears : str
         Which gears are relieved: both, or the name of one.
-    out : Path
-        Directory to write; by default that of the case with "-relief". It holds best.toml.
-    set_ : list of str
-        Values to change, for example "stiffness.model=analytic".
-    json : bool
-        Write amount, length and transmission errors in SI to stdout.
     """
     from tribodyn.report.study_report_data import relief_report_data
 
-    ready, target = prepare_study("relief", case, out, set_, force)
-    answer = relief_report_data(ready, stripped(torque) or None, gears, mesh)
-    finish("relief", ready, target, answer, force, json)
+    torques = _stripped(torque)
+    answer("relief", case, at, lambda ready, _: relief_report_data(ready, torques, gears, mesh))
 
 
 def lead(
-    case: CaseName,
-    /,
-    *torque: str,
-    gear: str = "pinion",
-    mesh: Mesh = None,
-    out: Output = None,
-    set_: Words = None,
-    force: Force = False,
-    json: Flag = False,
+    case: CaseName, /, *torque: str, gear: str = "pinion", mesh: Mesh = None, at: Best = BEST
 ) -> None:
-    """Find the crowning and lead slope of a case that spread its load most evenly over the face.
+    """Find the crowning and lead slope that spread the load most evenly; write the better case.
 
     Parameters
     ----------
@@ -179,20 +116,13 @@ def lead(
         Torques such as "60 N*m" "120 N*m"; by default that of the case.
     gear : str
         Which gear is modified: pinion or wheel.
-    out : Path
-        Directory to write; by default that of the case with "-lead". It holds best.toml.
-    set_ : list of str
-        Values to change, for example "gears.misalignment=15 um".
-    json : bool
-        Write crowning, lead slope and face load factors in SI to stdout.
     """
-    from tribodyn.cli.progress_bar import progress_bar
     from tribodyn.report.study_report_data import lead_report_data
 
-    ready, target = prepare_study("lead", case, out, set_, force)
-    with progress_bar() as progress:
-        answer = lead_report_data(ready, stripped(torque) or None, progress, gear=gear, mesh=mesh)
-    finish("lead", ready, target, answer, force, json)
+    def compute(ready: Any, progress: Progress) -> StudyReportData:
+        return lead_report_data(ready, _stripped(torque), progress, gear=gear, mesh=mesh)
+
+    answer("lead", case, at, compute)
 
 
 def run_up(
@@ -202,10 +132,7 @@ def run_up(
     *,
     duration: float = 10.0,
     down: Flag = False,
-    out: Output = None,
-    set_: Settings = None,
-    force: Force = False,
-    json: Flag = False,
+    at: Place = USUAL,
 ) -> None:
     """Integrate a case in time while its speed rises; report where it vibrates most.
 
@@ -217,15 +144,8 @@ def run_up(
         Length of the rise in seconds.
     down : bool
         Let the speed fall back as it rose.
-    out : Path
-        Directory to write; by default that of the case with "-run-up".
-    json : bool
-        Write levels over the speed in SI to stdout.
     """
-    from tribodyn.cli.progress_bar import progress_bar
     from tribodyn.report.study_report_data import run_up_report_data
 
-    ready, target = prepare_study("run-up", case, out, set_, force)
-    with progress_bar() as progress:
-        answer = run_up_report_data(ready, read_ends(between), duration, down, progress)
-    finish("run-up", ready, target, answer, force, json)
+    ends = read_ends(between)
+    answer("run-up", case, at, lambda on, to: run_up_report_data(on, ends, duration, down, to))

@@ -11,6 +11,7 @@ import numpy as np
 
 from tribodyn.cli.console import say, say_json, show_warnings, table, tell
 from tribodyn.cli.settings import Flag, Output, Words, changed_case, read_changes
+from tribodyn.drawing import finite
 from tribodyn.errors import InputError, Problem, collected
 from tribodyn.files import check_new
 
@@ -87,7 +88,7 @@ def _train(
     model.save(path)
     if json:
         facts = {
-            name: {**vars(error_of), "band": _finite(float(half)), "unit": str(unit)}
+            name: {**vars(error_of), "band": finite(half), "unit": str(unit)}
             for (name, error_of), half, unit in zip(
                 model.errors.items(), model.band, model.target_unit, strict=True
             )
@@ -128,11 +129,6 @@ def _unit(text: str) -> str:
     return "" if text == "1" else str(text)
 
 
-def _finite(value: float) -> float | None:
-    """Return None for an end of a band that too few held-out points leave open."""
-    return value if math.isfinite(value) else None
-
-
 def _predict(source: str, values: tuple[str, ...], json: bool) -> None:
     from tribodyn.surrogate import load
 
@@ -146,12 +142,8 @@ def _predict(source: str, values: tuple[str, ...], json: bool) -> None:
         value, (low, high) = float(predictions[name]), map(float, bands[name])
         band = f"{low:.6g} to {high:.6g} {_unit(unit)}" if math.isfinite(high) else "open"
         rows.append([str(name), f"{value:.6g} {_unit(unit)}", band])
-        facts[str(name)] = {
-            "value": value,
-            "low": _finite(low),
-            "high": _finite(high),
-            "unit": str(unit),
-        }
+        ends = {"low": finite(low), "high": finite(high)}
+        facts[str(name)] = {"value": value, **ends, "unit": str(unit)}
     say_json(facts) if json else say(table(rows))
 
 

@@ -7,15 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeVar
 
 from tribodyn.cli.console import say, say_json, show_resumed, table, tell
-from tribodyn.cli.settings import (
-    CaseName,
-    Flag,
-    Force,
-    Settings,
-    changed_any_case,
-    check_place,
-    read_ranges,
-)
+from tribodyn.cli.settings import USUAL, CaseName, Place, changed_any_case, read_ranges
 
 if TYPE_CHECKING:
     from tribodyn.study.studies.sweep_result import Sweep
@@ -28,16 +20,7 @@ StudyType = TypeVar("StudyType", bound=Any)
 INTERRUPTED = 130
 
 
-def sweep(
-    case: CaseName,
-    /,
-    *over: str,
-    out: Path | None = None,
-    set_: Settings = None,
-    force: Force = False,
-    show: str = "",
-    json: Flag = False,
-) -> int:
+def sweep(case: CaseName, /, *over: str, show: str = "", at: Place = USUAL) -> int:
     """Compute a case at many values of its keys; write a table and a report.
 
     Parameters
@@ -45,16 +28,11 @@ def sweep(
     over : str
         What varies: "operation.speed=400..3500 rpm:60" or "operation.torque=50,150,300 N*m".
         Several make a grid.
-    out : Path
-        Directory to write; by default that of the case with "-sweep".
     show : str
         Figures of the table on the screen, such as "minimum_film_ratio,efficiency".
-    json : bool
-        Write all figures in SI as one JSON object to stdout.
     """
-    target = out if out is not None else Path(f"{Path(case).stem}-sweep")
     ranges = read_ranges(over)
-    ready = changed_any_case(case, set_ or [])
+    ready = changed_any_case(case, at.set_ or [])
     names = _summary_names(show)
 
     def compute(**checkpointing: Any) -> Sweep:
@@ -62,8 +40,9 @@ def sweep(
 
         return over_keys(ready, ranges, partial=True, by="sweep", **checkpointing)
 
-    result = run_checkpointed(target, force, compute)
-    _show(result, result.displayed_figures(names), json)
+    target = at.reserved(case, "sweep")
+    result = run_checkpointed(target, at.force, compute)
+    _show(result, result.displayed_figures(names), at.json)
     failed = sum(bool(point.failed) for point in result.points)
     if failed:
         tell(
@@ -77,7 +56,6 @@ def run_checkpointed(target: Path, force: bool, compute: Callable[..., StudyType
     from tribodyn.checkpoints import Checkpoints
     from tribodyn.cli.progress_bar import progress_bar
 
-    check_place(target, force)
     with Checkpoints(target, force) as checkpoints:
         with progress_bar() as progress:
             study = compute(progress=progress, checkpoints=checkpoints)

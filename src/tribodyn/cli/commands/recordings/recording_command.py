@@ -4,20 +4,24 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Annotated, Any
+from typing import Any
 
 from cyclopts import Parameter
 
 from tribodyn.cli.console import say, say_json, show_warnings, table, tell
 from tribodyn.cli.settings import (
     CaseName,
+    Flag,
     Force,
+    Output,
     Settings,
     changed_any_case,
     check_file,
+    in_si,
     read_ranges,
+    with_options,
 )
-from tribodyn.errors import Argument, InputError, Problem, TribodynError, collected
+from tribodyn.errors import InputError, collected
 
 #: Options of the command by the arguments of the functions behind it.
 _OPTIONS = {
@@ -29,41 +33,46 @@ _OPTIONS = {
 } | {"path": "--out", "folder": "--out"}
 
 
-def _help(text: str) -> Any:
-    return Parameter(help=text)
-
-
 @Parameter(name="*")
 @dataclass
 class Sampling:
-    """What is recorded, and what scatters."""
+    """What is recorded, and what scatters.
 
-    sensor: Annotated[
-        str,
-        _help(
-            'Signals such as "acceleration_loa_pinion,acceleration_loa_wheel", "mesh_force" or '
-            '"dynamic_transmission_error"; one for a set.'
-        ),
-    ]
-    duration: Annotated[str, _help('Length of a recording: "2 s".')] = "1 s"
-    sample_rate: Annotated[str, _help('Sampling rate: "25600 Hz".')] = "25600 Hz"
-    noise: Annotated[
-        float, _help("Standard deviation of white noise, in the SI unit of the sensor.")
-    ] = 0.0
-    speed_fluctuation: Annotated[
-        float, _help("Standard deviation of slow changes of the speed, over the speed.")
-    ] = 0.0
-    tacho_jitter: Annotated[
-        float, _help("Standard deviation of the edges of the tacho, over a turn.")
-    ] = 0.0
-    seed: Annotated[int, _help("Number of the draw of all that scatters.")] = 0
-    repeats: Annotated[int, _help("Recordings of each variant of a set.")] = 1
+    Parameters
+    ----------
+    sensor : str
+        Signals such as "acceleration_loa_pinion,acceleration_loa_wheel", "mesh_force" or
+        "dynamic_transmission_error"; one for a set.
+    duration : str
+        Length of a recording: "2 s".
+    sample_rate : str
+        Sampling rate: "25600 Hz".
+    noise : float
+        Standard deviation of white noise, in the SI unit of the sensor.
+    speed_fluctuation : float
+        Standard deviation of slow changes of the speed, over the speed.
+    tacho_jitter : float
+        Standard deviation of the edges of the tacho, over a turn.
+    seed : int
+        Number of the draw of all that scatters.
+    repeats : int
+        Recordings of each variant of a set.
+    """
+
+    sensor: str
+    duration: str = "1 s"
+    sample_rate: str = "25600 Hz"
+    noise: float = 0.0
+    speed_fluctuation: float = 0.0
+    tacho_jitter: float = 0.0
+    seed: int = 0
+    repeats: int = 1
 
     def settings(self) -> dict[str, Any]:
         """Return the arguments of a recording, all but the sensor."""
         return {
-            "duration": _quantity("--duration", self.duration, "s", "2 s"),
-            "sample_rate": _quantity("--sample-rate", self.sample_rate, "Hz", "25600 Hz"),
+            "duration": in_si("--duration", self.duration, "s", "2 s"),
+            "sample_rate": in_si("--sample-rate", self.sample_rate, "Hz", "25600 Hz"),
             "noise": self.noise,
             "speed_fluctuation": self.speed_fluctuation,
             "tacho_jitter": self.tacho_jitter,
@@ -74,39 +83,34 @@ class Sampling:
 def recording(
     case: CaseName,
     /,
-    *over: Annotated[
-        str,
-        _help(
-            'What varies, such as "faults.crack.depth=0,1,2 mm": writes a folder of labelled '
-            "recordings, which the same command continues. Several make a grid."
-        ),
-    ],
+    *over: str,
     sampling: Sampling,
-    out: Annotated[
-        Path | None,
-        _help(
-            "File to write, .mat, .wav, .h5, .uff or .csv, with its truth as .json; of a set its "
-            'folder. By default that of the case with "-recording".'
-        ),
-    ] = None,
+    out: Output = None,
     set_: Settings = None,
     force: Force = False,
-    json: Annotated[
-        bool, Parameter(negative="", help="Write what was recorded as JSON to stdout.")
-    ] = False,
+    json: Flag = False,
 ) -> None:
-    """Record what a sensor sees of the motion of a case; over values of keys, a labelled set."""
-    with collected() as warnings:
-        try:
-            if over:
-                if force:
-                    why = "The same command continues a set, and another one is not replaced"
-                    raise InputError("--force is given for a set", "--force", why, "Remove it")
-                facts, lines = _record_set(case, over, out, sampling, set_)
-            else:
-                facts, lines = _record(case, out, sampling, set_, force)
-        except TribodynError as error:
-            raise type(error)([_by_option(each) for each in error.problems]) from None
+    """Record what a sensor sees of the motion of a case; over values of keys, a labelled set.
+
+    Parameters
+    ----------
+    over : str
+        What varies, such as "faults.crack.depth=0,1,2 mm": writes a folder of labelled recordings,
+        which the same command continues. Several make a grid.
+    out : Path
+        File to write, .mat, .wav, .h5, .uff or .csv, with its truth as .json; of a set its folder.
+        By default that of the case with "-recording".
+    json : bool
+        Write what was recorded as JSON to stdout.
+    """
+    with collected() as warnings, with_options(_OPTIONS):
+        if over and force:
+            why = "The same command continues a set, and another one is not replaced"
+            raise InputError("--force is given for a set", "--force", why, "Remove it")
+        if over:
+            facts, lines = _record_set(case, over, out, sampling, set_)
+        else:
+            facts, lines = _record(case, out, sampling, set_, force)
     show_warnings(warnings)
     if json:
         say_json(facts)
@@ -162,20 +166,3 @@ def _record_set(
     rows = [[key, axis["unit"], str(len(axis["values"]))] for key, axis in keys]
     text = f"{ready.title}\n{labelled}\n{table([['key', 'unit', 'values'], *rows])}"
     return facts, [text, f"Set: {folder} with card.json and labels.csv"]
-
-
-def _quantity(option: str, text: str, unit: str, example: str) -> float:
-    from tribodyn.units import UnitProblemError, parse
-
-    try:
-        return parse(text, unit)
-    except UnitProblemError as error:
-        raise InputError(f'"{text}"', option, str(error), f'Write {option} "{example}"') from None
-
-
-def _by_option(problem: Problem) -> Problem:
-    """A problem with the option of the command line instead of the argument."""
-    for argument, option in _OPTIONS.items():
-        if problem.where in (Argument(argument), f"argument {argument}"):
-            return Problem(problem.what, option, problem.why, problem.remedy)
-    return problem
