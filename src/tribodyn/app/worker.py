@@ -136,7 +136,7 @@ def _written(blocks: Any, folder: Path) -> list[dict[str, Any]]:
 
 def _overlay(order: Mapping[str, Any], folder: Path, tell: Tell) -> None:
     """Overlay stored results."""
-    from tribodyn.cases.stored_result import load_result
+    from tribodyn.cases.load import load_result
     from tribodyn.drawing import FIGURES
     from tribodyn.report.figure_blocks import block_of_figure
     from tribodyn.study.result_comparison import compare_results, difference_rows

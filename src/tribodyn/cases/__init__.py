@@ -8,9 +8,8 @@ from types import ModuleType
 from tribodyn.arguments import guard
 from tribodyn.cases.catalogue import case_files, cases
 from tribodyn.cases.compile_ahead import warm_up
-from tribodyn.cases.load import load_case, run
+from tribodyn.cases.load import load_case, load_result, run
 from tribodyn.cases.papers.comparison import PaperComparison, compare_with_paper
-from tribodyn.cases.stored_result import load_result
 
 __all__ = [
     "PaperComparison",

@@ -1,4 +1,4 @@
-"""From a name or a path to a case, and to its result."""
+"""From a name or a path to a case, to its result, and to a result that was saved."""
 
 from __future__ import annotations
 
@@ -11,10 +11,12 @@ from typing import TYPE_CHECKING, Any
 from tribodyn.cases.catalogue import all_files
 from tribodyn.errors import InputError, Problem
 from tribodyn.progress import SILENT, Progress
+from tribodyn.study.pipeline.store import MOTIONS, read_stored, readable
 
 if TYPE_CHECKING:
     from tribodyn.study import Case
     from tribodyn.study.machine.case import MachineCase
+
 
 #: Endings of gearbox models of other programs.
 _REXS = (".rexs", ".rexsj", ".rexsz", ".rexs.zip", ".rexsj.zip")
@@ -144,3 +146,49 @@ def run(case: Case | MachineCase | str | os.PathLike[str], progress: Progress = 
 
         return run_machine(ready, progress, stacklevel=3)
     return compute(ready, progress, stacklevel=3)
+
+
+def load_result(directory: str | os.PathLike[str]) -> Any:
+    """Read a saved result; only the forces along its motion are computed again.
+
+    A planetary stage that an earlier version stored is computed again from its case file.
+
+    Parameters
+    ----------
+    directory : str or path
+        What :meth:`tribodyn.Result.save` or ``tribodyn run`` wrote, of a gear pair or a machine.
+
+    Returns
+    -------
+    Result or MachineResult
+        With the same case, summary, warnings and figures. Of a long transient it has the mesh
+        cycles that were stored; the summary is that of the whole run.
+
+    Raises
+    ------
+    InputError
+        If the directory holds no result, or a file is damaged or was changed.
+
+    Examples
+    --------
+    >>> import tribodyn
+    >>> tribodyn.load_result("no-such-result")
+    Traceback (most recent call last):
+        ...
+    tribodyn.errors.InputError: no-such-result: this is no result. There is no such directory. \
+Give the directory that tribodyn run or the save method of a result wrote.
+    """
+    from tribodyn.study.machine.run import restored as restored_machine
+    from tribodyn.study.pipeline.run import restored
+
+    folder = Path(directory)
+    with readable(folder):
+        stored, case = read_stored(folder), load_case(folder / "case.toml")
+        if "planet" in stored.loads[0].data.coords:  # an earlier version wrote it
+            result = run(case)
+        elif stored.motion == MOTIONS[0]:
+            result = restored_machine(case, stored)
+        else:
+            result = restored(case, stored)
+    vars(result)["_summary"] = stored.summary
+    return result

@@ -19,11 +19,10 @@ from tribodyn.machine.graph.placement import pin_lever
 from tribodyn.machine.housing import AXES
 from tribodyn.machine.machine import Machine
 from tribodyn.machine.mesh import mean_over_phase
-from tribodyn.machine.planetary.centrifugal import centrifugal_force
-from tribodyn.machine.planetary.turning_frame import frame_terms
+from tribodyn.machine.planetary.turning_frame import centrifugal_force, frame_terms
 from tribodyn.machine.shaft import Shaft
 from tribodyn.machine.shaft_matrices import ShaftMatrices, diagonal_blocks
-from tribodyn.machine.static.clearance import linear_load
+from tribodyn.machine.static.supports import linear_load
 from tribodyn.types import Array, Mask
 
 #: Eigenvalues below this share of the largest are rounding: the motion is free.

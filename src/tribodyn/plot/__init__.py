@@ -45,7 +45,12 @@ from tribodyn.plot.machine.levels import (
     machine_sweep,
 )
 from tribodyn.plot.machine.modes import machine_campbell, machine_modes
-from tribodyn.plot.machine.orders import kinematic_frequencies, machine_forces, machine_orders
+from tribodyn.plot.machine.orders import (
+    kinematic_frequencies,
+    machine_forces,
+    machine_orders,
+    machine_power,
+)
 from tribodyn.plot.machine.planetary import (
     load_share_statistics,
     planetary_forces,
@@ -53,7 +58,6 @@ from tribodyn.plot.machine.planetary import (
     planetary_stage,
     ring_sensor,
 )
-from tribodyn.plot.machine.power import machine_power
 from tribodyn.plot.machine.side_view import machine
 from tribodyn.plot.machine.space_view import machine_space
 from tribodyn.plot.mesh.face_maps import face_maps, rating_maps

@@ -52,12 +52,11 @@ if TYPE_CHECKING:
     from tribodyn.study.studies.sweep import sweep
     from tribodyn.study.studies.sweep_result import Sweep
     from tribodyn.study.uncertain.data_set import DataSet, load_data
-    from tribodyn.study.uncertain.ensemble import CaseEnsemble, ensemble
+    from tribodyn.study.uncertain.ensemble import CaseEnsemble, MachineEnsemble, ensemble
     from tribodyn.study.uncertain.failure_probability import (
         FailureProbability,
         failure_probability,
     )
-    from tribodyn.study.uncertain.machine_ensemble import MachineEnsemble
     from tribodyn.study.uncertain.operating_data import operating_data
     from tribodyn.study.uncertain.sensitivity import CaseSensitivity, sobol_indices
     from tribodyn.study.uncertain.vibration_data import vibration_data

@@ -29,7 +29,7 @@ from tribodyn.machine import (
     system,
 )
 from tribodyn.machine.modes import machine_frequencies
-from tribodyn.machine.static.least_load import stiffness_under, weight_share
+from tribodyn.machine.static.supports import stiffness_under, weight_share
 
 RING = {"bore_diameter": 0.04, "outer_diameter": 0.08, "width": 0.018}
 BALLS, ROLLERS = DeepGrooveBallBearing, CylindricalRollerBearing

@@ -9,7 +9,7 @@ import pytest
 
 import tribodyn as td
 from tribodyn.errors import InputError
-from tribodyn.plot.machine.power import _gains
+from tribodyn.plot.machine.orders import _gains
 from tribodyn.study.machine.case import MachineCase
 
 TEXT = """

@@ -145,7 +145,7 @@ def _with_recording(
     options: RecordingOptions,
     output: Any,
 ) -> None:
-    from tribodyn.cases.stored_result import load_result
+    from tribodyn.cases.load import load_result
     from tribodyn.cli.commands.study_commands import finish
     from tribodyn.measurement import compare as compared
     from tribodyn.measurement import read

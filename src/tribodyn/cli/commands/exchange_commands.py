@@ -119,7 +119,7 @@ def export(
         if omitted:
             tell(f"note: only tribodyn reads back from the model: {', '.join(omitted)}")
     elif tables is not None:
-        from tribodyn.cases.stored_result import load_result
+        from tribodyn.cases.load import load_result
         from tribodyn.exchange import write_tables
 
         write_tables(load_result(case), tables)

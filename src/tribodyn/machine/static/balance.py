@@ -23,11 +23,11 @@ from tribodyn.errors import (
 )
 from tribodyn.gear import Misalignment
 from tribodyn.machine.machine import Machine
-from tribodyn.machine.planetary.centrifugal import centrifugal_force
+from tribodyn.machine.planetary.turning_frame import centrifugal_force
 from tribodyn.machine.rolling.element_ring import BearingState, RollingElementBearing
 from tribodyn.machine.static.face_law import FaceLaw
-from tribodyn.machine.static.least_load import least_stiffness
 from tribodyn.machine.static.static_model import MeshLaw, StaticModel
+from tribodyn.machine.static.supports import least_stiffness
 from tribodyn.types import Array
 
 #: Most Newton steps, greatest displacement in one of them [m], greatest residual over the loads.

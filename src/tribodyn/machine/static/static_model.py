@@ -17,8 +17,7 @@ from tribodyn.machine.machine import Machine
 from tribodyn.machine.mesh import mean_over_phase
 from tribodyn.machine.plane_law import mean_in_space
 from tribodyn.machine.rolling.element_ring import BearingState
-from tribodyn.machine.static.clearance import clearance_load
-from tribodyn.machine.static.floating import floating_response, seated
+from tribodyn.machine.static.supports import clearance_load, floating_response, seated
 from tribodyn.machine.structure import MachineStructure
 from tribodyn.types import Array
 

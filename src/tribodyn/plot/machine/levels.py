@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from tribodyn.study.result_comparison import ResultComparison
     from tribodyn.study.studies.levels import MachineLevels, Resonance
     from tribodyn.study.studies.sweep_result import Sweep
-    from tribodyn.study.uncertain.machine_ensemble import MachineEnsemble
+    from tribodyn.study.uncertain.ensemble import MachineEnsemble
     from tribodyn.types import Array
 
 #: Quantity and label of each panel.

@@ -40,7 +40,7 @@ if TYPE_CHECKING:
     from tribodyn.machine import PlanetaryModes, RingSensorSignal
     from tribodyn.study import MachineCase, MachineResult, PlanetaryMotion
     from tribodyn.study.planetary.tolerances import LoadShareStatistics
-    from tribodyn.study.uncertain.machine_ensemble import MachineEnsemble
+    from tribodyn.study.uncertain.ensemble import MachineEnsemble
 
 #: Points of a tooth, those of them that are drawn, and pictures of the movement.
 _POINTS, _DRAWN, _FRAMES = 40, [0, 5, 9, 13, 17, 21, 25, 29, 33], 24

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any, cast
 import numpy as np
 
 from tribodyn.drawing import Sketch, drawing
-from tribodyn.plot.machine.power import gains
+from tribodyn.plot.machine.orders import gains
 from tribodyn.plot.machine.side_view import (
     SEAT_COLOR,
     STEEL_COLOR,

@@ -9,7 +9,7 @@ from functools import cached_property, partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, ClassVar, Self
 
-from tribodyn.arguments.display import brief
+from tribodyn.arguments.reading import brief
 from tribodyn.errors import InputError, Problem
 from tribodyn.model import text
 from tribodyn.study.case import to_models

@@ -13,7 +13,7 @@ from pathlib import Path
 from typing import Any, ClassVar, NamedTuple, TypeVar
 
 from tribodyn.aliases import with_old_names
-from tribodyn.arguments.display import one_line
+from tribodyn.arguments.reading import one_line
 from tribodyn.errors import InputError
 from tribodyn.model import Model, Models, Option
 

@@ -13,7 +13,7 @@ from tribodyn.aliases import warn_of_old_name
 from tribodyn.drawing import draw
 from tribodyn.errors import Argument, InputError
 from tribodyn.gear import Misalignment, MisalignmentStudy, misalignment_study
-from tribodyn.machine.static.clearance import clearance_supports, without_clearance_supports
+from tribodyn.machine.static.supports import clearance_supports, without_clearance_supports
 from tribodyn.record import Parts
 from tribodyn.study.faults.sensors import sensors_of
 from tribodyn.study.machine.housing_files import HOUSING, copy_housing

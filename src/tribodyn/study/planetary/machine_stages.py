@@ -12,9 +12,9 @@ import numpy as np
 
 from tribodyn.errors import Problem
 from tribodyn.machine import Bearing, Gear, Mesh, PlanetaryStage, Shaft, sun_to_ring_lag
-from tribodyn.machine.planetary.centrifugal import centrifugal_loads
 from tribodyn.machine.planetary.mesh_laws import gear_lag
 from tribodyn.machine.planetary.stage_parts import mesh_kinds
+from tribodyn.machine.planetary.turning_frame import centrifugal_loads
 from tribodyn.study.case.values import KeyedProblems, Plain
 from tribodyn.study.machine.pair_cases import pair_case, pinion_and_wheel, with_forms
 from tribodyn.study.machine.read_parts import is_faulty, read_gear

@@ -11,7 +11,7 @@ from tribodyn.checkpoints import Checkpoints
 from tribodyn.errors import Argument, ComputationError, InputError, collected
 from tribodyn.interrupt import STOPPED, refuse_stopped, single_blas_thread, stop_flag
 from tribodyn.machine import system as system_of
-from tribodyn.machine.static.clearance import clearance_supports
+from tribodyn.machine.static.supports import clearance_supports
 from tribodyn.mesh import MeshTable
 from tribodyn.progress import SILENT, Progress, StageProgress
 from tribodyn.study.case.to_models import locate_errors

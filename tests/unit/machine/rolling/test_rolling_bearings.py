@@ -16,7 +16,7 @@ from tribodyn.machine import (
     DeepGrooveBallBearing,
     TaperedRollerBearing,
 )
-from tribodyn.machine.static.floating import floating_response, seated
+from tribodyn.machine.static.supports import floating_response, seated
 
 DEG = math.pi / 180.0
 STEEL = 207e9 / 0.91

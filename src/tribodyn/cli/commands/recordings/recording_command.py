@@ -125,7 +125,7 @@ def _record(
 ) -> tuple[dict[str, Any], list[str]]:
     """Write one recording and its truth; return facts and lines of text."""
     from tribodyn.cli.progress_bar import progress_bar
-    from tribodyn.measurement.writers import check_ending
+    from tribodyn.measurement.recording import check_ending
     from tribodyn.report.signal_report import recorded_motion
 
     file = out if out is not None else Path(f"{Path(case).stem}-recording.mat")
