@@ -85,7 +85,7 @@ def _packed(value: Any) -> Any:
     return packed if value.ndim == 1 else {**packed, "shape": str(value.shape)[1:-1]}
 
 
-def finite(part: Any) -> Any:
+def finite(part: object) -> Any:
     """The same data with None instead of NaN and infinity."""
     if isinstance(part, dict):
         return {name: finite(each) for name, each in part.items()}
@@ -94,7 +94,7 @@ def finite(part: Any) -> Any:
     return None if isinstance(part, float) and not math.isfinite(part) else part
 
 
-def _always(result: Any) -> str:
+def _always(result: object) -> str:
     """Return no message: the figure needs no optional data."""
     return ""
 
@@ -133,7 +133,7 @@ class Drawing:
         """Extend ``missing`` to results of any class."""
         lack = self.missing
 
-        def missing(result: Any) -> str:
+        def missing(result: object) -> str:
             """Sentence that says why a result cannot be drawn; empty if it can."""
             subject = self.subject(result)
             if subject is not None:
@@ -143,7 +143,7 @@ class Drawing:
 
         object.__setattr__(self, "missing", missing)
 
-    def subject(self, result: Any) -> Any:
+    def subject(self, result: object) -> Any:
         """Return the result, or the part of it, that the figure draws; None if it draws another.
 
         Parameters
@@ -167,7 +167,7 @@ class Drawing:
                 return part
         return None if self.of else result
 
-    def caption_of(self, result: Any) -> str:
+    def caption_of(self, result: object) -> str:
         """Caption: what to look for in the figure of a result.
 
         Parameters
@@ -199,7 +199,7 @@ class Drawing:
         figure = self.sketch(result, *arguments, **options)
         return figure.figure() if isinstance(figure, Sketch) else figure
 
-    def sketch(self, result: Any, *arguments: Any, **options: Any) -> Any:
+    def sketch(self, result: object, *arguments: object, **options: object) -> Any:
         """Draw the figure of a result without importing plotly, unless the figure function does.
 
         Parameters
@@ -239,7 +239,7 @@ class Drawing:
                 raise InputError(f'no option "{name}" of the figure "{self.name}"', "", why, remedy)
 
 
-def _options(figure: Callable[..., Any]) -> list[Parameter]:
+def _options(figure: Callable[..., object]) -> list[Parameter]:
     """Parameters of a figure function but what it draws."""
     return [*signature(figure).parameters.values()][1:]
 
@@ -296,7 +296,7 @@ def drawing(
     """
     more = (missing, (of,) if isinstance(of, str) else tuple(of), made_by)
 
-    def keep(draw: Callable[..., Any]) -> Drawing:
+    def keep(draw: Callable[..., object]) -> Drawing:
         argument = next(iter(signature(draw).parameters))
         figure = Drawing(name or draw.__name__, checked(draw), heading, caption, *more)
         text = figure_text(cleandoc(draw.__doc__ or ""), argument, figure.of)
@@ -314,26 +314,26 @@ def load_figures() -> None:
         import_module(entry.module)
 
 
-def figures_of(result: Any) -> list[str]:
+def figures_of(result: object) -> list[str]:
     """Names of the figures that draw this type of result."""
     load_figures()
     return [name for name in FIGURES if _draws(FIGURES[name], result)]
 
 
-def _draws(figure: Callable[..., Any], result: Any) -> bool:
+def _draws(figure: Callable[..., object], result: object) -> bool:
     try:
         return not isinstance(figure, Drawing) or figure.subject(result) is not None
     except InputError:  # The figure draws gears of another kind.
         return False
 
 
-def bound_figure(result: Any, name: str) -> Callable[..., Any]:
+def bound_figure(result: object, name: str) -> Callable[..., Any]:
     """Figure as a method of a result, with the options and the help of the figure function."""
     figure = FIGURES[name]
     if not isinstance(figure, Drawing):
         return partial(figure, result)
 
-    def plot(*arguments: Any, **options: Any) -> Any:
+    def plot(*arguments: object, **options: object) -> Any:
         return figure(result, *arguments, **options)
 
     first = next(iter(signature(figure.draw).parameters))
@@ -345,7 +345,7 @@ def bound_figure(result: Any, name: str) -> Callable[..., Any]:
     return plot
 
 
-def draw(result: Any, name: str = "", *arguments: Any, **options: Any) -> Any:
+def draw(result: object, name: str = "", *arguments: object, **options: object) -> Any:
     """Draw a result: the figure of that name, or the first that draws its class itself."""
     load_figures()
     if name:
@@ -375,7 +375,7 @@ def report_of(kind: str) -> Callable[[Writer], Writer]:
     return keep
 
 
-def write_report_of(result: Any, path: Path) -> Path:
+def write_report_of(result: object, path: Path) -> Path:
     """Write the report of a result to a file."""
     load_figures()
     kinds = [kind.__name__ for kind in type(result).__mro__]

@@ -47,7 +47,7 @@ def symbol(text: str) -> list[str]:
 def essential() -> frozenset[str]:
     """Keys of the short case file to start from."""
 
-    def walk(table: Mapping[str, Any], prefix: str) -> Iterator[str]:
+    def walk(table: Mapping[str, object], prefix: str) -> Iterator[str]:
         for name, value in table.items():
             if isinstance(value, Mapping):
                 yield from walk(value, f"{prefix}{name}.")
@@ -59,7 +59,7 @@ def essential() -> frozenset[str]:
 
 
 def field_of(
-    key: str, option: Option, text: str = "", default: Any = None, unit: str = ""
+    key: str, option: Option, text: str = "", default: object = None, unit: str = ""
 ) -> dict[str, Any]:
     """Data of one form field: ``text`` as typed, ``default`` in SI for an empty field."""
     units = usual_units(option.unit) if option.unit else []
@@ -116,7 +116,7 @@ def _names(option: Option, default: Any) -> list[list[str]]:
     return [*first, *([name, text] for name, text in choices.items())]
 
 
-def _placeholder(option: Option, default: Any, unit: str) -> str:
+def _placeholder(option: Option, default: object, unit: str) -> str:
     if option.required:
         return "needed"
     if isinstance(default, int | float) and not isinstance(default, bool) and option.unit:
@@ -283,6 +283,6 @@ class CaseForm:
         )
 
 
-def _is_filled(group: Mapping[str, Any]) -> bool:
+def _is_filled(group: Mapping[str, object]) -> bool:
     """Whether a group shows anything."""
     return bool(group["fields"] or group["more"] or group["groups"])

@@ -131,7 +131,7 @@ class Jobs:
         self._spare: _Process | None = _Process()
 
     def start(
-        self, kind: str, title: str, order: Mapping[str, Any], case: Any = None
+        self, kind: str, title: str, order: Mapping[str, object], case: object = None
     ) -> Job | None:
         """Start or queue a job; return None if the queue is full."""
         with self._lock:
@@ -174,7 +174,7 @@ class Jobs:
             self._running.pop(job.number, None)
             self._next()
 
-    def _update(self, job: Job, message: Mapping[str, Any]) -> None:
+    def _update(self, job: Job, message: Mapping[str, object]) -> None:
         with self._lock:
             if job.state == "stopped":
                 return

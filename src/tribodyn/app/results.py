@@ -44,7 +44,7 @@ _CONFIG = {
 _STATES = {"done": "done", "failed": "failed", "stopped": "stopped", "waiting": "waiting"}
 
 
-def button(text: Any, do: str, of: str = "", **more: Any) -> html.Button:
+def button(text: object, do: str, of: str = "", **more: object) -> html.Button:
     """Button with its action; ``more`` are attributes with underscores for dashes."""
     data = {name.replace("_", "-"): value for name, value in more.items() if "_" in name}
     plain = {name: value for name, value in more.items() if "_" not in name}
@@ -98,7 +98,7 @@ def rail(desk: TabSession) -> list[Any]:
     return [*parts, _runs(desk)] if desk.runs else parts
 
 
-def _tab(desk: TabSession, view: str, text: Any) -> html.Button:
+def _tab(desk: TabSession, view: str, text: object) -> html.Button:
     selected = desk.view == view
     more = {"aria_selected": str(selected).lower(), "aria_controls": "bench"}
     return button(text, "view", view, role="tab", id=f"tab-{view}", **more)

@@ -158,7 +158,7 @@ class Page:
         )(self._answer)
 
     def _answer(
-        self, path: str, edits: Any, act: Any, tick: Any, client_versions: Any
+        self, path: str, edits: object, act: object, tick: object, client_versions: object
     ) -> list[Any]:
         """Perform the requested action and return the changed parts of the page."""
         names = [*str(path).split("/"), "", ""]
@@ -182,7 +182,7 @@ def _bound(host: str, port: int, application: Any) -> BaseWSGIServer:
         raise InputError(f"cannot serve at {host}:{port}", "tribodyn app", why, remedy) from None
 
 
-def _application(environ: Any, start: Callable[..., Any]) -> list[bytes]:
+def _application(environ: object, start: Callable[..., object]) -> list[bytes]:
     """Answer of a server that is not ready yet."""
     start("503 Service Unavailable", [("Content-Type", "text/plain")])
     return [b"Not ready yet."]
@@ -191,7 +191,7 @@ def _application(environ: Any, start: Callable[..., Any]) -> list[bytes]:
 class _Quiet(WSGIRequestHandler):
     """Writes nothing to the terminal: an address there would hold the token."""
 
-    def log(self, type: str, message: str, *args: Any) -> None:
+    def log(self, type: str, message: str, *args: object) -> None:
         """Stay silent."""
 
     def version_string(self) -> str:
@@ -241,7 +241,7 @@ def _layout() -> html.Div:
     )
 
 
-def _do(desk: TabSession, edits: Any, act: Any) -> None:
+def _do(desk: TabSession, edits: object, act: object) -> None:
     """Apply edits, then the action of a button, each once."""
     try:
         for edit in edits if isinstance(edits, list) else ():

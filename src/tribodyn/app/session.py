@@ -86,7 +86,7 @@ class TabSession:
         """Job in the current view."""
         return next((j for j in self.all_jobs() if self.view == f"job-{j.number}"), None)
 
-    def edit(self, event: Mapping[str, Any]) -> None:
+    def edit(self, event: Mapping[str, object]) -> None:
         """Apply an edit of a form field and check the case with it."""
         key, number = str(event.get("key", "")), number_of(event.get("number"))
         if event.get("form") == "study":
@@ -267,7 +267,7 @@ class TabSession:
         used_titles = {job.title for job in self.runs}
         return next(n for n in range(1, RUNS + 2) if f"Run {n}" not in used_titles)
 
-    def _start(self, kind: str, title: str, order: Mapping[str, Any]) -> Job:
+    def _start(self, kind: str, title: str, order: Mapping[str, object]) -> Job:
         job = self.jobs.start(kind, title, order, self.case)
         if job is None:
             why = "Too many computations wait already"
@@ -359,7 +359,7 @@ def _fault(key: str, error: TribodynError) -> dict[str, str]:
     return {"key": key, "label": key_label(key) if key else "", "text": text}
 
 
-def number_of(value: Any) -> int:
+def number_of(value: object) -> int:
     """Whole number that a request counts with; 0 for anything else."""
     return value if isinstance(value, int) else 0
 

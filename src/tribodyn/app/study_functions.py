@@ -35,7 +35,7 @@ def _varied(values: Values) -> Iterator[tuple[str, object]]:
             yield values[key], _read(name, values[name] or "", read_values)
 
 
-def _read(name: str, text: str, read: Callable[[str], Any]) -> Any:
+def _read(name: str, text: str, read: Callable[[str], object]) -> Any:
     """Parse a range or a list in the syntax of the commands."""
     try:
         return read(text)

@@ -59,7 +59,7 @@ def main() -> None:
     orders: SimpleQueue[str] = SimpleQueue()
     threading.Thread(target=_listen, args=(orders,), daemon=True).start()
 
-    def tell(**message: Any) -> None:
+    def tell(**message: object) -> None:
         channel.write(json.dumps(message, allow_nan=False) + "\n")
         channel.flush()
 
@@ -110,7 +110,7 @@ def _case(order: Mapping[str, Any]) -> Case | MachineCase:
     return read_any_case(order["case"], "case.toml")
 
 
-def _run(order: Mapping[str, Any], folder: Path, tell: Tell) -> None:
+def _run(order: Mapping[str, object], folder: Path, tell: Tell) -> None:
     """Compute a case, send its contents, and write the directory of ``tribodyn run``."""
     from tribodyn.cases.load import run
     from tribodyn.errors import collected

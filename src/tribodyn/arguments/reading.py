@@ -121,8 +121,8 @@ def _parameters(function: Any, owner: type | None, strict: bool = False) -> dict
         unit = next((u for u in (_unit(each, name) for each in documents) if u is not None), None)
         if parameter.kind is parameter.VAR_KEYWORD:
             name, want, unit = _OTHERS, ANYTHING, None
-        anything = none or bool(re.search(r"\bAny\b", str(parameter.annotation)))
-        if "[str, Any]" in str(parameter.annotation):
+        anything = none or bool(re.search(r"\b(Any|object)\b", str(parameter.annotation)))
+        if re.search(r"\[str, (Any|object)\]", str(parameter.annotation)):
             unit = None  # options have units of their own
         cases = reads_units and anything
         if name not in ("self", "cls") and not (cases and not unit):

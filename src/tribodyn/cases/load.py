@@ -52,7 +52,7 @@ def load_case(name_or_path: str | os.PathLike[str]) -> Any:
 
 
 def load_changed_case(
-    name_or_path: str | os.PathLike[str], changes: Mapping[str, Any], by: str = ""
+    name_or_path: str | os.PathLike[str], changes: Mapping[str, object], by: str = ""
 ) -> Any:
     """Load a case with values changed by dotted key; a REXS model may need some to be a case."""
     path = Path(os.fspath(name_or_path))
@@ -71,7 +71,7 @@ def load_changed_case(
 
 
 def _load_toml(
-    name_or_path: str | os.PathLike[str], changes: Mapping[str, Any], by: str = ""
+    name_or_path: str | os.PathLike[str], changes: Mapping[str, object], by: str = ""
 ) -> Any:
     from tribodyn.cases.catalogue import with_known_reasons
     from tribodyn.study.case.read import read_text

@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 import sys
 from collections.abc import Iterable, Sequence
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from tribodyn.errors import ModelWarning, Problem
 
@@ -18,7 +18,7 @@ def say(text: str) -> None:
     sys.stdout.write(text + "\n")
 
 
-def say_json(data: Any) -> None:
+def say_json(data: object) -> None:
     """Write one JSON value to stdout."""
     every = (getattr(sys.stdout, "encoding", None) or "utf-8").lower().startswith("utf")
     say(json.dumps(data, indent=2, ensure_ascii=not every, allow_nan=False))

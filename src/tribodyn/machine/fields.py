@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from typing import Any
 
 from tribodyn.errors import Argument, InputError, real_numbers, shortened
 
@@ -63,6 +62,6 @@ def check_name(part: object, name: str) -> None:
         raise InputError(what, where, "Wanted: the name of a part", "Give its name as a text")
 
 
-def quoted(value: Any) -> str:
+def quoted(value: object) -> str:
     """Quote a value of any kind, shortened."""
     return f'"{value}"' if isinstance(value, str) else shortened(repr(value), 60)

@@ -167,7 +167,7 @@ class Machine:
         parts = [f"{n} {k if n == 1 else plural.get(k, k + 's')}" for k, n in counts.items()]
         return f"Machine({', '.join(parts)})"
 
-    def _with(self, operation: Operation | None = None, **groups: Mapping[str, Any]) -> Machine:
+    def _with(self, operation: Operation | None = None, **groups: Mapping[str, object]) -> Machine:
         """Copy with other meshes or bearings in the same places, which need no check again.
 
         Nor needs it another operation that presses the same flanks in the same sense.
@@ -404,7 +404,7 @@ class Machine:
                 yield from _missing(where, bearing.node, "node of the housing", nodes)
 
 
-def _parts(group: str, parts: Any, kind: type) -> Mapping[str, Any]:
+def _parts(group: str, parts: object, kind: type) -> Mapping[str, Any]:
     if not isinstance(parts, Mapping):
         what, why = f"{group} is {type(parts).__name__}", f"Wanted: a mapping of names to {kind}"
         raise InputError(what, group, why, f'Give {{"name": {kind.__name__}(...)}}')

@@ -103,11 +103,11 @@ def run_back(part: T) -> T:
     return replace(part, **changes, events=tuple(sorted({-event % 1.0 for event in part.events})))
 
 
-def _back(entry: Any) -> Any:
+def _back(entry: object) -> Any:
     return (lambda phase: entry(-np.asarray(phase) % 1.0)) if callable(entry) else entry
 
 
-def _opposed(entry: Any) -> Any:
+def _opposed(entry: object) -> Any:
     if callable(entry):
         return lambda phase: -np.asarray(entry(phase))
     return None if entry is None else -np.asarray(entry)

@@ -143,7 +143,7 @@ class Comparison(Record):
 
 
 def compare(
-    computed: Any,
+    computed: object,
     measured: Recording,
     channels: Mapping[str, str],
     *,
@@ -306,7 +306,7 @@ def _errors(values: Array, test: Array, base: Base) -> Array:
         return np.where(values == test, 0.0, (values - test) / divisor)
 
 
-def _data(computed: Any, mesh: str | None) -> Any:
+def _data(computed: object, mesh: str | None) -> Any:
     """Data set of a result; of a machine its spectra over the order of a mesh."""
     if hasattr(computed, "mesh_spectra"):
         return computed.mesh_spectra(mesh)
@@ -353,7 +353,7 @@ def _speed(
     return speed
 
 
-def _refuse(measured: Any, channels: Any) -> None:
+def _refuse(measured: object, channels: object) -> None:
     if not isinstance(measured, Recording):
         what, why = f"measured = {shortened(repr(measured))}", "Expected a Recording"
         raise InputError(what, Argument("measured"), why, "Read it with tribodyn.measurement.read")
@@ -384,7 +384,7 @@ def _frequency(data: Any, computed: Any) -> float:
         raise InputError("it has no mesh frequency", Argument("computed"), why, remedy) from None
 
 
-def _has_turning_motion(computed: Any) -> bool:
+def _has_turning_motion(computed: object) -> bool:
     """Whether there is a motion that recordings are made of, without computing it."""
     return hasattr(type(computed), "turning_motion")
 

@@ -106,7 +106,7 @@ class MeshSpeed:
 
 
 def mesh_speed(
-    signal: Any,
+    signal: object,
     sample_rate: float,
     mesh_frequency: float,
     *,

@@ -11,7 +11,6 @@ from __future__ import annotations
 
 import math
 from functools import lru_cache
-from typing import Any
 
 import numpy as np
 
@@ -115,8 +114,8 @@ def _window_gain(window: str, away: Array) -> Array:
 
 
 def order_spectrum(
-    signal: Any,
-    angle: Any,
+    signal: object,
+    angle: object,
     max_order: float,
     *,
     window: str = "flattop",
@@ -181,8 +180,8 @@ def order_spectrum(
 
 
 def order_map(
-    signal: Any,
-    angle: Any,
+    signal: object,
+    angle: object,
     max_order: float,
     sample_rate: float,
     *,
@@ -244,7 +243,7 @@ def order_map(
     )
 
 
-def _checked(signal: Any, angle: Any, max_order: float) -> tuple[Array, Array]:
+def _checked(signal: object, angle: object, max_order: float) -> tuple[Array, Array]:
     """Validate samples and angles, and that the sampling resolves the highest order."""
     values = checked_signal(signal, 16)
     turned = checked_signal(angle, 16, "angle")

@@ -8,7 +8,6 @@ import re
 from collections.abc import Callable, Iterable, Mapping
 from pathlib import Path
 from types import MappingProxyType
-from typing import Any
 
 import numpy as np
 
@@ -37,7 +36,7 @@ from tribodyn.units import UnitProblemError, convert
 
 
 def write(
-    recording: Recording, path: str | os.PathLike[str], truth: Mapping[str, Any] | None = None
+    recording: Recording, path: str | os.PathLike[str], truth: Mapping[str, object] | None = None
 ) -> Path:
     """Write a recording in the format of a file name, and its truth beside it as JSON."""
     place = Path(path)
@@ -236,7 +235,9 @@ class Recording(Record):
         parts = {name: values[window] for name, values in self.channels.items()}
         return Recording(parts, self.sample_rate, self.units)
 
-    def save(self, path: str | os.PathLike[str], *, truth: Mapping[str, Any] | None = None) -> Path:
+    def save(
+        self, path: str | os.PathLike[str], *, truth: Mapping[str, object] | None = None
+    ) -> Path:
         """Write the recording as a measuring system would store it; :func:`read` reads it.
 
         Parameters
@@ -366,7 +367,7 @@ def _requested_names(channels: Iterable[str]) -> list[str]:
     return names
 
 
-def _rate(data: RecordingData, names: list[str], user_rate: float | None, path: Any) -> float:
+def _rate(data: RecordingData, names: list[str], user_rate: float | None, path: object) -> float:
     """Sampling rate of the selected channels, from the file or from the user [Hz]."""
     rates = {name: data.rates[name] for name in names if name in data.rates}
     if user_rate is not None:
@@ -389,7 +390,7 @@ def _rate(data: RecordingData, names: list[str], user_rate: float | None, path: 
 
 
 def _aligned(
-    samples: dict[str, Array], data: RecordingData, rate: float, path: Any
+    samples: dict[str, Array], data: RecordingData, rate: float, path: object
 ) -> dict[str, Array]:
     """Samples of channels that start at different times, cut to the time that all of them have."""
     times = {name: start for name in samples if (start := data.start(name)) is not None}

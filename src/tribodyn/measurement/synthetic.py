@@ -15,7 +15,7 @@ from tribodyn.types import Array
 
 def synthetic_run_up(
     orders: Mapping[float, float],
-    speed: Any = (0.0, 314.159265, 0.0),
+    speed: object = (0.0, 314.159265, 0.0),
     *,
     duration: float = 20.0,
     sample_rate: float = 25600.0,

@@ -42,7 +42,7 @@ _MAX_PER_PIECE = 4096
 
 
 def shaft_angle(
-    tacho: Any,
+    tacho: object,
     sample_rate: float,
     pulses_per_revolution: int,
     *,
@@ -106,7 +106,7 @@ def shaft_angle(
 
 
 def angle_and_jitter(
-    tacho: Any,
+    tacho: object,
     sample_rate: float,
     pulses_per_revolution: int,
     edge: Literal["rising", "falling"] = "rising",

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from typing import Any
-
 import numpy as np
 
 from tribodyn.errors import (
@@ -82,9 +80,9 @@ class TrackedOrders(Record):
 
 
 def track_orders(
-    signal: Any,
-    angle: Any,
-    orders: Any,
+    signal: object,
+    angle: object,
+    orders: object,
     sample_rate: float,
     *,
     bandwidth: float = 1.0,

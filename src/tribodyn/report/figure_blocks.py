@@ -140,7 +140,7 @@ def figure_blocks(result: Any) -> list[Block]:
     return [block for place in places if not (block := place.block()).missing]
 
 
-def _of_others(result: Any) -> Iterator[_Place]:
+def _of_others(result: object) -> Iterator[_Place]:
     """Figures that other packages and scripts have registered for this kind of result."""
     for name in figures_of(result):
         figure = FIGURES[name]

@@ -33,7 +33,7 @@ if TYPE_CHECKING:
 
 
 def any_modes_report_data(
-    case: Case | MachineCase, ends: Any, progress: Progress = SILENT
+    case: Case | MachineCase, ends: object, progress: Progress = SILENT
 ) -> StudyReportData:
     """Natural modes of a pair or a machine; ``ends`` limits the speeds."""
     if kind_of(case) in PAIRS:
@@ -42,7 +42,7 @@ def any_modes_report_data(
 
 
 def _parts_modes_report_data(
-    case: MachineCase, ends: Any, progress: Progress = SILENT
+    case: MachineCase, ends: object, progress: Progress = SILENT
 ) -> StudyReportData:
     """Natural modes of a machine and what excites them; ``ends`` limits the speeds."""
     with single_blas_thread():
@@ -72,7 +72,9 @@ def _diagram_speeds(ends: Any) -> Any:
     return np.linspace(max(first, 0.0), last, 8)
 
 
-def _pair_modes_report_data(case: Case, ends: Any, progress: Progress = SILENT) -> StudyReportData:
+def _pair_modes_report_data(
+    case: Case, ends: object, progress: Progress = SILENT
+) -> StudyReportData:
     """Natural frequencies and critical speeds; ``ends`` limits the speeds [rad/s]."""
     from tribodyn.dynamics import natural_modes
     from tribodyn.study.pipeline.assembly import ORDERS, diagram_of

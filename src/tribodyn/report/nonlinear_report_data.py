@@ -138,7 +138,7 @@ def _basin_statements(plane: Basins) -> list[str]:
 def continuation_report_data(
     case: Case | MachineCase,
     over: str,
-    between: tuple[Any, Any],
+    between: tuple[object, object],
     periods: int = 1,
     longest_step: float = 0.02,
     by: str = "",

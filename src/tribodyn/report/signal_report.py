@@ -290,7 +290,7 @@ def _order_rows(numbers: dict[str, float], unit: str) -> list[list[str]]:
 Figure = tuple[str, Callable[[], tuple[Any, str]]]
 
 
-def _sketched(figure: Drawing, result: Any, of: str = "") -> Figure:
+def _sketched(figure: Drawing, result: object, of: str = "") -> Figure:
     """Figure of a result; sketches avoid the slow import of plotly."""
     return figure.heading + of, lambda: (figure.sketch(result), figure.caption_of(result))
 

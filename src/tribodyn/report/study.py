@@ -188,7 +188,7 @@ def write_study_report(
     *,
     kind: str,
     results: Sequence[str],
-    figures: Sequence[tuple[str, Any, str]],
+    figures: Sequence[tuple[str, object, str]],
     head: Sequence[str],
     rows: Sequence[Sequence[str]],
     title: str = "",

@@ -51,7 +51,7 @@ class StudyReportData(NamedTuple):
     table_file: str = ""  #: name of a file of the table
 
 
-def figure_with_caption(figure: Drawing, result: Any) -> Picture:
+def figure_with_caption(figure: Drawing, result: object) -> Picture:
     """Heading, figure and caption of a study result."""
     return figure.heading, figure(result), figure.caption_of(result)
 
@@ -118,7 +118,7 @@ def save_bifurcation(
 
 
 def harris_report_data(
-    case: Case | MachineCase, torque: Sequence[Any] | None, mesh: str | None = None
+    case: Case | MachineCase, torque: Sequence[object] | None, mesh: str | None = None
 ) -> StudyReportData:
     """Static transmission error over the torque."""
     from tribodyn.study.studies.static import harris_map
@@ -138,7 +138,7 @@ def harris_report_data(
 
 
 def relief_report_data(
-    case: Case | MachineCase, torque: Sequence[Any] | None, gears: str, mesh: str | None = None
+    case: Case | MachineCase, torque: Sequence[object] | None, gears: str, mesh: str | None = None
 ) -> StudyReportData:
     """Tip relief with the least transmission error, and the case with it."""
     from tribodyn.study.studies.static import optimize_tip_relief
@@ -239,8 +239,8 @@ def _levels_report_data(run: MachineLevels) -> StudyReportData:
 
 def losses_report_data(
     case: Case | MachineCase,
-    torque: Any = None,
-    speed: Any = None,
+    torque: object = None,
+    speed: object = None,
     progress: Progress = SILENT,
     mesh: str | None = None,
 ) -> StudyReportData:
@@ -288,8 +288,8 @@ def _losses(gearbox: GearboxLosses) -> tuple[list[str], list[list[str]]]:
 
 def film_report_data(
     case: Case | MachineCase,
-    torque: Any = None,
-    speed: Any = None,
+    torque: object = None,
+    speed: object = None,
     progress: Progress = SILENT,
     mesh: str | None = None,
 ) -> StudyReportData:

@@ -11,7 +11,7 @@ from tribodyn.errors import Argument, InputError, real_numbers, require_positive
 from tribodyn.types import Array
 
 
-def checked_signal(signal: Any, least: int = 8, name: str = "signal") -> Array:
+def checked_signal(signal: object, least: int = 8, name: str = "signal") -> Array:
     """Return a signal as floats; raise an InputError that names its first defect."""
     where = f"argument {name}"
     samples = np.asarray(signal if hasattr(signal, "dtype") else real_numbers(where, signal))
@@ -35,7 +35,7 @@ def checked_signal(signal: Any, least: int = 8, name: str = "signal") -> Array:
     return values
 
 
-def checked_rising(values: Any, size: int, name: str, unit: str) -> Array:
+def checked_rising(values: object, size: int, name: str, unit: str) -> Array:
     """Return times or rotation angles that rise from sample to sample."""
     rising = checked_signal(values, 2, name)
     if rising.size != size:
@@ -117,7 +117,7 @@ class AngularSignal:
     samples_per_revolution: int
 
 
-def shaft_rotation(rotation: Any, speed: Any, time: Array) -> Array:
+def shaft_rotation(rotation: object, speed: object, time: Array) -> Array:
     """Return the rotation of a shaft, integrated from its speed if necessary [rad]."""
     if (rotation is None) == (speed is None):
         what = "neither or both of rotation and speed are given"
@@ -142,9 +142,9 @@ def shaft_rotation(rotation: Any, speed: Any, time: Array) -> Array:
 
 
 def angular_resampling(
-    signal: Any,
-    time: Any,
-    rotation: Any,
+    signal: object,
+    time: object,
+    rotation: object,
     *,
     samples_per_revolution: int,
     highest_order: float | None = None,

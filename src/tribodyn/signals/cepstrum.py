@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Any, Literal
+from typing import Literal
 
 import numpy as np
 
@@ -110,7 +110,7 @@ def _log_size(lines: ComplexArray) -> Array:
 
 
 def cepstrum(
-    signal: Any,
+    signal: object,
     sampling_rate: float,
     *,
     kind: Literal["real", "complex"] = "real",
@@ -187,7 +187,7 @@ def _lines(values: Array) -> ComplexArray:
 
 
 def lifter(
-    signal: Any,
+    signal: object,
     sampling_rate: float,
     *,
     remove: Sequence[float] = (),

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from typing import Any
-
 import numpy as np
 
 from tribodyn.errors import Argument, InputError, require_between, require_positive
@@ -163,9 +161,9 @@ class CyclicCoherence(Record):
 
 
 def cyclic_coherence(
-    signal: Any,
+    signal: object,
     sampling_rate: float,
-    cyclic_frequencies: Any,
+    cyclic_frequencies: object,
     *,
     block_length: int = 256,
     overlap: float = 0.75,

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from typing import Any
-
 import numpy as np
 from numpy.typing import NDArray
 
@@ -15,7 +13,7 @@ from tribodyn.types import Array, ComplexArray
 
 
 def envelope(
-    signal: Any, sampling_rate: float, *, band: tuple[float, float] | None = None
+    signal: object, sampling_rate: float, *, band: tuple[float, float] | None = None
 ) -> Array:
     """Envelope of a signal, by the Hilbert transform of a band of it.
 
@@ -68,7 +66,7 @@ def envelope(
 
 
 def envelope_spectrum(
-    signal: Any,
+    signal: object,
     sampling_rate: float,
     *,
     band: tuple[float, float] | None = None,
@@ -176,7 +174,7 @@ class Sidebands(Record):
 
 
 def sidebands(
-    signal: Any,
+    signal: object,
     sampling_rate: float,
     carrier: float,
     modulation: float,

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Any
 
 import numpy as np
 
@@ -18,7 +17,7 @@ from tribodyn.types import Array
 _NOTHING = 1e-12
 
 
-def kurtosis(signal: Any) -> float:
+def kurtosis(signal: object) -> float:
     """Fourth central moment over the square of the second.
 
     Parameters

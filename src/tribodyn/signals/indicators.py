@@ -6,8 +6,6 @@ every step. Between these three samples a signal is a parabola, so that peaks ar
 
 from __future__ import annotations
 
-from typing import Any
-
 import numpy as np
 
 from tribodyn.arrays.memory import Memo
@@ -227,7 +225,7 @@ def across_over_along(along: Array | float, across: Array | float) -> float:
     return other / base
 
 
-def dynamic_factor(mesh_force: Any, static_force: float | None = None) -> float:
+def dynamic_factor(mesh_force: object, static_force: float | None = None) -> float:
     """Largest dynamic mesh force over the static one.
 
     Parameters
@@ -264,7 +262,7 @@ def dynamic_factor(mesh_force: Any, static_force: float | None = None) -> float:
     return float(force.max()) / static
 
 
-def direction_shares(along: Any, across: Any) -> tuple[float, float]:
+def direction_shares(along: object, across: object) -> tuple[float, float]:
     """Parts of the mean square of a vibration along and across the line of action.
 
     Parameters

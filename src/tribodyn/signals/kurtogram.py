@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from typing import Any
-
 import numpy as np
 from numpy.typing import NDArray
 
@@ -72,7 +70,7 @@ class Kurtogram(Record):
         return f"Kurtogram({low:.5g} to {high:.5g} Hz, kurtosis {size:.4g}{noise})"
 
 
-def kurtogram(signal: Any, sampling_rate: float, *, levels: int | None = None) -> Kurtogram:
+def kurtogram(signal: object, sampling_rate: float, *, levels: int | None = None) -> Kurtogram:
     """Spectral kurtosis over centre and width of frequency bands.
 
     Parameters

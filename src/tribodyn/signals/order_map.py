@@ -90,7 +90,7 @@ class Spectrogram(Record):
 
 
 def spectrogram(
-    signal: Any,
+    signal: object,
     sampling_rate: float,
     *,
     block_length: int | None = None,
@@ -166,11 +166,11 @@ def _inside(size: int, length: int, hop: int) -> tuple[int, int]:
 
 
 def order_map(
-    signal: Any,
-    time: Any,
+    signal: object,
+    time: object,
     *,
-    rotation: Any = None,
-    speed: Any = None,
+    rotation: object = None,
+    speed: object = None,
     highest_order: float = 50.0,
     revolutions: int = 8,
     overlap: float = 0.75,

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import lru_cache
-from typing import Any, Literal
+from typing import Literal
 
 import numpy as np
 
@@ -25,7 +25,7 @@ _LONGEST = 2048
 
 
 def spectrum(
-    signal: Any,
+    signal: object,
     sampling_rate: float,
     *,
     window: str = "flattop",
@@ -365,7 +365,7 @@ def distinct_peaks(lines: SignalSpectrum, count: int) -> list[Peak]:
 
 
 def zoom_spectrum(
-    signal: Any,
+    signal: object,
     sampling_rate: float,
     lowest: float,
     highest: float,

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from typing import Any
-
 import numpy as np
 from numpy.typing import NDArray
 
@@ -203,12 +201,12 @@ def _without_mesh(signal: Array, teeth: int, shaft_orders: int, sidebands: int) 
 
 
 def time_synchronous_average(
-    signal: Any,
-    time: Any,
+    signal: object,
+    time: object,
     *,
     teeth: int,
-    rotation: Any = None,
-    speed: Any = None,
+    rotation: object = None,
+    speed: object = None,
     mesh_harmonics: int = 5,
     unit: str = "",
 ) -> SynchronousAverage:

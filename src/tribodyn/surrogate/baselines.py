@@ -131,7 +131,7 @@ BASELINES: dict[str, Fitter] = {
 
 
 def baselines(
-    data: Any,
+    data: object,
     *,
     features: Sequence[str],
     targets: Sequence[str],

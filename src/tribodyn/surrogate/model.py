@@ -86,7 +86,7 @@ class Surrogate(Record):
         rows = zip(self.targets, self.true, self.predicted, strict=True)
         return {str(name): ErrorMeasures.of(true, predicted) for name, true, predicted in rows}
 
-    def predict(self, inputs: Any) -> dict[str, Array]:
+    def predict(self, inputs: object) -> dict[str, Array]:
         """Predict the targets.
 
         Parameters
@@ -132,7 +132,7 @@ class Surrogate(Record):
             str(name): each.reshape(shape) for name, each in zip(self.targets, values, strict=True)
         }
 
-    def predict_band(self, inputs: Any) -> dict[str, tuple[Array, Array]]:
+    def predict_band(self, inputs: object) -> dict[str, tuple[Array, Array]]:
         """Band in which the targets lie with the probability ``level``.
 
         Parameters
@@ -159,7 +159,7 @@ class Surrogate(Record):
             for name, half in zip(values, self.band, strict=True)
         }
 
-    def _read(self, inputs: Any) -> tuple[Array, tuple[int, ...]]:
+    def _read(self, inputs: object) -> tuple[Array, tuple[int, ...]]:
         """Rows of features, and the shape of what is predicted."""
         names = [str(name) for name in self.features]
         if isinstance(inputs, Mapping) and not hasattr(inputs, "to_dataframe"):

@@ -118,7 +118,7 @@ def _column(column: Any, name: str, rows: int) -> Array:
 
 
 def split_rows(
-    rows: int, shares: Sequence[float] = (8.0, 1.0, 1.0), *, seed: int, groups: Any = None
+    rows: int, shares: Sequence[float] = (8.0, 1.0, 1.0), *, seed: int, groups: object = None
 ) -> Split:
     """Split rows at random into training, validation (early stopping) and test rows.
 
@@ -172,7 +172,7 @@ def split_rows(
     return Split(*(np.flatnonzero(place[of_row] == number) for number in range(3)))
 
 
-def smoothed(columns: Array, window: int, groups: Any = None) -> Array:
+def smoothed(columns: Array, window: int, groups: object = None) -> Array:
     """Moving average of each column, centred, shorter at the ends of a group."""
     if window == 1:
         return columns
@@ -188,7 +188,7 @@ def smoothed(columns: Array, window: int, groups: Any = None) -> Array:
 
 
 def prepare(
-    data: Any,
+    data: object,
     features: Sequence[str],
     targets: Sequence[str],
     *,

@@ -82,7 +82,7 @@ BPNN_PL = Training(hidden=(11, 11), activations=("tansig", "relu"), epochs=1200,
 
 
 def train(
-    data: Any,
+    data: object,
     *,
     features: Sequence[str],
     targets: Sequence[str],
@@ -149,7 +149,7 @@ def train(
 
 
 def bpnn_pl(
-    data: Any,
+    data: object,
     *,
     features: Sequence[str],
     targets: Sequence[str],
@@ -218,7 +218,12 @@ def bpnn_pl(
 
 
 def _prepared(
-    data: Any, features: Sequence[str], targets: Sequence[str], seed: int, groups: str, by: Training
+    data: object,
+    features: Sequence[str],
+    targets: Sequence[str],
+    seed: int,
+    groups: str,
+    by: Training,
 ) -> Prepared:
     return prepare(
         data,
@@ -289,7 +294,7 @@ class _Residuals:
 
 
 def _model(
-    data: Any,
+    data: object,
     ready: Prepared,
     names: tuple[list[str], list[str]],
     fits: list[tuple[Network, Fit]],

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from typing import Any
-
 import numpy as np
 
 from tribodyn.checks import require_flag, require_whole
@@ -42,7 +40,7 @@ class Band(Record):
 
 
 def bootstrap_band(
-    samples: Any,
+    samples: object,
     level: float = 0.95,
     *,
     seed: int,

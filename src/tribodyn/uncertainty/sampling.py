@@ -20,7 +20,7 @@ _SPREAD = re.compile(r"(normal|lognormal)?\s*(.+?)\s*(?:\+-|\+/-|±)\s*(.+)", re
 _RANGE = re.compile(r"(?:uniform)?\s*(.+?)\s*\.\.\s*(.+)", re.IGNORECASE)
 
 
-def distribution(name: str, text: Any, unit: str | None = None) -> Any:
+def distribution(name: str, text: object, unit: str | None = None) -> Any:
     """Distribution of a quantity.
 
     Parameters
@@ -115,7 +115,7 @@ def _spread(text: str, mean: float, unit: str) -> float:
     return float(spread)
 
 
-def _wrong(name: str, value: Any, why: str = "", meant: str = "") -> InputError:
+def _wrong(name: str, value: object, why: str = "", meant: str = "") -> InputError:
     what = f"{shortened(repr(value))} is not a distribution"
     remedy = (
         f'Write {meant}"0.05 +- 0.83 %", "uniform 0.4 um .. 0.6 um", "lognormal 0.05 +- 20 %", '
@@ -142,7 +142,7 @@ _MOST = 10**8
 
 
 def sample(
-    distributions: Mapping[str, Any], size: int, *, method: Method = "monte-carlo", seed: int
+    distributions: Mapping[str, object], size: int, *, method: Method = "monte-carlo", seed: int
 ) -> dict[str, Array]:
     """Draw values of independent quantities.
 

@@ -53,8 +53,8 @@ class SobolIndices(Record):
 
 
 def sobol_indices(
-    function: Callable[[dict[str, Array]], Any],
-    distributions: Mapping[str, Any],
+    function: Callable[[dict[str, Array]], object],
+    distributions: Mapping[str, object],
     size: int = 1024,
     *,
     seed: int,
@@ -141,7 +141,7 @@ def sobol_indices(
     )
 
 
-def _checked(values: Any, count: int) -> Array:
+def _checked(values: object, count: int) -> Array:
     """Output of the function, one finite number for each sample, not all of them equal."""
     output = np.asarray(values)
     if output.shape != (count,) or output.dtype.kind not in "biuf":

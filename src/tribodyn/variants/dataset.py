@@ -58,7 +58,7 @@ def open_study(path: str | os.PathLike[str]) -> xarray.Dataset:
     names = (name for facts in manifest.chunks.values() for name in facts["figures"])
     kind = KINDS[manifest.kind]
 
-    def lazy(name: str, kind: Any, **facts: str) -> Any:
+    def lazy(name: str, kind: object, **facts: str) -> Any:
         return (tuple(dims), _lazy(manifest, name, tuple(dims.values()), kind), facts)
 
     variables = {

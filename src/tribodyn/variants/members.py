@@ -108,7 +108,7 @@ class Listed:
         return np.arange(before["count"])
 
 
-def listed(values: Mapping[str, Sequence[Any]], units: Mapping[str, str]) -> Listed:
+def listed(values: Mapping[str, Sequence[object]], units: Mapping[str, str]) -> Listed:
     """Members of values by key."""
     kinds = {key: np.array(column).dtype.kind for key, column in values.items()}
     named = {"f": "float", "i": "int", "b": "bool"}

@@ -78,7 +78,7 @@ def chunk_path(folder: Path, name: str) -> Path:
     return folder / f"{stage}-{int(number) // _FOLDER:03d}" / f"{int(number):06d}.nc"
 
 
-def read_chunk(folder: Path, name: str, facts: Mapping[str, Any]) -> bytes | None:
+def read_chunk(folder: Path, name: str, facts: Mapping[str, object]) -> bytes | None:
     """Content of a chunk; None if it is missing or does not match its checksum."""
     with suppress(OSError):
         content = read_bytes(chunk_path(folder, name), "netcdf")
@@ -265,7 +265,7 @@ class Store:
         )
 
 
-def _plain(facts: Mapping[str, Any]) -> Any:
+def _plain(facts: Mapping[str, object]) -> Any:
     """Facts as read back from the manifest."""
     return json.loads(json.dumps(facts))
 

@@ -268,7 +268,7 @@ class _Reader:
                 raise InputError(f"{written(name)} cannot be read: {error}") from None
         return None
 
-    def _keys(self, name: str, data: Mapping[str, Any]) -> dict[str, Any]:
+    def _keys(self, name: str, data: Mapping[str, object]) -> dict[str, Any]:
         """Values of a table by dotted key of the case."""
         table = data.get(name.rpartition(".")[2], {})
         if not isinstance(table, dict):
@@ -349,7 +349,7 @@ def _in_row(place: str, key: str, problem: Problem) -> tuple[str, Problem]:
     return key, replace(problem, where="", what=f"{place}: {problem.what}")
 
 
-def _ranges(entry: Any) -> Any:
+def _ranges(entry: object) -> Any:
     """Range or list of values of an axis."""
     try:
         values = read_values(entry) if isinstance(entry, str) else entry
@@ -361,7 +361,7 @@ def _ranges(entry: Any) -> Any:
     raise InputError(f"cannot read {written(entry)}", "", why, _EXAMPLE)
 
 
-def _flat(table: Mapping[str, Any], prefix: str = "") -> dict[str, Any]:
+def _flat(table: Mapping[str, object], prefix: str = "") -> dict[str, Any]:
     """Values by dotted key, which may be written as tables inside each other."""
     flat: dict[str, Any] = {}
     for key, value in table.items():
@@ -374,11 +374,11 @@ def _flat(table: Mapping[str, Any], prefix: str = "") -> dict[str, Any]:
     return flat
 
 
-def _axis(case: Case | MachineCase, key: str, entry: Any) -> Axis:
+def _axis(case: Case | MachineCase, key: str, entry: object) -> Axis:
     return read_axis(case, key, entry, "axes")
 
 
-def _value(case: Case | MachineCase, key: str, entry: Any) -> Any:
+def _value(case: Case | MachineCase, key: str, entry: object) -> Any:
     return member_value(case, key, entry, "cases")
 
 
@@ -387,7 +387,7 @@ def _unit(case: Case | MachineCase, key: str) -> str:
     return spec.unit if spec else ""
 
 
-def _factor(key: str, entry: Any) -> float:
+def _factor(key: str, entry: object) -> float:
     try:
         return float(read_value(_FACTOR, key, entry))
     except FaultError as fault:

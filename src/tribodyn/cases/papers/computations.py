@@ -353,7 +353,7 @@ def _xu(case: Case, meshes: Meshes) -> Figures:
     return {f"b{number}": value for number, value in enumerate(CONSTANTS, 1)}
 
 
-def figures_of(name: str, case: Case, meshes: Meshes, arguments: Mapping[str, Any]) -> Figures:
+def figures_of(name: str, case: Case, meshes: Meshes, arguments: Mapping[str, object]) -> Figures:
     """Figures of a computation, those that are numbers."""
     figures = COMPUTATIONS[name](case, meshes, **arguments)
     return {key: float(value) for key, value in figures.items() if math.isfinite(value)}

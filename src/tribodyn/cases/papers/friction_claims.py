@@ -171,7 +171,7 @@ class FrictionExperiment(Sweep):
         lost = f", {failed} failed" if failed else ""
         return f"{len(self.points)} of {self.failed.size} steady states{lost}"
 
-    def plot(self, figure: str = "friction_effect", **options: Any) -> Any:
+    def plot(self, figure: str = "friction_effect", **options: object) -> Any:
         """Draw ``"friction_effect"``, ``"friction_claims"`` or ``"friction_harmonics"``."""
         return draw(self, figure, **options)
 
@@ -182,7 +182,7 @@ class FrictionExperiment(Sweep):
         with np.errstate(invalid="ignore", divide="ignore"):
             return np.asarray(values / plain[:, :, None] - 1.0)
 
-    def index(self, law: str, **wanted: Any) -> int:
+    def index(self, law: str, **wanted: object) -> int:
         """Index of the first friction of a law whose :class:`Rubbing` has the wanted properties."""
         for place, friction in enumerate(self.rubbing):
             if friction.law == law and all(getattr(friction, k) == v for k, v in wanted.items()):
@@ -410,7 +410,7 @@ def _span(values: Any, form: str = ".2f") -> str:
     return low if low == high else f"{low} to {high}"
 
 
-def _percent(values: Any, *, sign: bool = True) -> str:
+def _percent(values: object, *, sign: bool = True) -> str:
     return f"{_span(100.0 * np.asarray(values), '+.2g' if sign else '.2g')} %"
 
 

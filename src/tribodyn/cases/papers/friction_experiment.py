@@ -124,7 +124,7 @@ def friction_experiment(
     return FrictionExperiment(base, axes, points, rubbing)
 
 
-def _roughnesses(case: Case, values: Sequence[Any]) -> tuple[float, ...]:
+def _roughnesses(case: Case, values: Sequence[object]) -> tuple[float, ...]:
     if isinstance(values, str) or not len(values):
         remedy = 'Write, for example, ["0.4 um", "0.8 um"]'
         raise InputError(

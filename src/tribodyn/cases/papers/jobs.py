@@ -40,7 +40,9 @@ def requests_of(row: PrintedRow) -> list[Request]:
     return [_request(row, change, row.arguments) for change in (row.set, *others)]
 
 
-def _request(row: PrintedRow, changes: Mapping[str, Any], arguments: Mapping[str, Any]) -> Request:
+def _request(
+    row: PrintedRow, changes: Mapping[str, object], arguments: Mapping[str, object]
+) -> Request:
     changes_text, arguments_text = (
         json.dumps(values, sort_keys=True) for values in (changes, arguments)
     )

@@ -351,7 +351,9 @@ class PlanetaryStage:
         other: Hand = "left" if self.hand == "right" else "right"
         last = planets[0] if self.ring_planet is None else planets[1]
 
-        def link(ends: tuple[str, str], hand: Hand, toward: float, distance: Any) -> dict[str, Any]:
+        def link(
+            ends: tuple[str, str], hand: Hand, toward: float, distance: object
+        ) -> dict[str, Any]:
             """Fields of a mesh."""
             return {"gears": ends, "hand": hand, "angle": toward, "center_distance": distance}
 

@@ -109,7 +109,7 @@ def uff(path: Path) -> RecordingData:
     return RecordingData(channels, units, rates, starts=starts)
 
 
-def _label(text: Any) -> str:
+def _label(text: object) -> str:
     plain = str(text or "").strip()
     return "" if plain.upper() == "NONE" else plain
 

@@ -78,7 +78,7 @@ def in_seconds(values: Array, unit: str, path: Any) -> Array:
         raise InputError(what, str(path), str(error), remedy) from None
 
 
-def rate_of(time: Array, path: Any, sample_rate: float | None = None) -> float:
+def rate_of(time: Array, path: object, sample_rate: float | None = None) -> float:
     """Sampling rate of evenly spaced times [Hz].
 
     If the times are rounded and consistent with ``sample_rate``, return ``sample_rate``.
@@ -117,12 +117,12 @@ def is_metadata(name: str) -> bool:
     return _plain(name) in _RATES | _STEPS | _STARTS | _LABELS
 
 
-def text_of(value: Any) -> str:
+def text_of(value: object) -> str:
     """Text of an attribute that may be stored as bytes."""
     return value.decode("utf-8", "replace") if isinstance(value, bytes) else str(value)
 
 
-def from_arrays(named: Mapping[str, Any], path: Path) -> RecordingData:
+def from_arrays(named: Mapping[str, object], path: Path) -> RecordingData:
     """Extract the channels of values with names such as ``rig/acc`` and ``rig/acc/units``.
 
     A rate, time vector or unit applies to the channel, group or file that contains it; a rate in a
@@ -203,7 +203,7 @@ def _enclosing_scopes(name: str) -> Iterator[str]:
         yield name
 
 
-def _nearest(name: str, by_scope: Mapping[str, Any]) -> Any:
+def _nearest(name: str, by_scope: Mapping[str, object]) -> Any:
     """Value of the innermost scope around a channel: the channel, its groups, or the file."""
     return next((by_scope[scope] for scope in _enclosing_scopes(name) if scope in by_scope), None)
 
@@ -221,7 +221,7 @@ def _times(
     }
 
 
-def _starts(values: Mapping[str, Mapping[str, Any]]) -> dict[str, float]:
+def _starts(values: Mapping[str, Mapping[str, object]]) -> dict[str, float]:
     """Times of the first samples: a date less the earliest, if any has one, and an offset [s]."""
     dates: dict[str, Any] = {}
     offsets: dict[str, float] = {}
@@ -313,13 +313,13 @@ def _real(value: Any) -> float | None:
     return number if np.isfinite(number) else None
 
 
-def _number(value: Any) -> float | None:
+def _number(value: object) -> float | None:
     """Positive number of a value that may be text; None otherwise."""
     number = _real(value)
     return number if number is not None and number > 0.0 else None
 
 
-def refuse_table(kind: Any, path: Path) -> None:
+def refuse_table(kind: object, path: Path) -> None:
     """Raise InputError, with the workaround, for a MATLAB table or timetable; ignore others."""
     class_name = kind.decode("ascii", "replace") if isinstance(kind, bytes) else str(kind)
     if class_name not in _TABLES:

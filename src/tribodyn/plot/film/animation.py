@@ -44,7 +44,7 @@ _SLIDER = {"active": 0, "x": 0.0, "len": 1.0, "y": -0.12, "pad": {"t": 0}}
 _FRAMES = 60
 
 
-def _short(values: Any) -> NDArray[np.float32]:
+def _short(values: object) -> NDArray[np.float32]:
     """Convert to single precision, which halves the size of the figure."""
     return np.asarray(values, dtype=np.float32)
 
@@ -198,7 +198,7 @@ def _checked(contacts: Any, path: ArrayLike) -> tuple[list[Any], Array]:
 
 
 def film_along_path(
-    contacts: Any, path: ArrayLike, *, path_of_contact: PathOfContact | None = None
+    contacts: object, path: ArrayLike, *, path_of_contact: PathOfContact | None = None
 ) -> Any:
     """Animate pressure and film of a tooth pair from its entry to its exit.
 

@@ -108,7 +108,7 @@ def finite_line_contact(solution: Any) -> Sketch:
 
 
 def _along(
-    y: Array, quantity: str, label: str, values: Any, level: float, name: str = "infinite line"
+    y: Array, quantity: str, label: str, values: object, level: float, name: str = "infinite line"
 ) -> Panel:
     """Panel with values along the roller and a level to compare with."""
     roller = curve(quantity, y, values, "roller", TOTAL)

@@ -161,7 +161,7 @@ def film_transient(transient: TransientLineContact, *, steady: ArrayLike | None 
     """
     time = displayed("time", transient.time)
 
-    def panel(quantity: str, label: str, values: Any) -> Panel:
+    def panel(quantity: str, label: str, values: object) -> Panel:
         return curves(quantity, label, time, [(label, values, TOTAL)], FROM_ZERO, 0.6)
 
     at = int(np.argmin(transient.minimum_film))

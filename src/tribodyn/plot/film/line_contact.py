@@ -232,7 +232,7 @@ def _style(number: int) -> Trace:
     return {"color": _COLORS[number % len(_COLORS)], "dash": _DASHES[number % len(_DASHES)]}
 
 
-def _checked(solutions: Iterable[Any], labels: Iterable[str]) -> tuple[list[Any], list[str]]:
+def _checked(solutions: Iterable[object], labels: Iterable[str]) -> tuple[list[Any], list[str]]:
     contacts, names = list(solutions), [str(label) for label in labels]
     if len(contacts) != len(names):
         what = f"{len(contacts)} contacts and {len(names)} labels"
@@ -241,7 +241,7 @@ def _checked(solutions: Iterable[Any], labels: Iterable[str]) -> tuple[list[Any]
     return contacts, names
 
 
-def _pressures(rows: Sequence[tuple[Any, Scales, str]]) -> list[Trace]:
+def _pressures(rows: Sequence[tuple[object, Scales, str]]) -> list[Trace]:
     traces = []
     for number, (solution, scales, name) in enumerate(rows):
         x, y = dry_pressure(solution)
@@ -267,7 +267,7 @@ def _films(rows: Sequence[tuple[Any, Scales, str]]) -> list[Trace]:
 
 
 def compare_line_contacts(
-    solutions: Iterable[Any], labels: Iterable[str], *, dimensionless: bool = False
+    solutions: Iterable[object], labels: Iterable[str], *, dimensionless: bool = False
 ) -> Any:
     """Draw pressure and film of several line contacts in the same axes.
 

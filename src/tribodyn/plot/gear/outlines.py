@@ -10,7 +10,7 @@ from __future__ import annotations
 import cmath
 import math
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -29,7 +29,7 @@ _TOOTH_POINTS = 60
 _LOADED, _TEETH = 1e-3, 2
 
 
-def on_line_of_action(pair: MeshGeometry, path: Any) -> Array:
+def on_line_of_action(pair: MeshGeometry, path: object) -> Array:
     """Coordinates in the plane of positions on the line of action [m]."""
     angle, radius = pair.operating_pressure_angle, pair.pinion.base_radius
     along = np.asarray(path, dtype=float)

@@ -82,7 +82,7 @@ class SideView:
             reach[name] = (0.0, shaft.length) if shaft.sections else (min(parts), max(parts))
         return cls(machine, axes, reach)
 
-    def place(self, shaft: str, position: Any, across: Any) -> tuple[Array, Array]:
+    def place(self, shaft: str, position: object, across: object) -> tuple[Array, Array]:
         """Where points of a shaft are in the drawing [mm]."""
         axis = self.axes[shaft]
         points = np.multiply.outer(axis.along, np.asarray(position, dtype=float))

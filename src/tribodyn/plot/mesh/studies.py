@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -53,7 +53,7 @@ def _curves(study: HarrisMap) -> Row:
     cycles, rigid = 2 if study.mesh_cycles == 1 else 1, study.unloaded_transmission_error
     phases, errors = study.curves()
 
-    def over_cycles(values: Array, at: Array, name: str, color: str, **style: Any) -> Trace:
+    def over_cycles(values: Array, at: Array, name: str, color: str, **style: object) -> Trace:
         x, y = whole_cycles(at, values, study.mesh_cycles, cycles)
         return curve(_QUANTITY, x, y, name, color, **style)
 

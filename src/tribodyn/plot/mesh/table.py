@@ -126,7 +126,7 @@ def static_stiffness(mesh: MeshTable) -> Sketch:
     """Draw secant and tangent stiffness of the mesh and the parts of the tooth pairs."""
     pair, ends = mesh.gear_pair, (-_MARGIN, mesh.transverse_contact_ratio + _MARGIN)
 
-    def over_angle(age: Array, values: Array, name: str, color: str, **style: Any) -> Trace:
+    def over_angle(age: Array, values: Array, name: str, color: str, **style: object) -> Trace:
         x = displayed("roll_angle", roll_angle_of(pair, age))
         return curve("mesh_stiffness", x, values, name, color, **style)
 

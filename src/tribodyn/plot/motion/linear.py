@@ -122,7 +122,7 @@ def natural_lines(
     return traces
 
 
-def crossing_dots(speed: Any, hertz: Any, share: Any, texts: Sequence[str]) -> Trace:
+def crossing_dots(speed: Any, hertz: object, share: Any, texts: Sequence[str]) -> Trace:
     """Dots where excitations meet modes, by the share of the mesh in the strain energy."""
     dots = marked(speed, hertz, "resonance", INK, 6)
     dots["marker"]["size"] = 5.0 + 9.0 * np.sqrt(share)
@@ -131,7 +131,7 @@ def crossing_dots(speed: Any, hertz: Any, share: Any, texts: Sequence[str]) -> T
     return {**dots, "customdata": list(texts), "hovertemplate": hover}
 
 
-def _rising(diagram: Campbell, speed: Any, top: float) -> list[Trace]:
+def _rising(diagram: Campbell, speed: object, top: float) -> list[Trace]:
     """Lines of the mesh harmonics, labelled with their number at the upper end."""
     traces = []
     for order in diagram.orders:

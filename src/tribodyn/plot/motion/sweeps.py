@@ -157,7 +157,7 @@ def axis_text(axis: Axis) -> str:
     return label_with(capitalized(axis.name), axis.display_unit)
 
 
-def value_text(axis: Axis, value: Any) -> str:
+def value_text(axis: Axis, value: object) -> str:
     """Format a value of an axis for a title or a legend."""
     number, _, unit = axis.show(value).partition(" ")
     if not axis.numeric:

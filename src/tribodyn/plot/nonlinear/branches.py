@@ -114,7 +114,7 @@ def _two_motions(diagram: Bifurcation, parameter: Any, label: str) -> str:
     return f"Two responses coexist from {low} to {high}"
 
 
-def _bifurcation_title(diagram: Bifurcation, parameter: Any, label: str) -> str:
+def _bifurcation_title(diagram: Bifurcation, parameter: object, label: str) -> str:
     count, lost = diagram.verdict.size, int(diagram.ran_away.sum())
     done = diagram.finished & (diagram.verdict != "step-limited") & ~diagram.ran_away
     limited = diagram.verdicts().get("step-limited", 0)
@@ -190,7 +190,7 @@ def _quantity_of(branch: Branch) -> str:
     return name if name in QUANTITIES else ""
 
 
-def _branch_parameter(branch: Branch, values: Any) -> Array:
+def _branch_parameter(branch: Branch, values: object) -> Array:
     name = _quantity_of(branch)
     return displayed(name, values) if name else np.asarray(values, dtype=float)
 

@@ -70,7 +70,7 @@ def _over_place(
     traces: list[Trace],
     place: tuple[str, list[float]],
     speed: tuple[str, list[float]],
-    **more: Any,
+    **more: object,
 ) -> Sketch:
     """Figure of velocities over positions; each axis has a label and a range."""
     x, y = (axis(label, range=ends) for label, ends in (place, speed))

@@ -57,7 +57,7 @@ def _stepped(colors: Sequence[str]) -> list[list[Any]]:
     return [[float(e), c] for n, c in enumerate(colors) for e in edges[n : n + 2]]
 
 
-def _plane(plane: Basins, x: Any, y: Any) -> Trace:
+def _plane(plane: Basins, x: object, y: object) -> Trace:
     """Heat map of the attractor numbers with a stepwise colour scale."""
     count = len(plane.attractors)
     colors = [_NOWHERE, *(_COLORS[n % len(_COLORS)] for n in range(count))]
@@ -79,12 +79,12 @@ def _component(plane: Basins, number: int, axis: int) -> Any:
     return (each.velocity if velocity else each.position)[:, column]
 
 
-def _states(x: Any, y: Any, name: str, **marker: Any) -> Trace:
+def _states(x: object, y: object, name: str, **marker: object) -> Trace:
     """Marks of states with a name in the legend."""
     return dots(x, y, name, {"size": 11, **marker})
 
 
-def _plane_axis(name: str, values: Any, unit: str) -> tuple[Array, str]:
+def _plane_axis(name: str, values: object, unit: str) -> tuple[Array, str]:
     """Values along an axis in its display unit, and its label."""
     if name in QUANTITIES:
         return displayed(name, values), axis_label(name)
@@ -155,7 +155,7 @@ def _class(survey: ParameterMap) -> Any:
     return np.where(survey.finished, number, np.nan)
 
 
-def _heat(x: Any, y: Any, z: Any, hover: str, **more: Any) -> Trace:
+def _heat(x: object, y: object, z: object, hover: str, **more: object) -> Trace:
     colors = more.pop("colorscale", _SCALE)
     return heat(x, y, np.asarray(z).T, colors, f"%{{x:.5g}}, %{{y:.4g}}: {hover}", **more)
 
@@ -169,7 +169,7 @@ def _range(rms: Any) -> dict[str, float]:
     return {"zmin": 0.0, "zmax": usual} if 0.0 < 2.0 * usual < largest else {}
 
 
-def _periods(survey: ParameterMap, x: Any, y: Any) -> Trace:
+def _periods(survey: ParameterMap, x: object, y: object) -> Trace:
     scale = _stepped([color for _, color in _PERIODS])
     ticks = {"tickvals": list(range(len(_PERIODS))), "ticktext": [text for text, _ in _PERIODS]}
     facts = np.dstack((survey.period.T, survey.verdict.T))

@@ -90,7 +90,7 @@ def failure_probability(result: FailureProbability) -> Sketch:
     of="Band",
     made_by="Call tribodyn.uncertainty.bootstrap_band(samples, seed=1) and its plot method.",
 )
-def band(result: Band, x: Any = None, label: str = "") -> Sketch:
+def band(result: Band, x: object = None, label: str = "") -> Sketch:
     """Draw the mean curve with its band.
 
     Parameters
@@ -225,7 +225,7 @@ def sensitivity(shares: CaseSensitivity) -> Sketch:
     return plane_figure(_title(figures, inputs, shares.total_order), traces, _SHARE, y, **layout)
 
 
-def _bars(labels: Any, order: Array, band: Array, name: str, color: str) -> Trace:
+def _bars(labels: object, order: Array, band: Array, name: str, color: str) -> Trace:
     values = 100.0 * order.ravel()
     hover = f"%{{x:.3g}} % {name}<extra></extra>"
     # Estimates may lie outside 0 to 100 %; the intervals are clipped.

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from typing import Any, SupportsFloat
+from typing import SupportsFloat
 
 import numpy as np
 
@@ -45,7 +45,7 @@ def display_unit(name: str) -> str:
     return readable(lookup(name).display_unit)
 
 
-def displayed(name: str, values: Any) -> Array:
+def displayed(name: str, values: object) -> Array:
     """Convert values from SI to the display unit of a quantity."""
     quantity = lookup(name)
     return np.asarray(values, dtype=float) * convert(1.0, quantity.unit, quantity.display_unit)
@@ -76,7 +76,7 @@ def engineering(value: float, unit: str, digits: int = 5) -> tuple[str, str]:
     return text, ("", "k", "M", "G")[power] + unit
 
 
-def scaled(values: Any, unit: str) -> tuple[float, str]:
+def scaled(values: object, unit: str) -> tuple[float, str]:
     """Return the factor and the unit in which values are plotted."""
     magnitudes = np.abs(np.asarray(values, dtype=float))
     magnitudes = magnitudes[np.isfinite(magnitudes)]
@@ -102,7 +102,7 @@ def capitalized(name: str) -> str:
     return label[:1].upper() + label[1:]
 
 
-def parameter_axis(name: str, values: Any, unit: str) -> tuple[Array, str]:
+def parameter_axis(name: str, values: object, unit: str) -> tuple[Array, str]:
     """Return the values of a parameter in their display unit and the label of the axis."""
     factor, display = scaled(values, unit)
     values_in_display_unit = factor * np.asarray(values, dtype=float)

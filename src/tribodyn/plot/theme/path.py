@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -24,7 +24,7 @@ _SHADE = "rgba(107, 119, 133, 0.13)"
 _NUMBER_WORDS = {1: "one", 2: "two", 3: "three", 4: "four", 5: "five"}
 
 
-def roll_angle_of(pair: Gears, age: Any) -> Array:
+def roll_angle_of(pair: Gears, age: object) -> Array:
     """Roll angle of the driving gear at an age of a tooth pair."""
     contact = path_of_contact(pair)
     radius = pair.driving_radius(contact.A) + np.asarray(age, dtype=float) * pair.base_pitch

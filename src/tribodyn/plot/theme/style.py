@@ -26,7 +26,7 @@ TOP, BOTTOM = 74, 58
 _SPIKE = {"spikecolor": MUTED, "spikethickness": 1, "spikedash": "solid", "hoverformat": ".4g"}
 
 
-def _axis(**more: Any) -> Trace:
+def _axis(**more: object) -> Trace:
     return {
         "gridcolor": GRID,
         "linecolor": MUTED,
@@ -66,7 +66,7 @@ def figure(title: str, traces: Sequence[Trace], layout: Trace | None = None) -> 
     return Sketch(list(traces), {**common, **(layout or {})})
 
 
-def axis(label: str, **more: Any) -> Trace:
+def axis(label: str, **more: object) -> Trace:
     """Axis with a label; ``more`` are properties of plotly."""
     return {"title": {"text": label}, **more}
 
@@ -96,7 +96,9 @@ def button_row(choices: Sequence[tuple[str, Trace]]) -> Trace:
     }
 
 
-def plane_figure(title: str, traces: Sequence[Trace], x: Trace, y: Trace, **layout: Any) -> Sketch:
+def plane_figure(
+    title: str, traces: Sequence[Trace], x: Trace, y: Trace, **layout: object
+) -> Sketch:
     """Describe a figure of one plane; ``x`` and ``y`` are its axes."""
     return figure(title, traces, {"hovermode": "closest", "xaxis": x, "yaxis": y, **layout})
 
@@ -143,39 +145,43 @@ def line(
     }
 
 
-def between(x: Any, low: Any, high: Any, name: str, fill: str, **more: Any) -> list[Trace]:
+def between(
+    x: object, low: object, high: object, name: str, fill: str, **more: object
+) -> list[Trace]:
     """Fill between two curves; ``more`` are properties of the filled one."""
     edge = {"type": "scatter", "mode": "lines", "line": {"width": 0}, "hoverinfo": "skip", "x": x}
     lower = {**edge, "y": low, "showlegend": False, "name": name}
     return [lower, {**edge, "y": high, "fill": "tonexty", "fillcolor": fill, "name": name, **more}]
 
 
-def strokes(x: Any, y: Any, color: str, width: float = 1.2, **more: Any) -> Trace:
+def strokes(x: object, y: object, color: str, width: float = 1.2, **more: object) -> Trace:
     """Describe lines without a hover text; ``more`` are properties of plotly."""
     style = {"line": {"color": color, "width": width}, "hoverinfo": "skip"}
     return {"type": "scatter", "mode": "lines", "x": x, "y": y, **style, **more}
 
 
-def dots(x: Any, y: Any, name: str, marker: Trace, **more: Any) -> Trace:
+def dots(x: object, y: object, name: str, marker: Trace, **more: object) -> Trace:
     """Describe points by the properties of their marker."""
     points = {"type": "scatter", "mode": "markers", "x": x, "y": y}
     return {**points, "name": name, "marker": marker, **more}
 
 
-def bars(x: Any, y: Any, name: str, color: Any, hover: str, **more: Any) -> Trace:
+def bars(x: object, y: object, name: str, color: object, hover: str, **more: object) -> Trace:
     """Describe bars; ``hover`` is the template of their hover text."""
     marker = color if isinstance(color, dict) else {"color": color}
     return {"type": "bar", "x": x, "y": y, "name": name, "marker": marker,
             "hovertemplate": hover, **more}  # fmt: skip
 
 
-def heat(x: Any, y: Any, z: Any, colors: Any, hover: str, **more: Any) -> Trace:
+def heat(x: object, y: object, z: object, colors: object, hover: str, **more: object) -> Trace:
     """Describe a map of values; ``hover`` is the template of its hover text."""
     return {"type": "heatmap", "x": x, "y": y, "z": z, "colorscale": colors,
             "hovertemplate": f"{hover}<extra></extra>", "showlegend": False, **more}  # fmt: skip
 
 
-def contour(x: Any, y: Any, z: Any, colors: Any, hover: str, unit: str, length: float) -> Trace:
+def contour(
+    x: object, y: object, z: object, colors: object, hover: str, unit: str, length: float
+) -> Trace:
     """Describe a map with labelled lines of equal values, and a colour bar of that length."""
     levels = {"showlabels": True, "labelfont": {"size": 10, "color": INK}}
     style = {"ncontours": 16, "contours": levels, "line": {"width": 0.6, "color": MUTED}}
@@ -191,7 +197,7 @@ def over_map(cells: Trace, levels: Trace, width: float, name: str) -> Trace:
 
 
 def sankey(
-    links: Iterable[tuple[int, int, float, str]], hover: str, node_hover: str, **node: Any
+    links: Iterable[tuple[int, int, float, str]], hover: str, node_hover: str, **node: object
 ) -> Trace:
     """Describe flows (source, target, value, colour) between nodes with these properties."""
     columns = zip(("source", "target", "value", "color"), zip(*links, strict=True), strict=True)

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager, suppress
 from functools import partial
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 from tribodyn.checkpoints import Checkpoints
 from tribodyn.errors import Argument, ComputationError, InputError, collected
@@ -53,7 +53,7 @@ def built(case: Case) -> Member:
 
 def varied(
     case: Case,
-    changes: Sequence[Mapping[str, Any]],
+    changes: Sequence[Mapping[str, object]],
     progress: Progress,
     checkpoints: Checkpoints | None = None,
 ) -> list[Member]:
@@ -87,7 +87,7 @@ def result_under(
 
 
 def results_under(
-    case: MachineCase, changes: Sequence[Mapping[str, Any]], progress: Progress = SILENT
+    case: MachineCase, changes: Sequence[Mapping[str, object]], progress: Progress = SILENT
 ) -> Iterator[tuple[LoadResult | InputError | ComputationError, tuple[str, ...]]]:
     """Results of a case at its operating point for changes of its keys, and warning codes."""
     start, stages = None, StageProgress(progress)
@@ -109,7 +109,7 @@ def results_under(
 def points_of_parts(
     case: MachineCase,
     keys: Sequence[str],
-    places: Sequence[tuple[Any, ...]],
+    places: Sequence[tuple[object, ...]],
     progress: Progress = SILENT,
 ) -> list[SweepPoint]:
     """Points of a sweep; a failed one holds its reason."""

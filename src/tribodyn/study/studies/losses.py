@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -27,8 +27,8 @@ STEPS = np.linspace(0.25, 2.0, 8)
 def loss_map(
     case: Case | MachineCase,
     *,
-    torque: Any = None,
-    speed: Any = None,
+    torque: object = None,
+    speed: object = None,
     mesh: str | None = None,
     progress: Progress = SILENT,
 ) -> GearboxLosses:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
@@ -84,7 +84,7 @@ def natural_modes(
 
 def campbell(
     case: Case | MachineCase,
-    between: tuple[Any, Any] | None = None,
+    between: tuple[object, object] | None = None,
     *,
     orders: Iterable[int] = ORDERS,
     progress: Progress = SILENT,

@@ -224,7 +224,7 @@ def _plane_about_equilibrium(
 def continuation(
     case: Case | MachineCase,
     over: str = "operation.speed",
-    between: tuple[Any, Any] | None = None,
+    between: tuple[object, object] | None = None,
     *,
     mesh: str | None = None,
     periods: int = 1,

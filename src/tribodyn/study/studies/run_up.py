@@ -42,7 +42,7 @@ _COARSE = 0.02
 
 def run_up(
     case: Case | MachineCase,
-    between: tuple[Any, Any] | None = None,
+    between: tuple[object, object] | None = None,
     duration: float = 10.0,
     *,
     down: bool = False,
@@ -133,7 +133,7 @@ def run_up(
 
 
 def speed_systems(
-    case: Case, speeds: Any, progress: Progress = SILENT
+    case: Case, speeds: object, progress: Progress = SILENT
 ) -> tuple[dict[float, System], float]:
     """Build the structure of a case at each speed, by mesh frequency."""
     members, per_speed = _members(case, speeds, progress)
@@ -176,7 +176,7 @@ def _check_faults(case: Case) -> None:
     turning_clock(case)
 
 
-def _ends(between: tuple[Any, Any] | None) -> tuple[float, float]:
+def _ends(between: tuple[object, object] | None) -> tuple[float, float]:
     """Return the lowest and highest speed in SI, checked like the key of the case."""
     if between is None or len(between) != 2:
         why = "A run-up goes from one speed to another"

@@ -33,7 +33,9 @@ _ITEMS_PER_PROCESS = 50
 _NO_VALUES: Mapping[int, Any] = MappingProxyType({})
 
 
-def identity(study: str, case: Case | MachineCase, over: Any, **options: Any) -> dict[str, Any]:
+def identity(
+    study: str, case: Case | MachineCase, over: object, **options: object
+) -> dict[str, Any]:
     """Identity of a study; checkpoints are reused only if it is the same."""
     import tribodyn
 

@@ -98,7 +98,7 @@ class CaseLeadOptimum(OptimumOfCase, LeadOptimum):
 
 def harris_map(
     case: Case | MachineCase,
-    torque: Any = None,
+    torque: object = None,
     *,
     phases: int | None = None,
     mesh: str | None = None,
@@ -166,12 +166,12 @@ def _hypoid_map(case: Case, torques: list[float], phases: int | None) -> HarrisM
 
 def optimize_tip_relief(
     case: Case | MachineCase,
-    torque: Any = None,
+    torque: object = None,
     *,
-    amount: Any = None,
-    length: Any = None,
+    amount: object = None,
+    length: object = None,
     mesh: str | None = None,
-    **options: Any,
+    **options: object,
 ) -> CaseTipReliefOptimum:
     """Find the tip relief of a case that leaves least transmission error over a torque range.
 
@@ -231,14 +231,14 @@ def optimize_tip_relief(
 
 def optimize_lead(
     case: Case | MachineCase,
-    torque: Any = None,
+    torque: object = None,
     *,
-    crowning: Any = None,
-    lead_slope: Any = None,
-    misalignment: Any = None,
+    crowning: object = None,
+    lead_slope: object = None,
+    misalignment: object = None,
     mesh: str | None = None,
     progress: Progress = SILENT,
-    **options: Any,
+    **options: object,
 ) -> CaseLeadOptimum:
     """Find the crowning and the lead slope of a case that spread its load most evenly.
 
@@ -304,7 +304,7 @@ def optimize_lead(
     return CaseLeadOptimum(**{**vars(optimum), **rounded}, studied=case, tables=tables)
 
 
-def _length(name: str, key: str, value: Any) -> float:
+def _length(name: str, key: str, value: object) -> float:
     """Read a length with the limits of a key of a modification."""
     try:
         return float(read_value(dict(Modification.specs())[key], name, Plain(value)))
@@ -328,8 +328,8 @@ def _lengths(name: str, ends: Any) -> tuple[float, float] | None:
 def comprehensive_stiffness(
     case: Case | MachineCase,
     *,
-    torque: Any = None,
-    speed: Any = None,
+    torque: object = None,
+    speed: object = None,
     kind: str | None = None,
     steps: int = 128,
     mesh: str | None = None,
@@ -399,8 +399,8 @@ def comprehensive_stiffness(
 def film_over_operation(
     case: Case | MachineCase,
     *,
-    torque: Any = None,
-    speed: Any = None,
+    torque: object = None,
+    speed: object = None,
     mesh: str | None = None,
     progress: Progress = SILENT,
 ) -> FilmOverOperation:

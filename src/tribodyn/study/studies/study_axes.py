@@ -67,7 +67,7 @@ class Axis:
 
 
 def ends_of(
-    case: Case | MachineCase, key: str, ends: Sequence[Any], *, by: str = ""
+    case: Case | MachineCase, key: str, ends: Sequence[object], *, by: str = ""
 ) -> tuple[float, ...]:
     """Read numbers of one key as the case file does, each on its own."""
     values = [member_value(case, key, end, by) for end in ends]
@@ -80,7 +80,7 @@ def ends_of(
     return tuple(float(value) for value in values)
 
 
-def member_value(case: Case | MachineCase, key: str, value: Any, by: str) -> Any:
+def member_value(case: Case | MachineCase, key: str, value: object, by: str) -> Any:
     """Read a value of one key; conflicts with other keys are found when it is computed."""
     spec = case.option_of(key)
     if spec is None:
@@ -110,7 +110,7 @@ def _location(by: str) -> str:
 
 
 def read_axes(
-    case: Case | MachineCase, over: Mapping[str, Any], *, by: str = ""
+    case: Case | MachineCase, over: Mapping[str, object], *, by: str = ""
 ) -> tuple[Axis, ...]:
     """Read the keys that vary with their values, and limit the number of points."""
     if not over:
@@ -126,7 +126,7 @@ def _check_number(points: int, by: str) -> None:
         raise InputError(f"{points} values", _location(by), why, "Take fewer points")
 
 
-def read_axis(case: Case | MachineCase, key: str, entry: Any, by: str) -> Axis:
+def read_axis(case: Case | MachineCase, key: str, entry: object, by: str) -> Axis:
     """Read a range ``(first, last, points)`` or a list of values of one key."""
     if isinstance(entry, tuple) and len(entry) == 3:
         values = _range(case, key, entry, by)
@@ -161,7 +161,7 @@ def _range(
     return tuple(np.linspace(low, high, int(points)).tolist())
 
 
-def points_of(case: Case | MachineCase, key: str, values: Any, *, by: str) -> list[float]:
+def points_of(case: Case | MachineCase, key: str, values: object, *, by: str) -> list[float]:
     """Read the values of a key; a list may have a single value."""
     if isinstance(values, list) and len(values) == 1:
         return list(ends_of(case, key, values, by=by))

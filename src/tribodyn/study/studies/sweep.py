@@ -138,14 +138,14 @@ def _source(case: Case | MachineCase, keys: Sequence[str]) -> PointSource:
     return pair_source(partial(_pending_at, case, keys))
 
 
-def _pending_at(case: Case, keys: Sequence[str], *values: Any) -> PendingRun:
+def _pending_at(case: Case, keys: Sequence[str], *values: object) -> PendingRun:
     return PendingRun(case.replace(dict(zip(keys, values, strict=True))))
 
 
 def compute_points(
     axes: tuple[Axis, ...],
     source: PointSource,
-    study: Mapping[str, Any],
+    study: Mapping[str, object],
     checkpoints: Checkpoints | None,
     **options: Any,
 ) -> tuple[SweepPoint, ...]:
@@ -168,7 +168,7 @@ def compute_points(
 
 
 def points_under(
-    case: Case | MachineCase, changes: Sequence[Mapping[str, Any]], progress: Progress = SILENT
+    case: Case | MachineCase, changes: Sequence[Mapping[str, object]], progress: Progress = SILENT
 ) -> list[SweepPoint]:
     """Compute a case for several changes of the same keys; a failed point holds its reason."""
     source = _source(case, tuple(changes[0]) if changes else ())
@@ -189,7 +189,7 @@ def _read_ranges(over: str | Mapping[str, Any], between: Any, points: int) -> Ma
 
 @contextmanager
 def _compiling(
-    pending_at: Callable[..., PendingRun], places: Sequence[tuple[Any, ...]]
+    pending_at: Callable[..., PendingRun], places: Sequence[tuple[object, ...]]
 ) -> Iterator[bool]:
     """Compile in parallel what the first of some points needs; yield whether it needs anything."""
     pending = _try(partial(pending_at, *places[0]))
@@ -220,7 +220,7 @@ def _prepare(pending: PendingRun) -> PreparedRun:
 
 
 def _point(
-    values: tuple[Any, ...], point: PreparedRun | InputError | ComputationError
+    values: tuple[object, ...], point: PreparedRun | InputError | ComputationError
 ) -> SweepPoint:
     outcome = _try(partial(_figures, point)) if isinstance(point, PreparedRun) else point
     if isinstance(outcome, Exception):

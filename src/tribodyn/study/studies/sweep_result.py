@@ -68,7 +68,7 @@ class SweepPoint:
     warned: tuple[str, ...] = ()  #: codes of the warnings of the models
 
     @classmethod
-    def of_failure(cls, values: tuple[Any, ...], error: TribodynError) -> SweepPoint:
+    def of_failure(cls, values: tuple[object, ...], error: TribodynError) -> SweepPoint:
         """A value that cannot be computed."""
         first = error.problems[0]
         location = str(first.where).removeprefix("replace: ")  # it is the sweep that replaces

@@ -179,7 +179,7 @@ class CaseEnsemble(Record):
         with quiet():
             return tuple(run_each(computed, cases))
 
-    def plot(self, name: str = "", *arguments: Any, **options: Any) -> Any:
+    def plot(self, name: str = "", *arguments: object, **options: object) -> Any:
         """Draw the spread of the motion, or any figure of a run with bands of the variants.
 
         Parameters
@@ -306,7 +306,7 @@ class CaseEnsemble(Record):
 
 def ensemble(
     case: Case | MachineCase,
-    distributions: Mapping[str, Any] | None = None,
+    distributions: Mapping[str, object] | None = None,
     size: int = 64,
     *,
     method: str = "latin-hypercube",

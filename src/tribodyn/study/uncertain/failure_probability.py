@@ -63,7 +63,7 @@ class FailureProbability(Record):
 
 def failure_probability(
     case: Case | MachineCase,
-    distributions: Mapping[str, Any] | None = None,
+    distributions: Mapping[str, object] | None = None,
     size: int = 64,
     *,
     seed: int,

@@ -75,7 +75,7 @@ def draw(
     return sample(distributions_of(case, spread), size, method=method, seed=seed)
 
 
-def distributions_of(case: Case | MachineCase, spread: Mapping[str, Any]) -> dict[str, Any]:
+def distributions_of(case: Case | MachineCase, spread: Mapping[str, object]) -> dict[str, Any]:
     """Distributions of keys of a case and of factors, each in the unit that it has there."""
     distributions = {}
     for key, text in spread.items():

@@ -59,7 +59,7 @@ _ROUNDING = 1e-9
 
 def operating_data(
     case: Case | MachineCase,
-    over: Mapping[str, Any] | None = None,
+    over: Mapping[str, object] | None = None,
     size: int = 256,
     *,
     seed: int,

@@ -80,7 +80,7 @@ class CaseSensitivity(Record):
 def sobol_indices(
     case: Case | MachineCase,
     figures: str | Sequence[str] | None = None,
-    distributions: Mapping[str, Any] | None = None,
+    distributions: Mapping[str, object] | None = None,
     size: int = 64,
     *,
     seed: int,

@@ -41,7 +41,7 @@ def vibration_data(
     case: Case,
     *,
     seed: int,
-    distributions: Mapping[str, Any] | None = None,
+    distributions: Mapping[str, object] | None = None,
     trajectories: int = 100,
     over: Literal["time", "cycle"] = "time",
     samples: int = 100,
