@@ -44,6 +44,7 @@ OPTIONS = {
     name
     for name, kind in vars(settings).items()
     if any(getattr(each, "help", None) for each in getattr(kind, "__metadata__", ()))
+    or (isinstance(kind, type) and issubclass(kind, settings.Place))
 }
 #: Words before a quantity's name that leave its unit alone.
 _PREFIXES = ("pinion_", "wheel_", "mean_", "minimum_", "maximum_", "rms_", "peak_", "nominal_")

@@ -55,8 +55,8 @@ def _points(case: Case, key: str, text: str) -> list[float] | None:
     return points_of(case, key, _read(key, text, read_values), by="study") if text else None
 
 
-def _operation(case: Case, values: Values) -> list[list[float] | None]:
-    return [_points(case, f"operation.{n}", values[n] or "") for n in ("torque", "speed")]
+def _operation(case: Case, values: Values) -> dict[str, list[float] | None]:
+    return {n: _points(case, f"operation.{n}", values[n] or "") for n in ("torque", "speed")}
 
 
 def shown(answer: StudyReportData, kind: str, case: Case, target: Path) -> Shown:
@@ -200,10 +200,10 @@ def _sobol(case: Case, values: Values, progress: Progress) -> StudyReportData:
 #: Report data of the other studies, by the names of their commands.
 FUNCTIONS: Mapping[str, Callable[[Any, Values, Progress], StudyReportData]] = {
     "losses": lambda case, values, progress: of_studies.losses_report_data(
-        case, *_operation(case, values), progress, values["mesh"]
+        case, **_operation(case, values), progress=progress, mesh=values["mesh"]
     ),
     "film": lambda case, values, progress: of_studies.film_report_data(
-        case, *_operation(case, values), progress, values["mesh"]
+        case, **_operation(case, values), progress=progress, mesh=values["mesh"]
     ),
     "friction-from-loss": _friction_from_loss,
     "relief": _relief,

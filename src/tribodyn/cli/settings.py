@@ -243,9 +243,6 @@ def with_options(options: Mapping[str, str]) -> Iterator[None]:
     try:
         yield
     except TribodynError as error:
-        names = {Argument(name): option for name, option in options.items()}
-        names |= {f"argument {name}": option for name, option in options.items()}
-        problems = [
-            replace(each, where=names.get(each.where, each.where)) for each in error.problems
-        ]
-        raise type(error)(problems) from None
+        names = {str(Argument(name)): option for name, option in options.items()}
+        named = [replace(p, where=names.get(str(p.where), p.where)) for p in error.problems]
+        raise type(error)(named) from None

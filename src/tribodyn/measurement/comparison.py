@@ -29,7 +29,7 @@ from tribodyn.measurement.mesh_harmonics import (
 from tribodyn.measurement.mesh_speed import MeshSpeed
 from tribodyn.measurement.recording import Recording
 from tribodyn.record import Record, fact, quantity, record
-from tribodyn.types import Array
+from tribodyn.types import Array, Texts
 from tribodyn.units import UnitProblemError, convert
 
 Base = Literal["measured", "computed", "mean"]
@@ -96,9 +96,9 @@ class Comparison(Record):
         Part of the alternating mean square of each channel that is in its mesh harmonics [-].
     """
 
-    channel: Any = quantity("row", axis=True, unit="")
-    measure: Any = quantity("row", axis=True, unit="")
-    unit: Any = quantity("row", axis=True, unit="")
+    channel: Texts = quantity("row", axis=True, unit="")
+    measure: Texts = quantity("row", axis=True, unit="")
+    unit: Texts = quantity("row", axis=True, unit="")
     computed: Array = quantity("row", unit="")
     measured: Array = quantity("row", unit="")
     error: Array = quantity("row", unit="1")

@@ -15,7 +15,7 @@ from tribodyn.record import Parts, Record, fact, quantity, record
 from tribodyn.surrogate.baselines import ErrorMeasures
 from tribodyn.surrogate.network import Network
 from tribodyn.surrogate.preparation import columns_of
-from tribodyn.types import Array
+from tribodyn.types import Array, Texts
 from tribodyn.validated_files import read_dataset
 
 #: Format name of a stored model.
@@ -63,10 +63,10 @@ class Surrogate(Record):
         Of split and start.
     """
 
-    features: Any = quantity("feature", unit="", axis=True, name="feature")
-    targets: Any = quantity("target", unit="", axis=True, name="target")
-    feature_unit: Any = quantity("feature", unit="")
-    target_unit: Any = quantity("target", unit="")
+    features: Texts = quantity("feature", unit="", axis=True, name="feature")
+    targets: Texts = quantity("target", unit="", axis=True, name="target")
+    feature_unit: Texts = quantity("feature", unit="")
+    target_unit: Texts = quantity("target", unit="")
     feature_range: Array = quantity("end", "feature", unit="")
     target_range: Array = quantity("end", "target", unit="")
     networks: tuple[tuple[Network, Array], ...]
@@ -75,7 +75,7 @@ class Surrogate(Record):
     band: Array = quantity("target", unit="")
     level: float = fact()
     epochs: Array = quantity("target", unit="1")
-    stopped: Any = quantity("target", unit="")
+    stopped: Texts = quantity("target", unit="")
     training_rows: int = fact()
     validation_rows: int = fact()
     seed: int = fact()

@@ -138,7 +138,7 @@ def train(
     True
     """
     chosen = Training() if training is None else training
-    ready = _prepared(data, features, targets, seed, groups, chosen)
+    ready = prepare(data, features, targets, seed=seed, groups=groups, **_preparation(chosen))
     progress.start("Networks", len(targets))
     fits = []
     for column in range(len(targets)):
@@ -197,7 +197,7 @@ def bpnn_pl(
     sizes = [require_whole("neurons", count) for count in neurons]
     if not sizes:
         raise InputError("no size to try", Argument("neurons"), "", "Give one or more")
-    ready = _prepared(data, features, targets, seed, groups, training)
+    ready = prepare(data, features, targets, seed=seed, groups=groups, **_preparation(training))
     progress.start("Networks", len(sizes) * len(targets))
     fits, search = [], {}
     for column, name in enumerate(targets):
@@ -217,24 +217,10 @@ def bpnn_pl(
     return _model(data, ready, (list(features), list(targets)), fits, training, seed), search
 
 
-def _prepared(
-    data: object,
-    features: Sequence[str],
-    targets: Sequence[str],
-    seed: int,
-    groups: str,
-    by: Training,
-) -> Prepared:
-    return prepare(
-        data,
-        features,
-        targets,
-        seed=seed,
-        groups=groups,
-        shares=by.shares,
-        outlier_limit=by.outlier_limit,
-        moving_average=by.moving_average,
-    )
+def _preparation(by: Training) -> dict[str, Any]:
+    """How the table is prepared."""
+    names = ("shares", "outlier_limit", "moving_average")
+    return {name: getattr(by, name) for name in names}
 
 
 def _fitted(

@@ -10,7 +10,7 @@ import numpy as np
 from tribodyn.checks import require_whole
 from tribodyn.errors import Argument, ComputationError, InputError
 from tribodyn.record import Record, fact, quantity, record
-from tribodyn.types import Array
+from tribodyn.types import Array, Texts
 from tribodyn.uncertainty.sampling import distribution
 
 #: Bootstrap resamples of the intervals.
@@ -37,7 +37,7 @@ class SobolIndices(Record):
         Probability that such an interval holds the share of an endless sample; 0 without them [-].
     """
 
-    name: Any = quantity("input", axis=True, unit="")
+    name: Texts = quantity("input", axis=True, unit="")
     first_order: Array = quantity("input", unit="1")
     total_order: Array = quantity("input", unit="1")
     evaluations: int = fact()

@@ -139,6 +139,10 @@ def signal(
     ----------
     file : Path
         Recording: CSV, MAT, WAV, UFF 58, TDMS, HDF5 or netCDF.
+    chosen : Channel
+        Channel and part of the recording.
+    shaft : Shaft
+        Speed and teeth of the shaft.
     out : Path
         Directory for the report and the data; without it the figures are shown only.
     force : bool

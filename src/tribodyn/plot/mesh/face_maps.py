@@ -20,15 +20,7 @@ if TYPE_CHECKING:
     from tribodyn.mesh import MeshTable
     from tribodyn.study.rating import MeshRating
 
-#: Columns of the maps, and their quantities where these are called differently.
-_COLUMNS = (
-    "load_per_width",
-    "hertz_pressure",
-    "central_film",
-    "film_ratio",
-    "friction_coefficient",
-    "flash_temperature",
-)
+#: Quantities of columns that are called differently, and the columns of the maps.
 _QUANTITIES = {"central_film": "film_thickness"}
 _NAMES = {
     "load_per_width": "Load per length",
@@ -76,7 +68,7 @@ def face_maps(mesh: MeshTable) -> Sketch:
     """Draw load, pressure, film and friction over path and face."""
     charts = {
         name: face_map(mesh, name)
-        for name in _COLUMNS
+        for name in _NAMES
         if getattr(mesh, name) is not None and np.nanstd(face_map(mesh, name).values) > 0.0
     }
     maps = []

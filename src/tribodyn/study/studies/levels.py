@@ -11,7 +11,7 @@ import numpy as np
 from tribodyn.errors import ComputationError
 from tribodyn.record import Record, quantity, record
 from tribodyn.study.machine.modes import STRAINED, MeshOrder
-from tribodyn.types import Array
+from tribodyn.types import Array, Texts
 
 if TYPE_CHECKING:
     from tribodyn.machine import MachineModes
@@ -92,7 +92,7 @@ class MachineLevels(Record):
     transmission_error_line: Array = quantity("speed", "line", "mesh", unit="m")
     bearing_force_line: Array = quantity("speed", "line", "bearing", unit="N")
     acceleration_line: Array = quantity("speed", "line", "node", unit="m/s^2")
-    failed: Any = quantity("speed", unit="")
+    failed: Texts = quantity("speed", unit="")
     time: Array | None = quantity("speed", unit="s", default=None)
     modes: MachineModes | None = field(default=None, repr=False)
     mesh_orders: tuple[MeshOrder, ...] = field(default=(), repr=False)

@@ -16,7 +16,7 @@ from tribodyn.progress import SILENT, Progress
 from tribodyn.record import Record, fact, quantity, record
 from tribodyn.study.uncertain.cycles import SIGNALS, steady_cycles
 from tribodyn.study.uncertain.lanes import draw, lanes_of, points_of_values, successful
-from tribodyn.types import Array
+from tribodyn.types import Array, Texts
 from tribodyn.uncertainty import Band, bootstrap_band
 
 if TYPE_CHECKING:
@@ -52,9 +52,9 @@ class MachineEnsemble(Record):
         Title of the case.
     """
 
-    input: Any = quantity("input", axis=True, unit="", name="input")
+    input: Texts = quantity("input", axis=True, unit="", name="input")
     value: Array = quantity("variant", "input", unit="")
-    figure: Any = quantity("figure", axis=True, unit="", name="figure")
+    figure: Texts = quantity("figure", axis=True, unit="", name="figure")
     middle: Array = quantity("figure", unit="")
     sample: Array = quantity("variant", "figure", unit="")
     seed: int = fact()
@@ -141,7 +141,7 @@ class CaseEnsemble(Record):
         The case whose inputs are spread.
     """
 
-    input: Any = quantity("input", axis=True, unit="", name="input")
+    input: Texts = quantity("input", axis=True, unit="", name="input")
     value: Array = quantity("variant", "input", unit="")
     phase: Array = quantity("phase", axis=True, unit="1")
     mesh_frequency: Array = quantity("variant", unit="Hz")

@@ -14,7 +14,7 @@ from tribodyn.record import Record, fact, quantity, record
 from tribodyn.study.pipeline.summary_figures import split_key
 from tribodyn.study.rated_parts import LIVES, SHAFT_SAFETY
 from tribodyn.study.uncertain.lanes import draw, points_of_values, successful
-from tribodyn.types import Array
+from tribodyn.types import Array, Texts
 
 if TYPE_CHECKING:
     from tribodyn.study.case.case import Case
@@ -46,7 +46,7 @@ class FailureProbability(Record):
         Title of the case.
     """
 
-    figure: Any = quantity("figure", axis=True, unit="", name="figure")
+    figure: Texts = quantity("figure", axis=True, unit="", name="figure")
     required: Array = quantity("figure", unit="")
     sample: Array = quantity("variant", "figure", unit="")
     share: Array = quantity("figure", unit="1")

@@ -16,7 +16,7 @@ from tribodyn.study.pipeline.summary import SUMMARY
 from tribodyn.study.pipeline.summary_figures import in_order, is_figure
 from tribodyn.study.studies.sweep_result import OF_PARTS, SHOWN
 from tribodyn.study.uncertain.lanes import distributions_of, points_of_values, successful
-from tribodyn.types import Array
+from tribodyn.types import Array, Texts
 from tribodyn.uncertainty import sobol_indices as indices_of
 
 if TYPE_CHECKING:
@@ -57,8 +57,8 @@ class CaseSensitivity(Record):
         Title of the case.
     """
 
-    figure: Any = quantity("figure", axis=True, unit="", name="figure")
-    input: Any = quantity("input", axis=True, unit="", name="input")
+    figure: Texts = quantity("figure", axis=True, unit="", name="figure")
+    input: Texts = quantity("input", axis=True, unit="", name="input")
     first_order: Array = quantity("figure", "input", unit="1")
     total_order: Array = quantity("figure", "input", unit="1")
     first_order_band: Array = quantity("figure", "end", "input", unit="1")

@@ -97,6 +97,8 @@ def recording(
     over : str
         What varies, such as "faults.crack.depth=0,1,2 mm": writes a folder of labelled recordings,
         which the same command continues. Several make a grid.
+    sampling : Sampling
+        What is recorded, and what scatters.
     out : Path
         File to write, .mat, .wav, .h5, .uff or .csv, with its truth as .json; of a set its folder.
         By default that of the case with "-recording".
