@@ -332,3 +332,23 @@ def test_lines_of_help_are_as_long_as_the_screen_lets_them(
     for line, following in itertools.pairwise(line[1:-1].rstrip() for line in lines):
         more = re.match(r"^ {8,}(\S+)", following)  # goes on with the line before
         assert more is None or len(line) + 1 + len(more[1]) > 76
+
+
+@pytest.mark.parametrize(
+    ("command", "text"),
+    [
+        ("modes", "Values of the case to change"),
+        ("lead", "It holds best.toml"),
+        ("sobol", "Tolerances and other changes of the case"),
+        ("friction-from-loss", "gear_loss_factor, gear_sets"),
+        ("signal", "Sensitivity of its sensor"),
+    ],
+)
+def test_options_that_commands_share_have_the_text_of_each(
+    command: str, text: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert call([command, "--help"]) == 0
+    lines = capsys.readouterr().out.splitlines()
+    words = " ".join(" ".join(line.strip("│").split()) for line in lines)
+    assert text in words
+    assert "--json" in words
