@@ -380,7 +380,15 @@ def _on_longer_clock(system: System, periods: int) -> System:
 
     if periods == 1:
         return system
-    contacts = [replace(each, cycles=periods * each.cycles) for each in on_one_clock(system)]
+    contacts = [
+        replace(
+            each,
+            cycles=periods * each.cycles,
+            turning_error=[turned.error for turned in each.turning],
+            turning_cycles=[(periods * turned.cycles[0],) for turned in each.turning],
+        )
+        for each in on_one_clock(system)
+    ]
     return replace(system, contacts=contacts)
 
 

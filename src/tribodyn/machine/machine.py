@@ -237,13 +237,15 @@ class Machine:
         """Independent phases of the meshes, for a motion that needs no common period."""
         return self.phases_with()
 
-    def phases_with(self, driven: Sequence[Fraction] = ()) -> Phases:
+    def phases_with(self, driven: Sequence[Fraction] = (), *, together: bool = False) -> Phases:
         """Phases of the meshes, of what turns with them, and of what drives shafts.
 
         Parameters
         ----------
         driven : sequence of Fraction
             Rates of what drives shafts: its cycles in a period of the clock.
+        together : bool
+            Whether meshes and what turns with them share one phase, after which all repeats.
 
         Returns
         -------
@@ -253,7 +255,8 @@ class Machine:
         turning = [
             clock.cycles[name] * turn.waves for name, mesh in meshes for turn in mesh.turning
         ]
-        return phases_of(clock, {name: mesh.period for name, mesh in meshes}, turning, driven)
+        periods = {name: mesh.period for name, mesh in meshes}
+        return phases_of(clock, periods, turning, driven, together=together)
 
     @cached_property
     def directions(self) -> Mapping[str, MeshDirection]:

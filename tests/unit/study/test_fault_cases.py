@@ -94,7 +94,15 @@ def test_a_ripple_is_in_the_motion_and_its_clock(healthy: Case) -> None:
         other = road.replace(change)
         period = turning_clock(other).period
         assert float(duration.split()[0]) <= period <= float(duration.split()[0]) + 0.1
-    with pytest.raises(InputError, match="At most 6000 mesh cycles"):
+    # a long load has a phase of its own, until its lines need too much memory
+    slow = road.replace({"faults.road.frequencies": ["20 Hz", "30 Hz"]})
+    long = turning_clock(slow.replace({"faults.road.duration": "60 s"}))
+    assert long.phases is not None
+    assert (long.period, [name for name, _ in long.phases.phases]) == (
+        60.0,
+        ["mesh", "random load"],
+    )
+    with pytest.raises(tribodyn.ComputationError, match="At most 4 GB"):
         turning_clock(road.replace({"faults.road.duration": "60 s"}))
 
 
@@ -191,8 +199,78 @@ def test_lines_stand_at_the_turns_of_the_faulty_gear(healthy: Case) -> None:
     assert size[order % 2 == 1].max() < 1e-6 * size.max()
     mesh = int(np.argmax(size))
     assert order[mesh] % 48 == 0
+    # damping follows the flanks, so that a slow run-out hardly modulates the mesh
+    near = np.r_[size[mesh - 20 : mesh], size[mesh + 1 : mesh + 21]]
     sidebands = size[mesh - 2], size[mesh + 2]
-    assert min(sidebands) > 1e-4 * size[mesh]
+    assert sorted(near)[-2:] == pytest.approx(sorted(sidebands))
+    assert 1e-6 * size[mesh] < min(sidebands) < 1e-4 * size[mesh]
+
+
+@pytest.fixture(scope="module")
+def hunting(healthy: Case) -> Case:
+    """17 and 24 teeth: a cracked pinion, an eccentric wheel."""
+    return healthy.replace({
+        "gears.pinion.teeth": 17, "gears.center_distance": "94 mm", "dynamics.backlash": "0.2 mm",
+        "operation.speed": "1500 rpm", **CRACK, **WHEEL,
+    })  # fmt: skip
+
+
+def test_a_hunting_pair_moves_over_phases_of_its_shafts(hunting: Case) -> None:
+    from tribodyn.dynamics import PhaseResponse
+
+    with pytest.warns(tribodyn.ModelWarning):
+        motion = tribodyn.run(hunting).turning_motion
+    assert isinstance(motion.response, PhaseResponse)
+    assert (motion.repeats_after, motion.cycles) == (408, 408)
+    lines = {line.cause: line for line in motion.lines("mesh_force", 3000)}
+    mesh, pinion = 17 * 25.0, 25.0
+    assert lines["1 x mesh"].frequency == pytest.approx(mesh, rel=1e-12)
+    for turns in (1, 2, 3):  # of the cracked pinion
+        for sign, side in (("+", 1.0), ("-", -1.0)):
+            line = lines[f"1 x mesh {sign} {turns} x pinion"]
+            assert line.frequency == pytest.approx(mesh + side * turns * pinion, rel=1e-12)
+    error = {line.cause: abs(line.amplitude) for line in motion.lines("transmission_error", 3000)}
+    assert error["1 x wheel"] == pytest.approx(5e-6, rel=1e-3)
+    # the motion in time is that of the phases, all zero at the time zero
+    at = motion.response.at(motion.time[::5000])
+    contact = motion.response.lines("contact_force")
+    waves = np.exp(2j * np.pi * np.multiply.outer(at.time, contact.frequency))
+    force = (waves @ contact.amplitude).real.sum(axis=1)
+    assert motion.mesh_force[::5000] == pytest.approx(force, rel=1e-6)
+
+
+@pytest.mark.slow
+def test_lines_of_a_crack_are_those_of_one_clock(
+    hunting: Case, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Where the wheel is sound, 17 mesh cycles are a period."""
+    from tribodyn.dynamics import harmonic_balance
+    from tribodyn.errors import collected
+    from tribodyn.study.faults import motion as of_pairs
+    from tribodyn.study.faults.clock import PairTurns
+    from tribodyn.study.faults.turning import response_lines
+    from tribodyn.study.pipeline.run import prepare_run
+
+    monkeypatch.setattr(of_pairs, "MESH_POINTS", 512)
+    with collected():
+        prepared = prepare_run(hunting)
+        motion = of_pairs.turning_motion(prepared)
+    cracked = hunting.replace({"faults.run-out": None})
+    driven = of_pairs.driven_system(
+        cracked, prepared.mesh, prepared.damping, PairTurns.of(cracked), motion.teeth
+    )
+    clock = harmonic_balance(driven.system, motion.rotation_frequency("pinion"), steps=1024)
+    expected = response_lines(clock, "contact_force", 17)[1].sum(axis=1)[: 17 * 25]
+    lines = motion.sensed("mesh_force")
+    still = lines.numbers[:, 1] == 0  # nothing of the wheel
+    total = np.zeros_like(expected)
+    number = lines.numbers[still, 0]
+    inside = (number >= 0) & (number < total.size)
+    total[number[inside]] = lines.amplitude[still][inside]
+    error = np.abs(total - expected)[1:] / np.abs(expected[1:]).max()
+    sides = np.arange(1, expected.size) % 17 > 0
+    assert error[sides][: 17 * 10].max() < 1e-4
+    assert error.max() < 2e-3
 
 
 def test_recordings_are_sampled_motions(result: Result, tmp_path: Path) -> None:

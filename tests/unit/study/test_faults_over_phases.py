@@ -10,9 +10,9 @@ import pytest
 from tests.unit.study.test_machine_phases import case
 
 import tribodyn as td
+from tribodyn.dynamics import PhaseResponse
 from tribodyn.study.faults.clock import check_motion, fault_cost
 from tribodyn.study.faults.machine_motion import machine_turning_motion, rehearse_faults
-from tribodyn.study.faults.phase_motion import MachinePhaseMotion
 from tribodyn.study.machine.run import rehearse_machine
 
 SPEED = 1000.0 / 60.0
@@ -74,7 +74,7 @@ def assert_same_lines(phased: Any, clocked: Any, sensor: str, part: float = 1e-4
 
 def test_each_shaft_has_its_phase_and_its_sidebands() -> None:
     motion = hunting().turning_motion
-    assert isinstance(motion, MachinePhaseMotion)
+    assert isinstance(motion.response, PhaseResponse)
     shafts = {"in": SPEED, "shaft1": SPEED * 19 / 23, "out": SPEED * 19 / 23 * 17 / 31}
     meshes = {"mesh1": SPEED * 19, "mesh2": SPEED * 19 / 23 * 17}
     lines = {line.cause: line.frequency for line in motion.lines("meshes.mesh1.mesh_force")}
@@ -86,8 +86,8 @@ def test_each_shaft_has_its_phase_and_its_sidebands() -> None:
 def test_lines_are_those_of_the_period_where_there_is_one() -> None:
     faults = eccentric("z1", "z2", "z3", "z4")
     phased, clocked = (motion_of(phases, **faults) for phases in ("on", "off"))
-    assert isinstance(phased, MachinePhaseMotion)
-    assert not isinstance(clocked, MachinePhaseMotion)
+    assert isinstance(phased.response, PhaseResponse)
+    assert not isinstance(clocked.response, PhaseResponse)
     for sensor in ("meshes.mesh1.mesh_force", "meshes.mesh2.transmission_error"):
         assert_same_lines(phased, clocked, sensor)
 

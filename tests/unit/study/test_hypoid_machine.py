@@ -183,7 +183,7 @@ def test_faults_of_hypoid_gears_are_those_of_the_pair() -> None:
         assert motion.cycles == 10
         return np.abs(motion.harmonics("meshes.axle.transmission_error")[1])
 
-    none = lines(kind="eccentricity", amplitude="0 um")
+    none = lines(kind="eccentricity", amplitude="1e-6 um")
     wave = lines(kind="waviness", order=3, amplitude="10 um")
     assert none[1:10].max() < 1e-10
     assert wave[3] == pytest.approx(10e-6, rel=5e-3)

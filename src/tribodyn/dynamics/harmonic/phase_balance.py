@@ -60,16 +60,23 @@ class Follower(NamedTuple):
     turns: tuple[tuple[int, ...], ...] = ()  #: cycles of the errors that turn with shafts
 
 
-def phase_cost(followers: Sequence[Follower], orders: Any = 0) -> tuple[int, float, float]:
-    """Unknowns, memory [byte] and time [s] of a motion, whose forces have these orders."""
-    (fine, others), frequencies = _points_of(followers, orders), len(followers[0].cycles)
+def phase_cost(
+    followers: Sequence[Follower], orders: Any = 0, mesh: int | None = None
+) -> tuple[int, float, float]:
+    """Unknowns, memory [byte] and time [s]; ``mesh`` are points of a mesh cycle, if stated."""
+    (fine, others), frequencies = _points_of(followers, orders, mesh), len(followers[0].cycles)
     unknowns = sum(
         each.contacts * int(np.prod(np.where(_axes(each.cycles, each.turns), fine, others)))
         for each in followers
     )
-    unknowns = max(unknowns, min(2 * unknowns, _MOST))
+    unknowns = max(unknowns, min(2 * unknowns, _MOST)) if mesh is None else unknowns
     memory = 2e8 + 1.4e8 * frequencies + 1.5e3 * unknowns
-    return unknowns, memory, 0.3 + 2e-4 * unknowns
+    return unknowns, memory, 0.3 + 2e-4 * unknowns if mesh is None else 0.1 + 6e-5 * unknowns
+
+
+def given_points(follower: Follower, orders: Any, mesh: int) -> tuple[int, ...]:
+    """Points over each phase of one mesh, with so many over its mesh cycle."""
+    return tuple(_points_of([follower], orders, mesh)[0].tolist())
 
 
 def _axes(cycles: Any, turns: Sequence[Any]) -> Mask:
@@ -277,7 +284,9 @@ def _first_points(search: _Search) -> Points:
     return tuple(tuple(shape) for shape in shapes.tolist())
 
 
-def _points_of(followers: Sequence[Follower], orders: Any) -> tuple[Index, Index]:
+def _points_of(
+    followers: Sequence[Follower], orders: Any, mesh: int | None = None
+) -> tuple[Index, Index]:
     """First points over each phase, of those that follow it and others; orders are of forces."""
     # A mesh whose teeth differ has all cycles of its period.
     cycles = np.abs([each.cycles for each in followers])
@@ -285,7 +294,9 @@ def _points_of(followers: Sequence[Follower], orders: Any) -> tuple[Index, Index
     turns = [np.abs(term) for each in followers for term in each.turns]
     shafts = np.max([np.ones(cycles.shape[1]), *turns], axis=0)
     meshes, driven = (cycles * periods).max(axis=0), _SHAFT * np.asarray(orders)
-    fine = np.maximum(np.where(meshes > 0, _MESH * meshes, _SHAFT * shafts), driven).astype(int)
+    fine = np.maximum(
+        np.where(meshes > 0, (mesh or _MESH) * meshes, _SHAFT * shafts), driven
+    ).astype(int)
     others = _OTHERS[min(len(fine), len(_OTHERS)) - 1]
     felt = np.maximum(others * np.where(cycles > 0, periods, 1).max(axis=0), driven)
     return fine, np.minimum(fine, felt).astype(int)

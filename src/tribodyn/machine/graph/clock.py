@@ -110,11 +110,14 @@ def phases_of(
     periods: Mapping[str, int],
     turning: Sequence[Fraction] = (),
     driven: Sequence[Fraction] = (),
+    *,
+    together: bool = False,
 ) -> Phases:
-    """Phases of meshes with these periods, of what turns with them, and of what drives them."""
+    """Phases of meshes, of what turns with them and of what drives them; or one together."""
     rates = {mesh: Fraction(cycles, periods[mesh]) for mesh, cycles in clock.cycles.items()}
     # Meshes follow a rotation that is ahead, but not what drives it: that has phases of its own.
-    locked, free = _groups([*rates.values(), *turning]), _groups([*driven])
+    all_rates = [*rates.values(), *turning]
+    locked, free = [all_rates] if together else _groups(all_rates), _groups([*driven])
     bases = [_common(group) for group in (*locked, *free)]
 
     def over(rate: Fraction, groups: list[list[Fraction]], first: int) -> tuple[int, ...]:

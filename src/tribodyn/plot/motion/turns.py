@@ -32,10 +32,16 @@ def _caption(motion: TurningMotion) -> str:
         f"{motion.cycles / teeth:g} turns of the {gear}"
         for gear, teeth in (("pinion", motion.pinion_teeth), ("wheel", motion.wheel_teeth))
     ]
+    begin = f"All repeats after {motion.cycles} mesh cycles: {' and '.join(turns)}. Above"
+    if motion.repeats_after > motion.cycles:
+        begin = (
+            f"All repeats after {motion.repeats_after} mesh cycles, of which {motion.cycles} are "
+            f"shown: {' and '.join(turns)}. Above"
+        )
     return (
-        f"All repeats after {motion.cycles} mesh cycles: {' and '.join(turns)}. Above, the static "
-        "transmission error under the mean load; in the middle, the mesh force; below, the order "
-        "spectrum of the transmission error with dotted lines at the mesh harmonics. What differs "
+        f"{begin}, the static transmission error under the mean load; in the middle, the mesh "
+        "force; below, the order spectrum of the transmission error with dotted lines at the mesh "
+        "harmonics. What differs "
         "from tooth to tooth makes the lines between them: sidebands at the distance of one order "
         "of the pinion, or of the wheel's turn."
     )
@@ -54,9 +60,7 @@ def turning_motion(motion: TurningMotion) -> Sketch:
     step = -(-turns.size // _POINTS)
     force, unit = displayed("mesh_force", motion.mesh_force), display_unit("mesh_force")
     error_unit = display_unit("static_transmission_error")
-    repeats = motion.cycles // motion.mesh.cycles  # a ripple may need more turns than the teeth
-    at_rest_error = np.tile(motion.mesh.transmission_error[:-1], repeats)
-    static = displayed("static_transmission_error", at_rest_error)
+    static = displayed("static_transmission_error", motion.at_rest)
     rest_turns = np.arange(static.size) * (motion.cycles / static.size / teeth)
     rest_step = -(-static.size // _POINTS)
     frequency, lines = motion.harmonics("transmission_error")

@@ -1,11 +1,12 @@
-"""Whether a case with faults moves over whole turns or over phases, and what its motion costs."""
+"""Whether a case with faults moves on one clock or over phases, and what its motion costs."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
-from dataclasses import replace
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass, replace
 from fractions import Fraction
+from functools import cached_property
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
@@ -13,23 +14,27 @@ import numpy as np
 from tribodyn.faults import Fault, ShaftExcitation, Waviness, clock_cycles, turns_of
 from tribodyn.faults.driven import repeats_after
 from tribodyn.faults.excitation import Shaft
+from tribodyn.machine.graph.clock import Clock, Phases, clock_of, phases_of
 from tribodyn.machine.mesh import Turn
 from tribodyn.nomenclature import GEARS
 from tribodyn.study.faults.machine_section import faults_of_mesh, shaft_excitation
 from tribodyn.study.faults.turning import refuse_long_period
 from tribodyn.study.machine.first_look import (
     PhaseCost,
+    cost_over_phases,
     has_clearance,
     over_phases,
+    periods_of_turns,
     phase_cost_of,
+    refuse_memory,
     repeats_late,
     warn_of_motion,
     warn_of_period,
 )
+from tribodyn.study.machine.motion import Unit, unit_of
 
 if TYPE_CHECKING:
     from tribodyn.machine import Machine
-    from tribodyn.machine.graph.clock import Phases
     from tribodyn.study.case.case import Case
     from tribodyn.study.machine.case import MachineCase
 
@@ -39,6 +44,12 @@ MOST_CYCLES = 6000
 #: are lines, slices of the face, or slices of helical teeth; finite elements of a cracked tooth in
 #: the plane and in space.
 _LEAST, _MOTION, _TEETH, _CRACK = 0.1, 6.5e-3, (5e-4, 0.04, 0.095), (3.5, 6.5)
+#: Mesh cycles of a period that is taken as one clock, with a line at each of its orders.
+_SHORT = 100
+#: Points of a mesh cycle of a motion over phases.
+MESH_POINTS = 128
+#: Memory that the motion of a pair may take [byte].
+_MEMORY = 4e9
 
 
 class TurningClock(NamedTuple):
@@ -54,6 +65,8 @@ class TurningClock(NamedTuple):
         Turns of both gears.
     cost : float [s]
         Processor time of the motion, once all is compiled, within a factor of two.
+    phases : PhaseCost, optional
+        What the motion over phases takes, where the period is so long that it is found over them.
     """
 
     cycles: int
@@ -61,14 +74,16 @@ class TurningClock(NamedTuple):
     turns_pinion: float
     turns_wheel: float
     cost: float
+    phases: PhaseCost | None = None
 
     def __str__(self) -> str:
         """One line."""
-        return (
+        text = (
             f"{self.cycles} mesh cycles, {self.turns_pinion:.6g} turns of the pinion and "
             f"{self.turns_wheel:.6g} of the wheel, {self.period:.4g} s; about "
             f"{self.cost:.1g} s of computation"
         )
+        return text if self.phases is None else f"{text}. {self.phases}"
 
 
 def varies_over_turns(case: Case) -> bool:
@@ -92,7 +107,9 @@ def turning_clock(case: Case) -> TurningClock:
     Raises
     ------
     InputError
-        If the gears are those of a table, or the period is too long to be computed.
+        If the gears are those of a table.
+    ComputationError
+        If the motion takes more memory than 4 GB.
 
     Examples
     --------
@@ -104,64 +121,204 @@ def turning_clock(case: Case) -> TurningClock:
     >>> clock.cycles, clock.turns_pinion
     (24, 1.5)
     """
-    from tribodyn.faults import Crack
-    from tribodyn.study.faults.section import excitations, gear_faults, require_teeth
+    return PairTurns.of(case).clock()
 
-    require_teeth(case)
-    pair = case.spur_pair
-    teeth = {name: abs(gear.teeth) for name, gear in case.gears.by_name.items()}
-    frequency = case.pinion_speed * teeth["pinion"] / (2.0 * math.pi)
-    faults = tuple(gear_faults(case).values())
-    of_teeth = (
-        turns_of(pair, faults)
-        if pair is not None
-        else math.lcm(*(teeth[fault.gear] for fault in faults))
-    )
-    excited = tuple(excitations(case).values())
-    cycles = clock_cycles(of_teeth, excited, teeth, frequency)
-    # Cycles that last as long as a random load do so to the last digit.
-    period = max((cycles / frequency, *(each._duration for each in excited)))
-    remedy = (
-        "Give faults of one gear, orders that repeat after fewer turns, or a random load of a "
-        f"shorter duration ({of_teeth} mesh cycles are those of the teeth)"
-    )
-    refuse_long_period(cycles, period, MOST_CYCLES, remedy)
-    cost = _LEAST + cycles * _MOTION
-    if pair is not None:
-        over_face = pair.has_lead_modification or any(fault._varies_over_face for fault in faults)
+
+@dataclass(frozen=True)
+class PairTurns:
+    """What turns with the gears of a pair, and what drives them."""
+
+    case: Case
+    teeth: dict[str, int]  #: of pinion and wheel
+    faults: tuple[Fault, ...]  #: of teeth that differ
+    waves: tuple[Turn, ...]  #: errors that all teeth share
+    excited: tuple[ShaftExcitation, ...]
+
+    @classmethod
+    def of(cls, case: Case) -> PairTurns:
+        """Divide the faults of a case."""
+        from tribodyn.study.faults.section import excitations, gear_faults, require_teeth
+
+        require_teeth(case)
+        teeth = {name: abs(gear.teeth) for name, gear in case.gears.by_name.items()}
+        waves, others = split_waves(gear_faults(case).values())
+        turns = tuple(turn_of(wave, teeth[wave.gear], wave.gear) for wave in waves)
+        return cls(case, teeth, tuple(others), turns, tuple(excitations(case).values()))
+
+    @cached_property
+    def vary(self) -> bool:
+        """Whether teeth differ or the drive is unsteady; a damaged bearing changes neither."""
+        pair = self.case.spur_pair
+        differ = pair is not None and pair.teeth_differ
+        return differ or bool(self.faults or self.waves or self.excited)
+
+    @cached_property
+    def period(self) -> int:
+        """Mesh cycles after which the teeth that differ repeat."""
+        pair = self.case.spur_pair
+        if pair is not None:
+            return turns_of(pair, self.faults)
+        return math.lcm(*(self.teeth[fault.gear] for fault in self.faults))
+
+    @cached_property
+    def of_pinion(self) -> Clock:
+        """Mesh cycles in turns of the pinion that are turns of the wheel as well."""
+        ratio = Fraction(self.teeth["pinion"], self.teeth["wheel"])
+        cycles, turns = Fraction(self.teeth["pinion"]), {"pinion": Fraction(1), "wheel": ratio}
+        clock = clock_of({"mesh": cycles}, turns, self.case.pinion_speed / (2.0 * math.pi))
+        return clock.with_whole_periods({"mesh": self.period})
+
+    @property
+    def rates(self) -> list[Fraction]:
+        """Cycles of the waves in a period of the clock."""
+        return [self.of_pinion.cycles["mesh"] * turn.waves for turn in self.waves]
+
+    @property
+    def driven_rates(self) -> list[Fraction]:
+        """Cycles of the excitations in a period of the clock."""
+        return [rate_of(self.of_pinion, each) for each in self.excited]
+
+    def speed(self, gear: str) -> float:
+        """Turns of a gear per second."""
+        return float(self.of_pinion.turns[gear]) * self.of_pinion.frequency
+
+    def phases(self, *, together: bool = False) -> Phases:
+        """Phases of the mesh, of what turns with it and what drives it; or one of all gears."""
+        periods, driven = {"mesh": self.period}, () if together else self.driven_rates
+        return phases_of(self.of_pinion, periods, self.rates, driven, together=together)
+
+    @property
+    def cycles_of_mesh(self) -> tuple[int, ...]:
+        """Mesh cycles over each phase."""
+        return tuple(self.period * cycles for cycles in self.phases().cycles["mesh"])
+
+    @cached_property
+    def cycles(self) -> int:
+        """Mesh cycles after which all repeats."""
+        of_teeth = self.phases(together=True).cycles["mesh"][0] * self.period
+        frequency = self.speed("pinion") * self.teeth["pinion"]
+        return clock_cycles(of_teeth, self.excited, self.teeth, frequency)
+
+    @property
+    def seconds(self) -> float:
+        """Time after which all repeats [s]."""
+        # Cycles that last as long as a random load do so to the last digit.
+        period = self.cycles / (self.speed("pinion") * self.teeth["pinion"])
+        return max((period, *(each._duration for each in self.excited)))
+
+    def clock(self) -> TurningClock:
+        """Period after which all repeats, and how the motion is found."""
+        pinion, wheel = (self.cycles / self.teeth[gear] for gear in GEARS)
+        cost, phases = _LEAST + self.cycles * _MOTION, None
+        if self.cycles > _SHORT and len(self.phases().frequency) > 1:
+            phases = self._phase_cost()
+            if self.cycles <= MOST_CYCLES and (cost <= phases.time or phases.memory > _MEMORY):
+                phases = None
+        if phases is None:
+            remedy = (
+                "Give faults of one gear, orders that repeat after fewer turns, or a random load "
+                f"of a shorter duration ({self.period} mesh cycles are those of the teeth)"
+            )
+            refuse_long_period(self.cycles, self.seconds, MOST_CYCLES, remedy)
+        else:
+            refuse_memory(phases, _MEMORY, "faults", "Give fewer faults, or a shorter random load")
+            cost = phases.time
+        cost += self._cost_of_teeth()
+        return TurningClock(self.cycles, self.seconds, pinion, wheel, cost, phases)
+
+    def _cost_of_teeth(self) -> float:
+        """Seconds of the contacts of teeth that differ."""
+        from tribodyn.faults import Crack
+
+        case, pair = self.case, self.case.spur_pair
+        if pair is None:
+            return 0.0
+        over_face = pair.has_lead_modification
+        over_face |= any(fault._varies_over_face for fault in self.faults)
         in_space = case.stiffness.model == "fe3d"
-        cost += of_teeth * _TEETH[2 if pair.helix_angle or in_space else 1 if over_face else 0]
-        cracks = sum(isinstance(fault, Crack) and fault.depth > 0.0 for fault in faults)
-        cost += cracks * _CRACK[in_space]
-    turns_pinion, turns_wheel = (cycles / teeth[gear] for gear in ("pinion", "wheel"))
-    return TurningClock(cycles, period, turns_pinion, turns_wheel, cost)
+        kind = 2 if pair.helix_angle or in_space else 1 if over_face else 0
+        cracks = sum(isinstance(each, Crack) and each.depth > 0.0 for each in self.faults)
+        return self.period * _TEETH[kind] + cracks * _CRACK[in_space]
+
+    def _phase_cost(self) -> PhaseCost:
+        """What a motion over phases takes."""
+        phases, (follower, highest) = self.phases(), self._followed
+        names = self._names(phases)
+        return cost_over_phases(phases, names, [follower], highest, MESH_POINTS)
+
+    @cached_property
+    def _followed(self) -> tuple[tuple[Any, ...], Any]:
+        """What the mesh follows, and the highest orders of what drives it."""
+        phases = self.phases()
+        turns = tuple(phases.turns[rate] for rate in self.rates)
+        follower = 1, phases.cycles["mesh"], self.period, turns
+        return follower, highest_orders(self.of_pinion, self.excited, phases)
+
+    def points(self, mesh: int) -> tuple[int, ...]:
+        """Points over each phase, with so many over a mesh cycle."""
+        from tribodyn.dynamics.harmonic.phase_balance import Follower, given_points
+
+        follower, highest = self._followed
+        return given_points(Follower(*follower), highest, mesh)
+
+    def units(self, *, together: bool = False) -> tuple[Unit, ...]:
+        """Gear that turns with each phase."""
+        phases, clock = self.phases(together=together), self.of_pinion
+        units = []
+        for axis, frequency in enumerate(phases.frequency):
+            rates = {gear: float(clock.turns[gear]) for gear in GEARS}
+            alone = phases.cycles["mesh"][axis] and self.period == 1 and not together
+            unit = unit_of({} if alone else rates, frequency / clock.frequency)
+            random = any(
+                not each._turns and phases.driven[rate_of(clock, each)][axis]
+                for each in (() if together else self.excited)
+            )
+            units.append(Unit("random load", Fraction(1)) if random else unit)
+        return tuple(units)
+
+    def _names(self, phases: Phases) -> list[str]:
+        """What turns with each phase."""
+        names = []
+        for unit, cycles in zip(self.units(), phases.cycles["mesh"], strict=True):
+            names.append(f"mesh over {unit.part}" if cycles and unit.name else unit.part or "mesh")
+        return names
 
 
 class FaultyTeeth(NamedTuple):
-    """Faults of a mesh: waves that all teeth share, and what differs from tooth to tooth."""
+    """Faults of a mesh: what differs from tooth to tooth, and waves that turn with the gears."""
 
-    waves: list[Waviness]
     others: list[Fault]
-    turns: list[Turn]  #: the waves as errors that turn with the gears
+    turns: list[Turn]
 
     @classmethod
-    def of(cls, case: MachineCase, machine: Machine, mesh: str, *, phases: bool) -> FaultyTeeth:
-        """Faults of a mesh; over one clock all of them are of teeth."""
-        faults = faults_of_mesh(case, machine, mesh)
-        shared = (each for each in faults if isinstance(each, Waviness) and not each.lead_angle)
-        waves = [*shared] if phases else []
+    def of(cls, case: MachineCase, machine: Machine, mesh: str) -> FaultyTeeth:
+        """Faults of a mesh."""
+        waves, others = split_waves(faults_of_mesh(case, machine, mesh))
         teeth = teeth_of(case, machine, mesh)
         names = dict(zip(GEARS, case._pinion_and_wheel(mesh), strict=True))
         turns = [
-            Turn(_shape(each), Fraction(each.order, teeth[each.gear]), names[each.gear])
-            for each in waves
+            turn_of(wave, teeth[wave.gear], names[wave.gear]) for wave in waves if wave.amplitude
         ]
-        return cls(waves, [each for each in faults if each not in waves], turns)
+        return cls(others, turns)
 
 
-def _shape(wave: Waviness) -> Any:
-    """Error of a wave over its phase."""
-    return lambda phase: wave._gap_after(phase / wave.order)
+def split_waves(faults: Iterable[Fault]) -> tuple[list[Waviness], list[Fault]]:
+    """Waves that all teeth share, and the other faults."""
+    waves: list[Waviness] = []
+    others: list[Fault] = []
+    for each in faults:
+        if isinstance(each, Waviness) and not each.lead_angle:
+            waves.append(each)
+        else:
+            others.append(each)
+    return waves, others
+
+
+def turn_of(wave: Waviness, teeth: int, gear: str) -> Turn:
+    """A wave as an error that turns with its gear."""
+    return Turn(
+        lambda phase: wave._gap_after(phase / wave.order), Fraction(wave.order, teeth), gear
+    )
 
 
 def teeth_of(case: MachineCase, machine: Machine, mesh: str) -> dict[str, int]:
@@ -170,11 +327,11 @@ def teeth_of(case: MachineCase, machine: Machine, mesh: str) -> dict[str, int]:
     return {role: abs(machine.gears[gear].teeth) for role, gear in names.items()}
 
 
-def _with_turns(case: MachineCase, machine: Machine, *, phases: bool) -> Machine:
+def _with_turns(case: MachineCase, machine: Machine) -> Machine:
     """The machine with the periods of its faulty meshes, whose teeth are not computed."""
     meshes = {}
     for name, mesh in machine.meshes.items():
-        faulty, teeth = FaultyTeeth.of(case, machine, name, phases=phases), None
+        faulty, teeth = FaultyTeeth.of(case, machine, name), None
         if name in case.meshes_with_teeth:
             teeth = case.pair(name, case.operating_point).spur_pair
         differ = [teeth_of(case, machine, name)[each.gear] for each in faulty.others]
@@ -188,22 +345,32 @@ def excitations_of(case: MachineCase) -> list[ShaftExcitation]:
     return [shaft_excitation(fault) for fault in case.faults.values() if fault.shaft]
 
 
-def repeats_of(machine: Machine, each: ShaftExcitation) -> tuple[Fraction, float]:
+def repeats_of(clock: Clock, each: ShaftExcitation) -> tuple[Fraction, float]:
     """Turns of its shaft, and time, after which an excitation repeats [s]."""
-    return repeats_after(each, float(machine.clock.turns[each.gear]) * machine.clock.frequency)
+    return repeats_after(each, float(clock.turns[each.gear]) * clock.frequency)
 
 
-def rate_of(machine: Machine, each: ShaftExcitation) -> Fraction:
+def rate_of(clock: Clock, each: ShaftExcitation) -> Fraction:
     """Rate at which an excitation repeats: times in a period of the clock."""
-    turns, period = repeats_of(machine, each)
+    turns, period = repeats_of(clock, each)
     if each._turns:
-        return machine.clock.turns[each.gear] / turns
-    return Fraction(1.0 / (period * machine.clock.frequency))
+        return clock.turns[each.gear] / turns
+    return Fraction(1.0 / (period * clock.frequency))
+
+
+def highest_orders(clock: Clock, excited: Sequence[ShaftExcitation], phases: Phases) -> Any:
+    """Highest order of the excitations over each phase."""
+    orders = [
+        (len(each._torque(Shaft(*repeats_of(clock, each), 0.0))) - 1)
+        * np.abs(phases.driven[rate_of(clock, each)])
+        for each in excited
+    ]
+    return np.max(orders, axis=0) if orders else 0
 
 
 def phases_with_faults(machine: Machine, excited: Sequence[ShaftExcitation]) -> Phases:
     """Phases of the meshes of a machine, of what turns with its gears, and of its excitations."""
-    return machine.phases_with([rate_of(machine, each) for each in excited])
+    return machine.phases_with([rate_of(machine.clock, each) for each in excited])
 
 
 def faults_over_phases(case: MachineCase, machine: Machine) -> bool:
@@ -212,30 +379,25 @@ def faults_over_phases(case: MachineCase, machine: Machine) -> bool:
         return False
     if over_phases(case.solver, machine):
         return True
-    excited = excitations_of(case)
-    turned = _with_turns(case, machine, phases=True)
+    excited, turned = excitations_of(case), _with_turns(case, machine)
     several = len(phases_with_faults(turned, excited).frequency) > 1
     if not several or case.solver.phases == "on":
         return several
-    clocked = _with_turns(case, machine, phases=False)
-    fastest, clock = max(clocked.clock.cycles.values()), clocked.clock
-    teeth = {shaft: Fraction(fastest) / turns for shaft, turns in clock.turns.items() if turns}
-    return repeats_late(clock_cycles(fastest, excited, teeth, fastest * clock.frequency))
+    longer, clock = periods_of_turns(turned), turned.clock
+    fastest = longer * max(clock.cycles.values())
+    teeth = {n: Fraction(fastest) / (longer * turns) for n, turns in clock.turns.items() if turns}
+    frequency = max(clock.cycles.values()) * clock.frequency
+    return repeats_late(clock_cycles(fastest, excited, teeth, frequency))
 
 
 def fault_cost(case: MachineCase, machine: Machine) -> PhaseCost | None:
     """Cost of the motion with faults over phases; None over whole turns. Refuse too much."""
+    turned, excited = _with_turns(case, machine), excitations_of(case)
     if not faults_over_phases(case, machine):
-        warn_of_period(_with_turns(case, machine, phases=False), case.solver.memory)
+        warn_of_period(turned, case.solver.memory)
         return None
-    turned, excited = _with_turns(case, machine, phases=True), excitations_of(case)
     phases = phases_with_faults(turned, excited)
-    orders = [
-        (len(each._torque(Shaft(*repeats_of(turned, each), 0.0))) - 1)
-        * np.abs(phases.driven[rate_of(turned, each)])
-        for each in excited
-    ]
-    highest = np.max(orders, axis=0) if orders else 0
+    highest = highest_orders(turned.clock, excited, phases)
     shafts = [each.gear for each in excited]
     return phase_cost_of(case.solver, turned, (phases, shafts), highest)
 

@@ -2,15 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
-from fractions import Fraction
-from typing import TYPE_CHECKING, Any
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
 
 import numpy as np
 
-from tribodyn.faults import DrivenSystem, drive
 from tribodyn.faults.driven import drive_over_phases
-from tribodyn.study.faults.machine_section import shaft_excitation
 from tribodyn.types import Array
 
 if TYPE_CHECKING:
@@ -68,44 +65,22 @@ def drive_machine_over_phases(
     """A machine with excitations of its shafts, each with its cycles over the phases."""
     if not excited:
         return system, None
-    torques, clock = shaft_torques(structure), structure.machine.clock
-    speeds = {shaft: float(clock.turns[shaft]) * clock.frequency for shaft in torques}
-    rotation = free_rotation(
-        system, list(torques.values()), [2.0 * np.pi * speeds[shaft] for shaft in torques]
-    )
-    driven = [(each, cycles, speeds[each.gear], torques[each.gear]) for each, cycles in excited]
+    torques, rotation = driven_rotation(structure, system, [each for each, _ in excited])
+    clock = structure.machine.clock
+    driven = [
+        (each, cycles, float(clock.turns[each.gear]) * clock.frequency, torques[each.gear])
+        for each, cycles in excited
+    ]
     return drive_over_phases(system, driven, rotation)
 
 
-def drive_machine(
-    structure: MachineStructure, system: System, faults: Mapping[str, Any]
-) -> DrivenSystem:
-    """A machine with the excitation of its shafts."""
-    clock, torques = structure.machine.clock, shaft_torques(structure)
-    cycles = max(clock.cycles.values())
-    return _drive(
-        system, cycles, faults, mesh_frequency=cycles * clock.frequency,
-        turns=clock.turns, torques=torques,
-    )  # fmt: skip
-
-
-def _drive(
-    system: System,
-    cycles: int,
-    faults: Mapping[str, Any],
-    *,
-    mesh_frequency: float,
-    turns: Mapping[str, Fraction],
-    torques: Mapping[str, Array],
-) -> DrivenSystem:
-    """Drive shafts, whose turns in the cycles are by name, by torques in their running sense."""
-    excitations = [shaft_excitation(fault) for fault in faults.values() if fault.shaft]
+def driven_rotation(
+    structure: MachineStructure, system: System, excited: Sequence[ShaftExcitation]
+) -> tuple[dict[str, Array], Array]:
+    """Forces per torque on each shaft, and the speed of the coordinates if shafts are driven."""
+    torques, clock = shaft_torques(structure), structure.machine.clock
+    speeds = [2.0 * np.pi * float(clock.turns[shaft]) * clock.frequency for shaft in torques]
     rotation = np.zeros(system.size)
-    if excitations:
-        turned = [2.0 * np.pi * float(turns[shaft]) / cycles for shaft in torques]
-        rotation = free_rotation(system, list(torques.values()), turned)
-    teeth = {shaft: Fraction(cycles) / turn for shaft, turn in turns.items() if turn}
-    return drive(
-        system, cycles, excitations, mesh_frequency=mesh_frequency, teeth=teeth,
-        coordinates=torques, rotation=rotation,
-    )  # fmt: skip
+    if excited:
+        rotation = free_rotation(system, list(torques.values()), speeds)
+    return torques, rotation

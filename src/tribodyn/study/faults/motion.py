@@ -1,24 +1,28 @@
-"""Motion of a case with faults over whole turns of its gears."""
+"""Motion of a pair with faults: on one clock where all repeats soon, or over phases."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import replace
-from typing import TYPE_CHECKING, NamedTuple
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property
+from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple
 
 import numpy as np
 
 from tribodyn.faults import BearingDefect
 from tribodyn.nomenclature import GEARS
 from tribodyn.progress import SILENT, Progress
-from tribodyn.record import Record, fact, quantity, record
-from tribodyn.study.faults.clock import turning_clock
+from tribodyn.record import Labels, Record
+from tribodyn.study.faults.clock import MESH_POINTS, PairTurns
 from tribodyn.study.faults.sensors import PairSensors, SensorPlace
 from tribodyn.study.faults.turning import (
     SAMPLES,
     Accuracy,
     PeriodicMotion,
-    even_samples,
+    SensedLines,
+    joined,
+    lead_on_clock,
+    lines_over_phase,
     steady_over_turns,
 )
 from tribodyn.types import Array
@@ -26,42 +30,137 @@ from tribodyn.types import Array
 if TYPE_CHECKING:
     from tribodyn.dynamics import Contact, LoadFriction, Response, System
     from tribodyn.faults import BearingImpacts, DrivenSystem, Fault, TurningMesh
+    from tribodyn.faults.driven import Lead
+    from tribodyn.machine.graph.clock import Phases
+    from tribodyn.machine.mesh import Turn
     from tribodyn.mesh import MeshFriction, MeshTable
     from tribodyn.study.case.case import Case
     from tribodyn.study.pipeline.assembly import Damping
     from tribodyn.study.pipeline.result import Result
     from tribodyn.study.pipeline.run import PreparedRun
 
-#: Mesh order up to which the acceleration is that of the positions; from half of it on in part.
-_SMOOTH = 64
 _ACCURACY = Accuracy((128, 256, 512), 1e-6)
+#: Most mesh cycles of the piece of a motion over phases that is exported.
+_PIECE = 512
 
 
-@record
+@dataclass(frozen=True, eq=False, repr=False)
 class TurningMotion(PeriodicMotion, Record):
-    """Motion over whole turns of a period, on evenly spaced samples from tooth 1 on."""
+    """Motion with faults: its lines, and even samples of its period or of a piece of it."""
 
-    time: Array = quantity("time", unit="s", axis=True)
-    position: Array = quantity("time", "coordinate", unit="m or rad")
-    velocity: Array = quantity("time", "coordinate", unit="m/s or rad/s")
-    acceleration: Array = quantity("time", "coordinate", unit="m/s^2 or rad/s^2")
-    mesh_force: Array = quantity("time", unit="N")
-    transmission_error: Array = quantity("time", unit="m")
-    names: tuple[str, ...] = quantity("coordinate", axis=True, name="coordinate")
-    mesh: TurningMesh  #: over the same turns
-    mesh_frequency: float = fact()  #: mesh cycles per second [Hz]
-    cycles: int = fact()  #: mesh cycles of the period
-    pinion_teeth: int = fact()
-    wheel_teeth: int = fact()
-    response: Response  #: on the steps of the search, without the fluctuation of the mean rotation
-    #: Mesh cycles by which the rotation of the drive is ahead of its mean.
-    lead: Array = quantity("time", unit="1")
+    DERIVED: ClassVar = {
+        "names": Labels(("coordinate",), axis=True, name="coordinate"),
+        "time": Labels(("time",), "s", axis=True),
+        "position": Labels(("time", "coordinate"), "m or rad"),
+        "velocity": Labels(("time", "coordinate"), "m/s or rad/s"),
+        "acceleration": Labels(("time", "coordinate"), "m/s^2 or rad/s^2"),
+        "mesh_force": Labels(("time",), "N"),
+        "transmission_error": Labels(("time",), "m"),
+        "ahead_cycles": Labels(("time",), "1", name="lead"),
+        "mesh_frequency": Labels(()),
+        "cycles": Labels(()),
+        "pinion_teeth": Labels(()),
+        "wheel_teeth": Labels(()),
+    }
+    case: Case
+    table: MeshTable
+    repeats_after: int  #: mesh cycles
+    teeth: TurningMesh  #: of the teeth that differ, without the errors that turn with the gears
+    waves: tuple[Turn, ...]  #: errors that turn with the gears
+    errors: _Errors
+    speed: Array  #: of the coordinates as the drive turns [rad/s]
 
-    def series(self, place: SensorPlace) -> Array:
-        """Acceleration of a coordinate, mesh force or transmission error."""
+    @property
+    def names(self) -> tuple[str, ...]:
+        """Names of the coordinates."""
+        return self.response.names
+
+    @property
+    def pinion_teeth(self) -> int:
+        """Teeth of the pinion."""
+        return abs(self.case.gears.by_name[GEARS[0]].teeth)
+
+    @property
+    def wheel_teeth(self) -> int:
+        """Teeth of the wheel."""
+        return abs(self.case.gears.by_name[GEARS[1]].teeth)
+
+    @cached_property
+    def mesh(self) -> TurningMesh:
+        """Mesh with all faults over the turns of the gears that have them."""
+        return turning_mesh_of(self.case, self.table)
+
+    @cached_property
+    def at_rest(self) -> Array:
+        """Static transmission error under the mean load on even samples of the motion [m]."""
+        error = self.teeth.transmission_error[:-1]
+        count = self.cycles * (error.size // self.teeth.cycles)
+        cycle = np.arange(count) * (self.cycles / count)
+        waves = (turn.error(np.asarray(cycle * float(turn.waves) % 1.0)) for turn in self.waves)
+        return np.asarray(sum(waves, np.resize(error, count)))
+
+    @cached_property
+    def time(self) -> Array:
+        """Times of the samples [s]."""
+        count = SAMPLES * self.cycles
+        return np.asarray(np.arange(count) * (self.period / count))
+
+    @cached_property
+    def position(self) -> Array:
+        """Positions on the samples (s, n) [m or rad]."""
+        return self._columns(0)
+
+    @cached_property
+    def velocity(self) -> Array:
+        """Velocities on the samples (s, n) [m/s or rad/s]."""
+        return self._columns(1)
+
+    @cached_property
+    def acceleration(self) -> Array:
+        """Accelerations on the samples (s, n) [m/s^2 or rad/s^2]."""
+        return self._columns(2)
+
+    @cached_property
+    def mesh_force(self) -> Array:
+        """Mesh force on the samples [N]."""
+        return self.signal("mesh_force")[0]
+
+    @cached_property
+    def transmission_error(self) -> Array:
+        """Transmission error on the samples [m]."""
+        return self.signal("transmission_error")[0]
+
+    @cached_property
+    def ahead_cycles(self) -> Array:
+        """Mesh cycles by which the rotation is ahead of its mean on the samples."""
+        return self.lead_at(self.time)
+
+    def _columns(self, derivative: int) -> Array:
+        columns = [self._coordinate(number, derivative) for number in range(len(self.names))]
+        return np.stack([self.sampled(column) for column in columns], axis=1)
+
+    def _coordinate(self, number: int, derivative: int) -> SensedLines:
+        """Lines of a coordinate or of its derivative, with the rotation that is ahead."""
+        frequency, amplitude, numbers = self._lines("position")
+        lines = SensedLines(frequency, amplitude[:, number], numbers)
+        if self.ahead is not None and self.speed[number]:
+            lines = joined(lines, self._lead_lines(float(self.speed[number])))
+        rate = (2j * np.pi * lines.frequency) ** derivative
+        return SensedLines(lines.frequency, lines.amplitude * rate, lines.numbers)
+
+    def _linear(self, place: SensorPlace) -> SensedLines:
         if place.quantity == "acceleration":
-            return np.asarray(self.acceleration[:, self.names.index(place.part)])
-        return super().series(place)
+            return self._coordinate(self.names.index(place.part), 2)
+        if place.quantity == "mesh_force":
+            frequency, amplitude, numbers = self._lines("contact_force")
+            return SensedLines(frequency, amplitude.sum(axis=1), numbers)
+        offset, direction, terms = self.errors
+        quantity = "deflection" if direction is None else "position"
+        frequency, amplitude, numbers = self._lines(quantity)
+        values = amplitude[:, 0].copy() if direction is None else amplitude @ direction
+        values[0] -= offset
+        errors = (lines_over_phase(*term, self.frequencies) for term in terms)
+        return joined(SensedLines(frequency, values, numbers), *errors)
 
     def impacts(
         self, sensor: str, defect: tuple[str, BearingImpacts], time: Array, seed: int
@@ -81,6 +180,15 @@ class TurningMotion(PeriodicMotion, Record):
             f"TurningMotion({self.cycles} mesh cycles at {self.mesh_frequency:.6g} Hz, mesh force "
             f"{force.min():.5g} to {force.max():.5g} N)"
         )
+
+
+class _Errors(NamedTuple):
+    """How the transmission error follows from positions and compressions."""
+
+    offset: float  #: where perfect rigid driving flanks touch [m]
+    direction: Array | None  #: of the mesh, if it is constant (n,)
+    #: Otherwise errors of the mesh with their periods over each phase, and mesh cycles in these.
+    terms: tuple[tuple[Callable[[Array], Array], Any, int], ...] = ()
 
 
 def turning_mesh_of(
@@ -138,125 +246,147 @@ def contacts_over_turns(
     return tuple(replace(contact, friction=None) for contact in over_turns), rubbing
 
 
+def _over(turns: PairTurns, system: System, mesh: TurningMesh, phases: Phases) -> System:
+    """A system of teeth that differ over phases of all that turns, or one of all."""
+    first, *others = (
+        replace(contact, cycles=phases.cycles["mesh"], period=mesh.cycles)
+        for contact in system.contacts
+    )
+    turned = replace(
+        first,
+        turning_error=[turn.error for turn in turns.waves],
+        turning_cycles=[phases.turns[rate] for rate in turns.rates],
+    )
+    return replace(system, contacts=[turned, *others])
+
+
 def driven_system(
-    case: Case, table: MeshTable, damping: Damping, mesh: TurningMesh
+    case: Case, table: MeshTable, damping: Damping, turns: PairTurns, mesh: TurningMesh
 ) -> DrivenSystem:
-    """The system with the mesh over whole turns and the excitation of its shafts."""
+    """The system on the clock of all that repeats, with the excitation of its shafts."""
     from tribodyn.faults import drive
-    from tribodyn.study.faults.section import excitations
     from tribodyn.study.pipeline.assembly import rotation_of, shaft_coordinates
 
-    system = turning_system_of(case, table, damping, mesh)
+    plain = turning_system_of(case, table, damping, mesh)
+    system = _over(turns, plain, mesh, turns.phases(together=True))
     return drive(
         system,
-        mesh.cycles,
-        tuple(excitations(case).values()),
+        system.cycles,
+        turns.excited,
         mesh_frequency=table.mesh_frequency,
-        teeth={name: abs(gear.teeth) for name, gear in case.gears.by_name.items()},
+        teeth=turns.teeth,
         coordinates=shaft_coordinates(case, system),
         rotation=rotation_of(case, system.names),
     )
 
 
+class _Found(NamedTuple):
+    """A steady motion, and what it is a motion of."""
+
+    response: Response
+    ahead: Lead | None
+    speed: Array
+    errors: _Errors
+    cycles: int = 0  #: of a motion that repeats with the mesh, or after more cycles of it
+
+
 def turning_motion(result: Result | PreparedRun, progress: Progress = SILENT) -> TurningMotion:
-    """Compute the steady motion over whole turns; with equal teeth it is that of the result."""
+    """Compute the steady motion with faults; with equal teeth it is that of the result."""
     from tribodyn.study.case.to_models import locate_errors
-    from tribodyn.study.pipeline.response_series import is_steady
 
-    case = result.case
+    case, table = result.case, result.mesh
     with locate_errors(case):
-        clock = turning_clock(case)
+        turns = PairTurns.of(case)
+        clock = turns.clock()
         progress.start(f"Teeth over whole turns: {clock}")
-        mesh = turning_mesh_of(case, result.mesh)
-        if not _varies(case):
-            sound = result if isinstance(result, Record) else result.result(progress)
-            if is_steady(sound.response):
-                return _motion(case, mesh, sound.response, _of_run(sound), result.mesh)
-        driven = driven_system(case, result.mesh, result.damping, mesh)
-        frequency = result.mesh.mesh_frequency / driven.cycles
-        response = steady_over_turns(driven, frequency, _ACCURACY, progress=progress)
-    fine = response.fine
-    error = fine.deflection[:, 0] - 0.5 * case.backlash
-    return _motion(
-        case, mesh, response, _Period(fine.phase, driven.cycles, error, driven), result.mesh
-    )
-
-
-def _varies(case: Case) -> bool:
-    """Whether teeth differ or the drive is unsteady; a damaged bearing changes neither."""
-    from tribodyn.study.faults.section import excitations, gear_faults
-
-    pair = case.spur_pair
-    differ = pair is not None and pair.teeth_differ
-    return differ or bool(gear_faults(case)) or bool(excitations(case))
-
-
-class _Period(NamedTuple):
-    """Period of a motion, and what differs between that of a run and that of a driven system."""
-
-    clock: Array  #: of the samples, in periods
-    cycles: int  #: mesh cycles
-    error: Array  #: transmission error of the samples [m]
-    driven: DrivenSystem | None = None
-
-
-def _of_run(sound: Result) -> _Period:
-    from tribodyn.study.pipeline.response_series import transmission_error
-
-    phase, cycles = sound.response.fine.phase, sound.response.periods
-    error = transmission_error(sound, sound.response.fine)
-    return _Period((phase - phase[0]) / cycles, cycles, error)
-
-
-def _accelerations(position: Array, sampled: Array, cycles: int, period: float) -> Array:
-    """Accelerations without what jumps of the friction alias into the low orders."""
-    lines = np.fft.rfft(sampled, axis=0)
-    number = np.arange(len(lines))
-    rates = 2.0 * np.pi * number / period
-    smooth = -np.fft.rfft(position, axis=0) * rates[:, None] ** 2
-    # Positions are exact at low orders, samples of the acceleration hold the highest.
-    share = np.clip(2.0 * number / (_SMOOTH * cycles) - 1.0, 0.0, 1.0)[:, None]
-    blended = smooth + 0.5 * (1.0 - np.cos(np.pi * share)) * (lines - smooth)
-    return np.asarray(np.fft.irfft(blended, len(sampled), axis=0))
-
-
-def _motion(
-    case: Case, mesh: TurningMesh, response: Response, of: _Period, table: MeshTable
-) -> TurningMotion:
-    """Motion on evenly spaced samples, with the rotation by which an unsteady drive is ahead."""
-    from tribodyn.study.pipeline.response_series import mesh_force
-
-    fine, cycles, driven, mesh_frequency = response.fine, of.cycles, of.driven, table.mesh_frequency
-    count, period = SAMPLES * cycles, cycles / mesh_frequency
-    at, even = np.arange(count) / count, even_samples(of.clock, count)
-    ahead = driven is not None and driven.lead.lines.any()
-
-    def over(values: Array, turned: int) -> Array:
-        """Values on the samples of the period, with a derivative of the fluctuating rotation."""
-        samples = even(values)
-        if driven is not None and ahead:
-            lead = driven.lead.derivative(turned)(at) / period**turned
-            samples = samples + lead[:, None] * driven.rotation
-        return np.asarray(samples)
-
-    position = over(fine.position, 0)
-    teeth = {name: abs(gear.teeth) for name, gear in case.gears.by_name.items()}
+        mesh = turning_mesh_of(case, table, turns.faults)
+        find = _on_clock if clock.phases is None else _over_phases
+        steady = _of_run(result, turns, progress) or find(result, turns, mesh, progress)
+    cycles, teeth = steady.cycles or clock.cycles, turns.teeth
+    if clock.phases is not None and cycles > _PIECE:
+        slow = max(teeth.values())
+        cycles = max(_PIECE // slow, 1) * slow
+    over = () if clock.phases is None else turns.cycles_of_mesh
     return TurningMotion(
-        time=at * period,
-        position=position,
-        velocity=over(fine.velocity, 1),
-        acceleration=_accelerations(position, over(fine.acceleration, 2), cycles, period),
-        mesh_force=even(mesh_force(fine)),
-        transmission_error=even(of.error),
-        lead=driven.lead(at) if driven is not None else np.zeros(count),
-        names=response.names,
-        mesh=mesh,
-        mesh_frequency=mesh_frequency,
         cycles=cycles,
-        places=PairSensors(response.names),
+        mesh_frequency=table.mesh_frequency,
+        places=PairSensors(steady.response.names),
         turns={gear: cycles / number for gear, number in teeth.items()},
         tacho=GEARS[0],
-        pinion_teeth=teeth[GEARS[0]],
-        wheel_teeth=teeth[GEARS[1]],
-        response=response,
+        response=steady.response,
+        ahead=steady.ahead,
+        meshes={"mesh": over if over else (cycles,)},
+        units=turns.units(together=not over),
+        case=case,
+        table=table,
+        repeats_after=clock.cycles,
+        teeth=mesh,
+        waves=turns.waves,
+        errors=steady.errors,
+        speed=steady.speed,
     )
+
+
+def _of_run(result: Result | PreparedRun, turns: PairTurns, progress: Progress) -> _Found | None:
+    """Motion of a run, if its teeth are alike and its drive is steady."""
+    from tribodyn.study.pipeline.response_series import film_offset, is_steady
+
+    if turns.vary:
+        return None
+    sound = result if isinstance(result, Record) else result.result(progress)
+    if not is_steady(sound.response):
+        return None
+    response = sound.response
+    offset = sound.half_backlash + film_offset(sound)
+    still = np.zeros(len(response.names))
+    errors = _Errors(offset, None, ((sound.static_error, response.periods, 1),))
+    return _Found(response, None, still, errors, response.periods)
+
+
+def _on_clock(
+    result: Result | PreparedRun, turns: PairTurns, mesh: TurningMesh, progress: Progress
+) -> _Found:
+    """Motion on the clock of all that repeats."""
+    frequency = result.mesh.mesh_frequency
+    driven = driven_system(result.case, result.mesh, result.damping, turns, mesh)
+    response = steady_over_turns(driven, frequency / driven.cycles, _ACCURACY, progress=progress)
+    contact = driven.system.clocked_contacts[0]
+    errors = _errors_of(result.case, contact, [(contact.error, (1,), driven.cycles)])
+    ahead = lead_on_clock(driven, frequency)
+    return _Found(response, ahead, driven.rotation * frequency, errors)
+
+
+def _over_phases(
+    result: Result | PreparedRun, turns: PairTurns, mesh: TurningMesh, progress: Progress
+) -> _Found:
+    """Motion over phases of the mesh and of what turns and drives it."""
+    from tribodyn.dynamics import harmonic_balance
+    from tribodyn.faults.driven import drive_over_phases
+    from tribodyn.study.pipeline.assembly import rotation_of, shaft_coordinates
+
+    case, table, phases = result.case, result.mesh, turns.phases()
+    system = _over(turns, turning_system_of(case, table, result.damping, mesh), mesh, phases)
+    rotation = rotation_of(case, system.names)
+    speed = np.zeros(system.size) if rotation is None else rotation * table.mesh_frequency
+    rows, at = np.eye(system.size), shaft_coordinates(case, system)
+    lead = None
+    if turns.excited:
+        driven = [
+            (each, phases.driven[rate], turns.speed(each.gear), rows[at[each.gear]])
+            for each, rate in zip(turns.excited, turns.driven_rates, strict=True)
+        ]
+        system, lead = drive_over_phases(system, driven, speed)
+    steps = turns.points(MESH_POINTS)
+    response = harmonic_balance(system, phases.frequency, steps=steps, progress=progress)
+    contact = system.contacts[0]
+    terms = [(contact.error, phases.cycles["mesh"], mesh.cycles)]
+    terms += [(term.error, term.cycles, 1) for term in contact.turning]
+    return _Found(response, lead, speed, _errors_of(case, contact, terms))
+
+
+def _errors_of(case: Case, contact: Contact, terms: list[tuple[Any, Any, int]]) -> _Errors:
+    """Transmission error of a contact with these errors."""
+    if not callable(contact.direction):
+        return _Errors(0.5 * case.backlash, np.asarray(contact.direction))
+    varying = tuple(term for term in terms if callable(term[0]))
+    return _Errors(0.5 * case.backlash, None, varying)

@@ -1,8 +1,9 @@
-"""Motion over whole turns of any case: its steady search, and what sensors receive of it."""
+"""Motion with faults of any case: its lines, its search on one clock, and what sensors receive."""
 
 from __future__ import annotations
 
 import math
+from abc import ABC, abstractmethod
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property
@@ -12,18 +13,26 @@ import numpy as np
 
 from tribodyn.errors import InputError, collected, warn
 from tribodyn.progress import SILENT, Progress
+from tribodyn.signals.lines import sum_of_lines
 from tribodyn.study.faults.sensors import check_tacho
-from tribodyn.types import Array, ComplexArray
+from tribodyn.study.machine.motion import MotionLine, Unit, line_cause
+from tribodyn.types import Array, ComplexArray, Index
 
 if TYPE_CHECKING:
     from tribodyn.dynamics import Response
     from tribodyn.faults import BearingImpacts, DrivenSystem
+    from tribodyn.faults.driven import Lead
     from tribodyn.study.faults.sensors import SensorPlace, Sensors
 
 #: Even samples of a mesh cycle.
 SAMPLES = 512
 #: Change of the motion with half the steps, over its size, that is small enough.
 _ACCURATE = 2e-3
+#: Mesh order up to which positions are those of the samples; from half of it on in part.
+_SMOOTH = 64
+#: Part of the strongest line below which lines are left out, and points of an entry of a contact
+#: over a mesh cycle.
+_LEAST, _POINTS = 1e-10, 512
 
 
 class Accuracy(NamedTuple):
@@ -33,21 +42,120 @@ class Accuracy(NamedTuple):
     certified: float  #: error that suffices beside a small change with half the steps
 
 
+class SensedLines:
+    """Lines of a sensor: frequency [Hz], amplitude of cosines, and cycles of each phase."""
+
+    def __init__(self, frequency: Array, amplitude: ComplexArray, numbers: Index) -> None:
+        # All orders of one clock; of several phases there are many that are rounding.
+        least = _LEAST * np.abs(amplitude).max(initial=0.0) if numbers.shape[1] > 1 else -1.0
+        strong = np.abs(amplitude) > least
+        strong[:1] = True
+        order = np.flatnonzero(strong)[np.argsort(frequency[strong], kind="stable")]
+        self.frequency, self.amplitude = frequency[order], amplitude[order]
+        self.numbers = numbers[order]
+
+
+def joined(*parts: SensedLines) -> SensedLines:
+    """Sum of lines, each number once, the mean first."""
+    numbers, first, place = np.unique(
+        np.concatenate([part.numbers for part in parts]), axis=0, return_index=True,
+        return_inverse=True,
+    )  # fmt: skip
+    amplitude = np.zeros(len(numbers), dtype=complex)
+    np.add.at(amplitude, place.reshape(-1), np.concatenate([part.amplitude for part in parts]))
+    frequency = np.concatenate([part.frequency for part in parts])[first]
+    still = ~numbers.any(axis=1)
+    amplitude[still] = amplitude[still].real
+    return SensedLines(frequency, amplitude, numbers)
+
+
+def lines_over_phase(
+    function: Callable[[Array], Any], cycles: Any, of_mesh: int, frequencies: Array
+) -> SensedLines:
+    """Lines of a function of mesh cycles that has so many periods over each of the phases."""
+    numbers = np.atleast_1d(np.asarray(cycles, dtype=np.int64))
+    count = _POINTS * of_mesh
+    values = np.asarray(function(np.arange(count) / count), dtype=float)
+    lines = np.fft.rfft(values)[: count // 2] / count
+    lines[1:] *= 2.0
+    turned = np.multiply.outer(np.arange(lines.size), numbers)
+    return positive(turned @ frequencies, lines, turned)
+
+
+def positive(frequency: Array, amplitude: ComplexArray, numbers: Index) -> SensedLines:
+    """Lines of cosines, those with a negative frequency turned about."""
+    back = frequency < 0.0
+    amplitude = np.where(back, amplitude.conj(), amplitude)
+    numbers = np.where(back[:, None], -numbers, numbers)
+    return joined(SensedLines(np.abs(frequency), amplitude, numbers))
+
+
 @dataclass(frozen=True, eq=False, repr=False)
-class PeriodicMotion:
-    """Motion over a period of whole turns; its classes add their data and :meth:`series`."""
+class PeriodicMotion(ABC):
+    """Motion with faults as spectral lines; over phases a period is that of a piece of it."""
 
     cycles: int  #: mesh cycles of the period, of the fastest mesh
     mesh_frequency: float  #: mesh cycles per second [Hz]
     places: Sensors  #: what there is to sense
     turns: Mapping[str, Any]  #: of each shaft in the period
     tacho: str  #: shaft with the tacho
-    #: Mesh cycles by which the rotation is ahead of its mean: even samples, or a function.
-    lead: Any
+    response: Response  #: without the fluctuation of the mean rotation
+    ahead: Lead | None  #: time by which the rotation is ahead of its mean
+    meshes: Mapping[str, tuple[int, ...]]  #: mesh cycles over each phase
+    units: tuple[Unit, ...]  #: what turns with each phase
 
-    def series(self, place: SensorPlace) -> Array:
-        """Means over even intervals of the period about each sample, of the data of a class."""
-        return np.asarray(getattr(self, place.quantity))
+    @abstractmethod
+    def _linear(self, place: SensorPlace) -> SensedLines:
+        """Lines of the data of a class at a place, without its seat."""
+
+    @cached_property
+    def frequencies(self) -> Array:
+        """Frequency of each phase; one clock is a phase [Hz]."""
+        return np.asarray(getattr(self.response, "frequencies", (1.0 / self.period,)))
+
+    @cached_property
+    def _listed(self) -> dict[str, Any]:
+        return {}
+
+    def _lines(self, quantity: str) -> tuple[Array, ComplexArray, Index]:
+        """Lines of the response: frequencies, amplitudes (k, m), and numbers."""
+        if quantity not in self._listed:
+            self._listed[quantity] = response_lines(self.response, quantity, self.cycles)
+        return self._listed[quantity]  # type: ignore[no-any-return]
+
+    def _lead_lines(self, speed: float) -> SensedLines:
+        """Lines of the rotation that is ahead, of what turns so fast [rad/s]."""
+        assert self.ahead is not None
+        parts = []
+        for cycles, series in self.ahead.parts:
+            numbers = np.multiply.outer(np.arange(len(series.lines)), cycles)
+            parts.append(positive(numbers @ self.frequencies, speed * series.lines, numbers))
+        return joined(*parts)
+
+    def sensed(self, sensor: str) -> SensedLines:
+        """Lines that a sensor receives."""
+        place = self.places.place(sensor)
+        lines = self._linear(place)
+        if place.seat is None:
+            return lines
+        amplitude = lines.amplitude * place.seat(lines.frequency)
+        return SensedLines(lines.frequency, amplitude, lines.numbers)
+
+    def lines(self, sensor: str, count: int = 20) -> list[MotionLine]:
+        """Strongest lines of a sensor by rising frequency, with their causes in words."""
+        lines, phases = self.sensed(sensor), len(self.frequencies)
+        strongest = np.argsort(-np.abs(lines.amplitude), kind="stable")
+        chosen = np.sort(strongest[lines.frequency[strongest] > 0.0][:count])
+        listed = []
+        for at in chosen.tolist():
+            numbers = tuple(lines.numbers[at].tolist())
+            cause = line_cause(numbers[:phases], self.meshes, self.units)
+            for turns in numbers[phases:]:
+                sign = "-" if turns < 0 else "+"
+                cause += f" {sign} {abs(turns)} x carrier" if turns else ""
+            amplitude = complex(lines.amplitude[at])
+            listed.append(MotionLine(float(lines.frequency[at]), amplitude, numbers, cause))
+        return listed
 
     @cached_property
     def splines(self) -> dict[Any, Any]:
@@ -70,26 +178,24 @@ class PeriodicMotion:
 
     def lead_at(self, time: Array) -> Array:
         """Mesh cycles by which the rotation is ahead of its mean at times [s]."""
-        clock = time / self.period % 1.0
-        if callable(self.lead):
-            return np.asarray(self.lead(clock))
-        count = len(self.lead)
-        return np.asarray(np.interp(clock, np.arange(count) / count, self.lead, period=1.0))
+        if self.ahead is None:
+            return np.zeros(time.shape)
+        points = time[:, None] * self.frequencies % 1.0
+        return np.asarray(self.ahead(points)[0] * self.mesh_frequency)
 
     @property
     def sensors(self) -> tuple[str, ...]:
         """Signals of :meth:`signal`."""
         return self.places.names
 
+    def sampled(self, lines: SensedLines) -> Array:
+        """Sum of lines on even samples of the period."""
+        count = SAMPLES * self.cycles
+        return sum_of_lines(lines.frequency, lines.amplitude, 0.0, self.period / count, count)
+
     def signal(self, sensor: str) -> tuple[Array, str]:
         """What a sensor receives on even samples of the period, with its unit."""
-        place = self.places.place(sensor)
-        values = self.series(place)
-        if place.seat is not None:
-            lines = np.fft.rfft(values)
-            lines *= place.seat(np.arange(lines.size, dtype=float) / self.period)
-            values = np.fft.irfft(lines, values.size)
-        return np.asarray(values), place.unit
+        return self.sampled(self.sensed(sensor)), self.places.place(sensor).unit
 
     def sensed_from(self, tacho: str | None, angle: float, window: Any) -> Any:
         """The motion with its tacho on another shaft; only a ring has a sensor at an angle."""
@@ -107,7 +213,30 @@ class PeriodicMotion:
 
     def harmonics(self, sensor: str) -> tuple[Array, ComplexArray]:
         """Frequencies (k,) [Hz] and complex peak amplitudes (k,) of a signal, from its mean on."""
-        return signal_lines(self.signal(sensor)[0], self.period)
+        lines = self.sensed(sensor)
+        return lines.frequency, lines.amplitude
+
+
+def response_lines(
+    response: Response, quantity: str, cycles: int
+) -> tuple[Array, ComplexArray, Index]:
+    """Frequencies, amplitudes (k, m) and numbers of the lines of a response of mesh cycles."""
+    from tribodyn.dynamics import PhaseResponse
+
+    if isinstance(response, PhaseResponse):
+        return response.lines(quantity)
+    fine, period = response.fine, response.periods / response.mesh_frequency
+    even = even_samples((fine.phase - fine.phase[0]) / response.periods, SAMPLES * cycles)
+    frequency, lines = signal_lines(even(getattr(fine, quantity)), period)
+    number: Index = np.arange(frequency.size)
+    if quantity == "position":
+        # Positions are exact at low orders; of the highest, samples of the acceleration are free
+        # of what jumps of the friction alias into the low ones.
+        sampled = signal_lines(even(fine.acceleration), period)[1][1:]
+        sampled = -sampled / (2.0 * np.pi * frequency[1:, None]) ** 2
+        share = np.clip(2.0 * number[1:] / (_SMOOTH * cycles) - 1.0, 0.0, 1.0)[:, None]
+        lines[1:] += 0.5 * (1.0 - np.cos(np.pi * share)) * (sampled - lines[1:])
+    return frequency, lines, number[:, None]
 
 
 def even_samples(phase: Array, count: int) -> Callable[[Array], Array]:
@@ -140,10 +269,12 @@ def even_samples(phase: Array, count: int) -> Callable[[Array], Array]:
 
 def signal_lines(values: Array, period: float) -> tuple[Array, ComplexArray]:
     """Frequencies and complex peak amplitudes of :func:`even_samples`, from the mean on."""
-    lines = np.fft.rfft(values) / values.size
-    lines /= np.sinc(np.arange(lines.size) / values.size)  # gain of the means
+    count = len(values)
+    lines = np.fft.rfft(values, axis=0) / count
+    gain = np.sinc(np.arange(len(lines)) / count)  # of the means
+    lines /= gain.reshape(-1, *[1] * (values.ndim - 1))
     lines[1:] *= 2.0
-    return np.arange(lines.size) / period, lines
+    return np.arange(len(lines)) / period, lines
 
 
 def refuse_long_period(cycles: int, seconds: float, limit: int, remedy: str) -> None:
@@ -161,6 +292,15 @@ def repeated(response: Response, frequency: float, slower: float) -> Response:
     position = np.concatenate([*count * [response.position[:last]], response.position[last:]])
     time = np.concatenate([*times, [count / frequency]])
     return replace(response, time=time, position=position, mesh_frequency=slower)
+
+
+def lead_on_clock(driven: DrivenSystem, mesh_frequency: float) -> Lead | None:
+    """Time by which the rotation of a driven system is ahead, over its clock."""
+    from tribodyn.faults.driven import Lead, Series
+
+    if not driven.lead.lines.any():
+        return None
+    return Lead([((1,), Series(driven.lead.lines / mesh_frequency))])
 
 
 def steady_over_turns(

@@ -69,25 +69,42 @@ def phase_cost_of(
     orders: Any = 0,
 ) -> PhaseCost:
     """Cost of the motion of a machine over phases; refuse what needs too much memory."""
-    from tribodyn.dynamics.harmonic.phase_balance import Follower, phase_cost
-
     phases, shafts = driven or (machine.phases, ())
     names = phase_names(machine, phases, shafts)
     followers = [
-        Follower(
+        (
             max(len(mesh.contacts), 1), phases.cycles[name], mesh.period,
             tuple(phases.turns[machine.clock.cycles[name] * turn.waves] for turn in mesh.turning),
         )
         for name, mesh in machine.meshes.items()
     ]  # fmt: skip
-    pairs = tuple(zip(names, phases.frequency, strict=True))
-    cost = PhaseCost(pairs, *phase_cost(followers, orders))
-    if cost.memory > solver.memory:
-        what = f"the motion over {len(names)} phases takes about {1e-9 * cost.memory:.3g} GB"
-        why = f"At most {1e-9 * solver.memory:.3g} GB are allowed by solver.memory"
-        remedy = "Raise solver.memory, compute a part of the machine, or give it fewer faults"
-        raise ComputationError(Problem(what, "solver.memory", why, remedy))
+    cost = cost_over_phases(phases, names, followers, orders)
+    remedy = "Raise solver.memory, compute a part of the machine, or give it fewer faults"
+    refuse_memory(cost, solver.memory, "solver.memory", remedy)
     return cost
+
+
+def cost_over_phases(
+    phases: Phases,
+    names: Sequence[str],
+    followers: Sequence[tuple[Any, ...]],
+    orders: Any,
+    mesh: int | None = None,
+) -> PhaseCost:
+    """Cost of a motion over named phases, of the fields of each follower."""
+    from tribodyn.dynamics.harmonic.phase_balance import Follower, phase_cost
+
+    pairs = tuple(zip(names, phases.frequency, strict=True))
+    return PhaseCost(pairs, *phase_cost([Follower(*each) for each in followers], orders, mesh))
+
+
+def refuse_memory(cost: PhaseCost, memory: float, key: str, remedy: str) -> None:
+    """Refuse a motion that takes more memory [byte] than is allowed."""
+    if cost.memory > memory:
+        what = f"the motion over {len(cost.phases)} phases takes about {1e-9 * cost.memory:.3g} GB"
+        allowed = f" by {key}" if key == "solver.memory" else ""
+        why = f"At most {1e-9 * memory:.3g} GB are allowed{allowed}"
+        raise ComputationError(Problem(what, key, why, remedy))
 
 
 def warn_of_motion(solver: SolverTable, machine: Machine) -> PhaseCost | None:
@@ -98,18 +115,23 @@ def warn_of_motion(solver: SolverTable, machine: Machine) -> PhaseCost | None:
     return None
 
 
+def periods_of_turns(machine: Machine) -> int:
+    """Periods of the clock of a machine after which what turns with its gears repeats too."""
+    return round(machine.clock.frequency / machine.phases_with(together=True).frequency[0])
+
+
 def warn_of_period(machine: Machine, memory: float = math.inf) -> None:
     """Warn of a period with so many mesh cycles that it takes much time and memory [byte]."""
-    clock = machine.clock
+    clock, longer = machine.clock, periods_of_turns(machine)
     fastest = max(clock.cycles, key=lambda name: clock.cycles[name])
-    cycles = clock.cycles[fastest]
+    cycles = longer * clock.cycles[fastest]
     if cycles <= _LONG_PERIOD:
         return
     pairs = (
         f"{name} {' : '.join(str(abs(machine.gears[gear].teeth)) for gear in mesh.gears)}"
         for name, mesh in machine.meshes.items()
     )
-    turning = any(mesh.period > 1 for mesh in machine.meshes.values())
+    turning = longer > 1 or any(mesh.period > 1 for mesh in machine.meshes.values())
     reason, remedy = (
         "the teeth have few common factors",
         (
@@ -123,7 +145,7 @@ def warn_of_period(machine: Machine, memory: float = math.inf) -> None:
     warn_of_steps(
         cycles,
         f"the meshes repeat together only after {cycles} cycles of mesh {fastest} "
-        f"({1.0 / clock.frequency:.4g} s), because {reason} ({', '.join(pairs)})",
+        f"({longer / clock.frequency:.4g} s), because {reason} ({', '.join(pairs)})",
         remedy,
         machine_structure(machine).size,
         memory,

@@ -101,6 +101,20 @@ class Unit(NamedTuple):
     name: str  #: shaft, or gear on its carrier; empty where meshes alone follow the phase
     turns: Fraction  #: of it in a cycle of the phase
 
+    @property
+    def part(self) -> str:
+        """Multiple of its turns that the phase is."""
+        return self.name if self.turns == 1 else f"{self.turns} x {self.name}"
+
+
+def unit_of(rates: Mapping[str, float], frequency: float) -> Unit:
+    """Part of those with these rates of whose turns a frequency is the simplest multiple."""
+    exact = {name: frequency / rate for name, rate in rates.items()}
+    near = (Unit(n, Fraction(e).limit_denominator(_MOST_TURNS)) for n, e in exact.items())
+    matches = [unit for unit in near if abs(unit.turns / exact[unit.name] - 1.0) < _EQUAL]
+    none = Unit("random load" if rates else "", Fraction(1))
+    return min(matches, key=lambda unit: sum(unit.turns.as_integer_ratio()), default=none)
+
 
 def line_cause(
     numbers: Sequence[int], meshes: Mapping[str, Sequence[int]], units: Sequence[Unit] = ()
@@ -148,16 +162,7 @@ def phase_units(machine: Machine, phases: Phases, driven: Sequence[str] = ()) ->
                 names.setdefault(turning, cycles / abs(part.teeth))
         if any(cycles[axis] for cycles in phases.driven.values()):
             names = {shaft: float(machine.clock.turns[shaft]) for shaft in driven}
-        matches = [
-            Unit(name, ratio)
-            for name, rate in names.items()
-            for exact in [frequency / (machine.clock.frequency * rate)]
-            for ratio in [Fraction(exact).limit_denominator(_MOST_TURNS)]
-            if abs(ratio - exact) < _EQUAL * exact
-        ]
-        none = Unit("random load" if names else "", Fraction(1))
-        sums = {unit: sum(unit.turns.as_integer_ratio()) for unit in matches}
-        units.append(min(matches, key=sums.__getitem__, default=none))
+        units.append(unit_of(names, frequency / machine.clock.frequency))
     return tuple(units)
 
 
@@ -167,10 +172,9 @@ def phase_names(machine: Machine, phases: Phases, driven: Sequence[str] = ()) ->
     for axis, unit in enumerate(phase_units(machine, phases, driven)):
         meshes = [name for name, cycles in phases.cycles.items() if cycles[axis]]
         more = f" and {len(meshes) - 1} others" if len(meshes) > 1 else ""
-        part = unit.name if unit.turns == 1 else f"{unit.turns} x {unit.name}"
-        names.append(f"{meshes[0]}{more}" if meshes else part)
+        names.append(f"{meshes[0]}{more}" if meshes else unit.part)
         if meshes and unit.name:
-            names[-1] += f" over {part}"
+            names[-1] += f" over {unit.part}"
     return tuple(names)
 
 
@@ -399,9 +403,8 @@ class MachineMotion(PeriodicSamples):
 
 def joined(series: Mapping[str, Array], samples: int, width: tuple[int, ...] = ()) -> Array:
     """Series by name as one array (s, names, ...)."""
-    if not series:
-        return np.zeros((samples, 0, *width))
-    return np.stack(list(series.values()), axis=1)
+    none = np.zeros((samples, 0, *width))
+    return np.stack(list(series.values()), axis=1) if series else none
 
 
 def machine_motion(

@@ -16,7 +16,8 @@ from tribodyn.progress import SILENT, Progress
 from tribodyn.study.case.sections import Operation
 from tribodyn.study.case.to_models import locate_errors
 from tribodyn.study.case.values import FaultError, Plain, read_value
-from tribodyn.study.faults.clock import turning_clock, varies_over_turns
+from tribodyn.study.faults.clock import MOST_CYCLES, PairTurns, varies_over_turns
+from tribodyn.study.faults.turning import refuse_long_period
 from tribodyn.study.first_use import compile_in_parallel
 from tribodyn.study.pipeline.assembly import rotation_of
 from tribodyn.study.planetary.common import common_lines, line_labels
@@ -154,11 +155,12 @@ def _turning_systems(case: Case, members: list[Member]) -> tuple[dict[float, Sys
     from tribodyn.study.faults.motion import driven_system, turning_mesh_of
     from tribodyn.study.pipeline.assembly import damping_of
 
-    mesh = turning_mesh_of(case, members[-1].mesh)
+    turns = PairTurns.of(case)
+    mesh = turning_mesh_of(case, members[-1].mesh, turns.faults)
     systems = {}
     for each in members:
         damping = damping_of(each.case, each.mesh)
-        driven = driven_system(each.case, each.mesh, damping, mesh)
+        driven = driven_system(each.case, each.mesh, damping, turns, mesh)
         systems[each.mesh.mesh_frequency] = split_ramps(driven.system)
     return systems, driven.cycles
 
@@ -173,7 +175,9 @@ def _check_faults(case: Case) -> None:
             what, why = "a random load in a run-up", "It repeats in time, a run-up in the angle"
             remedy = f"Set faults.{name} aside for the run-up"
             raise InputError(what, f"faults.{name}", why, remedy)
-    turning_clock(case)
+    turns = PairTurns.of(case)
+    remedy = "Give faults of one gear, or orders that repeat after fewer turns"
+    refuse_long_period(turns.cycles, turns.seconds, MOST_CYCLES, remedy)
 
 
 def _ends(between: tuple[object, object] | None) -> tuple[float, float]:
