@@ -321,6 +321,8 @@ def settle(
 ) -> None:
     """Integrate motions until they repeat, or over the full transient."""
     width = min(len(indices), _MANY_LANES) if on_gpu() else width
+    if motions.compiled.engine is not None:  # it integrates one lane after the other
+        width = 1
     motions.queue(indices)
     motions.progress = progress
     single_block = on_gpu() or (width == 1 and len(indices) == 1)

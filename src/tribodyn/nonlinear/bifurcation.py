@@ -13,6 +13,7 @@ from numpy.typing import ArrayLike, NDArray
 from tribodyn.aliases import with_old_names
 from tribodyn.checkpoints import Checkpoints
 from tribodyn.compiled import announce
+from tribodyn.dynamics.equations.orbit_coordinates import static_start
 from tribodyn.dynamics.equations.step_limit import LIMIT
 from tribodyn.dynamics.equations.system import System
 from tribodyn.dynamics.time.simulate import read_start, simulate
@@ -48,6 +49,8 @@ _TURN_IN = 20
 
 #: Total number of steps above which the expected duration is announced (seconds to minutes).
 _MANY = 2e7
+#: Least duration that is announced [min].
+_LONG = 0.5
 
 
 @with_old_names
@@ -269,23 +272,32 @@ def _read_survey(survey: Survey) -> Survey:
 
 
 def _announce(values: Points, cycles: int) -> None:
-    """Announce the duration of a long computation, estimated from one mesh cycle."""
-    steps = float(values.steps.sum()) * cycles
-    if steps < _MANY:
+    """Announce the duration of a long computation, estimated from one period."""
+    system, frequency = values.systems[0], float(values.mesh_frequency[0])
+    compiled = values.compiled(values.groups[0])
+    engine, rest_state = compiled.engine, static_start(compiled)
+    steps = compiled.grid.steps * values.count * cycles
+    if engine is None and steps < _MANY:
         return
-    system, count = values.systems[0], int(values.steps[0])
-    rest_state = np.zeros(system.size)
-    for _ in range(2):  # the first time compiles
+
+    def march(periods: int) -> None:
+        if engine is not None:
+            engine.march(np.array([1.0 / frequency]), rest_state[None], periods)
+        else:
+            start = rest_state[: system.size], rest_state[system.size :]
+            simulate(system, frequency, 1, start, steps=int(values.steps[0]))
+
+    with suppress(ComputationError):
+        march(0)  # the first time compiles
         begin = perf_counter()
-        with suppress(ComputationError):
-            simulate(
-                system, float(values.mesh_frequency[0]), 1, (rest_state, rest_state), steps=count
+        march(1)
+        minutes = values.count * cycles * (perf_counter() - begin) / 60.0
+        if minutes > _LONG:
+            announce(
+                f"following {values.count} motions with {compiled.grid.steps} steps in each "
+                f"period, {minutes:.2g} min at most; fewer values or steps, a shorter transient or "
+                "constant stiffness of the teeth take less"
             )
-    minutes = steps * (perf_counter() - begin) / count / 60.0
-    announce(
-        f"following {values.count} motions with up to {values.steps.max()} steps in each mesh "
-        f"cycle, {minutes:.2g} min at most; fewer steps or a shorter transient take less"
-    )
 
 
 def _rows(

@@ -11,6 +11,7 @@ from test_machine_case import SMALL
 import tribodyn as td
 from tribodyn.dynamics.orbits.system_family import family_of
 from tribodyn.errors import InputError
+from tribodyn.nonlinear import bifurcation
 from tribodyn.study.machine.read import read_any_case
 from tribodyn.study.studies.case_grid import moving, moving_at
 from tribodyn.study.studies.needs import STUDIES, needs_table, takes
@@ -106,3 +107,30 @@ def test_a_family_of_machines_is_the_machine_at_each_speed(stage: Any) -> None:
     for name in ("stiffness", "gyroscopic"):
         matrix = np.asarray(getattr(exact.system, name))
         assert np.abs(getattr(compiled.system, name) - matrix).max() <= 1e-8 * np.abs(matrix).max()
+
+
+def test_a_diagram_of_a_machine_is_as_long_as_that_of_a_pair(small: Any) -> None:
+    """A period of the clock has many mesh cycles: so many fewer periods are followed."""
+    ends = {"between": ("1200 rpm", "1234 rpm"), "points": 2, "mesh": "second", "verdict": False}
+    fastest = max(small.machine().clock.cycles.values())
+    assert fastest > 4
+    diagram = td.bifurcation(small, **ends)
+    assert diagram.section.shape[2] == max(16, -(-64 // fastest))
+    longer = td.bifurcation(small, **ends, cycles=40)
+    assert longer.section.shape[2] == 40
+    assert longer.rms == pytest.approx(diagram.rms, rel=1e-9, abs=1e-12)
+
+
+def test_the_time_of_a_long_diagram_is_said_before_it_is_computed(
+    small: Any, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    told: list[str] = []
+    monkeypatch.setattr(bifurcation, "announce", told.append)
+    monkeypatch.setattr(bifurcation, "_LONG", 0.0)
+    monkeypatch.setattr(bifurcation, "_MANY", 0.0)
+    ends = {"between": ("1200 rpm", "1234 rpm"), "points": 2, "mesh": "second", "verdict": False}
+    td.bifurcation(small, **ends)
+    steps = 128 * max(small.machine().clock.cycles.values())
+    assert len(told) == 1
+    assert f"2 motions with {steps} steps in each period" in told[0]
+    assert "fewer values" in told[0]

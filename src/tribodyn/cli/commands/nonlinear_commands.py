@@ -25,8 +25,8 @@ def bifurcation(
     /,
     *over: str,
     sweep: Literal["up", "down", "both", "independent"] = "up",
-    cycles: int = 64,
-    transient: int = 300,
+    cycles: int | None = None,
+    transient: int | None = None,
     steps: int | None = None,
     mesh: Mesh = None,
     at: Place = USUAL,
@@ -41,9 +41,11 @@ def bifurcation(
         Start each value from the end of the previous one, upwards (up), downwards (down) or both,
         or from the same start (independent).
     cycles : int
-        Mesh cycles of the statistics at each value.
+        Mesh cycles of the statistics at each value, 64 by default; of a machine periods of its
+        clock, by default as many as have 64 cycles of its fastest mesh, at least 16.
     transient : int
-        Mesh cycles before, fewer where the motion repeats.
+        Mesh cycles before, fewer where the motion repeats; 300 by default, of a machine likewise,
+        at least 32 periods.
     steps : int
         Steps per mesh cycle.
     """
@@ -51,10 +53,20 @@ def bifurcation(
     from tribodyn.cli.progress_bar import progress_bar
 
     key, (first, last, points) = _single_range(over)
+<<<<<<< HEAD
     _check_lengths(cycles, transient)
     ready, target = at.case("bifurcation", case)
     options: dict[str, Any] = {"cycles": cycles, "transient": transient, "keep": min(48, cycles)}
     with Checkpoints(target, at.force) as checkpoints:
+=======
+    lengths = {"cycles": cycles, "transient": transient}
+    options: dict[str, Any] = {n: each for n, each in lengths.items() if each is not None}
+    _check_lengths(**options)
+    ready, target = prepare_study("bifurcation", case, out, set_, force)
+    if cycles is not None:
+        options["keep"] = min(48, cycles)
+    with Checkpoints(target, force) as checkpoints:
+>>>>>>> d8a2bcbc (bifurcation: machines take as many mesh cycles as pairs, time is said first)
         with progress_bar() as progress:
             from tribodyn.study.studies.bifurcation import Findings
             from tribodyn.study.studies.bifurcation import bifurcation as compute
@@ -204,7 +216,7 @@ def _single_range(over: tuple[str, ...]) -> tuple[str, tuple[Any, Any, int]]:
     return next(iter(ranges.items()))
 
 
-def _check_lengths(cycles: int, transient: int) -> None:
+def _check_lengths(cycles: int = 2, transient: int = 0) -> None:
     """Refuse too few mesh cycles."""
     for name, value, least in (("cycles", cycles, 2), ("transient", transient, 0)):
         if value < least:

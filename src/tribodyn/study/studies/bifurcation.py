@@ -35,6 +35,10 @@ if TYPE_CHECKING:
 #: All values take the steps of the one that needs most while the counts differ by no more than this
 #: factor, so that values of the same structure are integrated in one batch.
 _MAX_STEP_RATIO = 2
+#: Mesh cycles of statistics and transient of a pair, and least periods of the clock of a machine.
+_LENGTHS = {"cycles": (64, 16), "transient": (300, 32)}
+#: Most points of the motion that are kept by default.
+_MOST_KEPT = 48
 
 
 @with_old_names
@@ -78,7 +82,8 @@ def bifurcation(
         Stores each finished motion, and restores those that a killed process had finished.
     **options : object
         ``sweep``, ``cycles``, ``transient``, ``keep``, ``signal``, ``verdict``, ``exponents`` and
-        ``keep_partial`` of :func:`tribodyn.analysis.bifurcation`.
+        ``keep_partial`` of :func:`tribodyn.analysis.bifurcation`. Of a machine cycles are periods
+        of its clock, by default as many as have the mesh cycles of a pair, at least 16 and 32.
 
     Returns
     -------
@@ -102,6 +107,7 @@ def bifurcation(
 
     name = mesh_in_motion("bifurcation", case, mesh)
     values = _values(case, over, between, points, by)
+    options = _lengths(case, options)
     named = {} if mesh is None else {"mesh": name}
     study = identity("bifurcation", case, [over, values.tolist()], steps=steps, **named, **options)
     checkpoints = (Checkpoints() if checkpoints is None else checkpoints).begin(study)
@@ -124,6 +130,16 @@ def bifurcation(
         )
     of_mesh = kind_of(case) in PARTS and options["signal"] == members[0].contact
     return replace(diagram, signal=f"mesh {name}") if of_mesh else diagram
+
+
+def _lengths(case: Case | MachineCase, options: dict[str, Any]) -> dict[str, Any]:
+    """Options with the lengths of motions of a machine, in periods of its clock."""
+    if case.lumped:
+        return options
+    fastest = max(case.machine().clock.cycles.values())
+    lengths = {name: max(-(-count // fastest), least) for name, (count, least) in _LENGTHS.items()}
+    chosen = {**lengths, **options}
+    return {"keep": min(_MOST_KEPT, chosen["cycles"]), **chosen}
 
 
 def _members(
