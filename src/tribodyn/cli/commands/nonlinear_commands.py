@@ -53,20 +53,13 @@ def bifurcation(
     from tribodyn.cli.progress_bar import progress_bar
 
     key, (first, last, points) = _single_range(over)
-<<<<<<< HEAD
-    _check_lengths(cycles, transient)
-    ready, target = at.case("bifurcation", case)
-    options: dict[str, Any] = {"cycles": cycles, "transient": transient, "keep": min(48, cycles)}
-    with Checkpoints(target, at.force) as checkpoints:
-=======
     lengths = {"cycles": cycles, "transient": transient}
     options: dict[str, Any] = {n: each for n, each in lengths.items() if each is not None}
     _check_lengths(**options)
-    ready, target = prepare_study("bifurcation", case, out, set_, force)
+    ready, target = at.case("bifurcation", case)
     if cycles is not None:
         options["keep"] = min(48, cycles)
-    with Checkpoints(target, force) as checkpoints:
->>>>>>> d8a2bcbc (bifurcation: machines take as many mesh cycles as pairs, time is said first)
+    with Checkpoints(target, at.force) as checkpoints:
         with progress_bar() as progress:
             from tribodyn.study.studies.bifurcation import Findings
             from tribodyn.study.studies.bifurcation import bifurcation as compute
