@@ -24,9 +24,10 @@ from tribodyn.dynamics.equations.orbit_coordinates import (
     warn_of_unbalanced,
 )
 from tribodyn.dynamics.equations.system import System, contact_label
-from tribodyn.dynamics.harmonic.newton import Residual, Solution, newton, refined
+from tribodyn.dynamics.harmonic.newton import Solution, newton, refined
 from tribodyn.dynamics.harmonic.orbit_response import orbit_response, starting_state
 from tribodyn.dynamics.harmonic.phase_balance import phase_balance
+from tribodyn.dynamics.harmonic.residual import ClockResidual
 from tribodyn.dynamics.modal.closed_structure import ClosedStructure
 from tribodyn.dynamics.modal.contact_equations import (
     ContactEquations,
@@ -71,7 +72,7 @@ class Prepared:
     grids: dict[int, Compiled]
     samples: dict[int, ContactEquations] = field(default_factory=dict)
 
-    def residual(self, steps: int, frequency: float) -> Residual:
+    def residual(self, steps: int, frequency: float) -> ClockResidual:
         """Residual on a number of equal steps."""
         if steps not in self.samples:
             finer = self.samples.get(2 * steps)
@@ -81,7 +82,7 @@ class Prepared:
                 if finer is None
                 else finer.coarser()
             )
-        return Residual(self.structure, self.samples[steps], frequency)
+        return ClockResidual(self.structure, self.samples[steps], frequency, self.closed)
 
     def grid(self, steps: int) -> Compiled:
         """Grid of a response with a number of steps per cycle of the fastest mesh."""
@@ -261,7 +262,7 @@ def _on_clock(
     return _marched(prepared, residual, response, **facts)
 
 
-def _multipliers(prepared: Prepared, residual: Residual, solution: Solution) -> ComplexArray:
+def _multipliers(prepared: Prepared, residual: ClockResidual, solution: Solution) -> ComplexArray:
     """Floquet multipliers, with a warning of an unstable motion."""
     if prepared.structure.modes is None:
         return np.zeros(0, dtype=complex)
@@ -288,7 +289,7 @@ def _fft_length(steps: int) -> int:
 
 def _start(
     prepared: Prepared,
-    residual: Residual,
+    residual: ClockResidual,
     start: Response | tuple[ArrayLike, ArrayLike] | None,
 ) -> Array:
     """Motion at the contacts (steps, r) from which the search starts."""
@@ -306,11 +307,11 @@ def _start(
     y = np.tile(position @ into, (contacts.steps, 1))
     if start is not None:
         return y
-    state = residual.at(y, prepared.closed)  # linear equations: one step solves them
+    state = residual.at(y, closed=True)  # linear equations: one step solves them
     return y + residual.correction(state)[0]
 
 
-def _solve(prepared: Prepared, residual: Residual, y: Array, tolerance: float) -> Solution:
+def _solve(prepared: Prepared, residual: ClockResidual, y: Array, tolerance: float) -> Solution:
     """Newton's method; where it fails, with damping that is removed again and from a march."""
     best = newton(residual, y, 0.01 * tolerance)
     searches = [_with_damping, _from_march]
@@ -323,12 +324,14 @@ def _solve(prepared: Prepared, residual: Residual, y: Array, tolerance: float) -
     return best
 
 
-def _settles(prepared: Prepared, residual: Residual) -> bool:
+def _settles(prepared: Prepared, residual: ClockResidual) -> bool:
     """Whether a period of the clock forgets its start."""
     return prepared.structure.decay / residual.frequency > _FORGOTTEN
 
 
-def _with_damping(prepared: Prepared, residual: Residual, y: Array, tolerance: float) -> Solution:
+def _with_damping(
+    prepared: Prepared, residual: ClockResidual, y: Array, tolerance: float
+) -> Solution:
     """Newton's method with damping at the contacts that is removed in steps."""
     contacts = residual.contacts
     critical = contacts.rows.stiffness.sum(axis=-1).mean(axis=0)
@@ -342,7 +345,9 @@ def _with_damping(prepared: Prepared, residual: Residual, y: Array, tolerance: f
     return trial
 
 
-def _from_march(prepared: Prepared, residual: Residual, y: Array, tolerance: float) -> Solution:
+def _from_march(
+    prepared: Prepared, residual: ClockResidual, y: Array, tolerance: float
+) -> Solution:
     """Newton's method from motions that are integrated over some periods."""
     best = Solution(residual.at(y), np.inf, 0, 0)
     if prepared.structure.modes is None:
@@ -364,13 +369,15 @@ def _from_march(prepared: Prepared, residual: Residual, y: Array, tolerance: flo
     return best
 
 
-def _marching_grid(prepared: Prepared, residual: Residual) -> Compiled:
+def _marching_grid(prepared: Prepared, residual: ClockResidual) -> Compiled:
     """Grid with at least as many steps as the period has samples."""
     steps = -(-residual.contacts.steps // prepared.system.cycles)
     return prepared.grid(max(steps, min(prepared.grids)))
 
 
-def _marched(prepared: Prepared, residual: Residual, response: Response, **facts: Any) -> Response:
+def _marched(
+    prepared: Prepared, residual: ClockResidual, response: Response, **facts: Any
+) -> Response:
     """The last of some periods that are integrated from a motion that does not repeat."""
     grid = _marching_grid(prepared, residual)
     motion = ModalMotion(grid, prepared.structure)
@@ -394,7 +401,7 @@ def _resampled(grid: Compiled, trace: Trace, steps: int) -> Array:
     return np.stack([np.interp(at, phase, path, period=1.0) for path in paths], axis=1)
 
 
-def _step_message(residual: Residual, step_error: float) -> str:
+def _step_message(residual: ClockResidual, step_error: float) -> str:
     return (
         f"the motion changes by {100.0 * step_error:.2g} % of its size with half the steps, limit "
         f"{100.0 * STEP_LIMIT:g} %: {residual.contacts.steps} steps in a period of the clock. Use "
@@ -402,7 +409,7 @@ def _step_message(residual: Residual, step_error: float) -> str:
     )
 
 
-def _not_converged(residual: Residual, solution: Solution, tolerance: float) -> str:
+def _not_converged(residual: ClockResidual, solution: Solution, tolerance: float) -> str:
     """Message that names the contact with the largest residual."""
     state, contacts = solution.state, residual.contacts
     along = np.broadcast_to(contacts.rows.along, (len(state.y), *contacts.rows.along.shape[1:]))

@@ -17,7 +17,7 @@ from tribodyn.dynamics.harmonic.newton import State
 from tribodyn.types import Array, ComplexArray, Index
 
 if TYPE_CHECKING:
-    from tribodyn.dynamics.harmonic.phase_residual import OnGrid
+    from tribodyn.dynamics.harmonic.residual import OnGrid
 
 #: Part of the largest variation of a stiffness that is too small to matter.
 _SMALL = 0.02

@@ -1,8 +1,7 @@
-"""Newton's method for the motion at the contacts over one period of the clock.
+"""Newton's method for the motion at the contacts, with Krylov solutions of its equations.
 
-The residual is the motion less the response of the closed structure to the forces that this motion
-causes: forces in time, responses in frequency. Generalized minimal residuals solve for a step; a
-time integration of the linearized equations preconditions them, so that a few products suffice.
+Generalized minimal residuals solve for a step, preconditioned by an approximate inverse, so that a
+few products with the derivative suffice.
 """
 
 from __future__ import annotations
@@ -12,19 +11,17 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from tribodyn.dynamics.modal.closed_structure import ClosedStructure
-from tribodyn.dynamics.modal.contact_equations import Breaks, ContactEquations, Law
-from tribodyn.types import Array, Mask
+from tribodyn.dynamics.modal.contact_equations import Breaks, Law
+from tribodyn.types import Array
 
 if TYPE_CHECKING:
     from tribodyn.dynamics.harmonic.phase_contacts import Cell
+    from tribodyn.dynamics.harmonic.residual import Residual
 
 #: Newton steps, halvings of a step, and steps over which the residual may rise.
 _LIMIT, _HALVINGS, _MEMORY = 40, 4, 3
 #: Accuracy of a linear solution and its largest number of vectors.
 LINEAR, VECTORS = 1e-4, 120
-#: Residual over the size of the motion that is rounding.
-_ROUNDING = 3e-14
 
 
 class State(NamedTuple):
@@ -40,6 +37,11 @@ class State(NamedTuple):
     parts: tuple[State, ...] = ()  #: of contacts on grids of their own
 
     @property
+    def each(self) -> tuple[State, ...]:
+        """States of the parts."""
+        return self.parts or (self,)
+
+    @property
     def size(self) -> float:
         """Largest distance of the motion at the contacts from zero."""
         return float(np.linalg.norm(self.y, axis=1).max(initial=0.0)) or 1.0
@@ -52,73 +54,6 @@ class Solution(NamedTuple):
     error: float  #: distance to the solution of the sampled equations, over the size [-]
     newton: int  #: steps of Newton's method
     krylov: int  #: products with the derivative
-
-
-class Residual:
-    """Residual of a motion at one frequency of the clock."""
-
-    def __init__(
-        self, structure: ClosedStructure, contacts: ContactEquations, frequency: float
-    ) -> None:
-        self.structure, self.contacts, self.frequency = structure, contacts, frequency
-        steps = contacts.steps
-        self.omega: Array = 2.0 * np.pi * frequency * np.arange(steps // 2 + 1.0)
-        structure.refuse_resonance(self.omega)
-        self.receptances = structure.receptances(self.omega)
-        self.receptances[-1] = 0.0  # the highest harmonic has no phase
-        self._differentiate = 1j * self.omega[:, None]
-        self._differentiate[-1] = 0.0
-        self.excess = np.zeros(len(contacts.dead))  #: additional damping [N*s/m]
-
-    def rate(self, y: Array) -> Array:
-        """Derivative of a motion (steps, r) by time."""
-        spectrum = self._differentiate * np.fft.rfft(y, axis=0)
-        return np.asarray(np.fft.irfft(spectrum, len(y), axis=0))
-
-    def response(self, force: Array) -> Array:
-        """Motion at the contacts under forces (steps, s)."""
-        spectrum = self.receptances @ np.fft.rfft(force, axis=0)[..., None]
-        return np.asarray(np.fft.irfft(spectrum[..., 0], len(force), axis=0))
-
-    def at(self, y: Array, closed: Mask | None = None) -> State:
-        """Evaluate a motion; ``closed`` (contacts, m) fixes the springs that are closed."""
-        motion = self.frequency, y, self.rate(y), self.excess, closed
-        rate, contacts = motion[2], self.contacts
-        law = contacts.law(contacts.rows, *motion)
-        breaks = contacts.breaks(law, *motion)
-        force = law.force + y @ self.structure.contact_stiffness.T
-        force += rate @ self.structure.contact_damping.T
-        breaks.scatter(force, breaks.correction)
-        return State(y, rate, law, breaks, force, y - self.response(force))
-
-    def derivative(self, state: State) -> Callable[[Array], Array]:
-        """Product of the derivative of the residual with a motion."""
-        change = force_change(self.structure, state)
-
-        def product(motion: Array) -> Array:
-            return np.asarray(motion - self.response(change(motion, self.rate)))
-
-        return product
-
-    def accuracy(self, norms: list[float]) -> float:
-        """Accuracy of the linear solution after steps that left residuals of these norms."""
-        return LINEAR
-
-    def correction(self, state: State, accuracy: float = LINEAR) -> tuple[Array, int]:
-        """Newton step of a motion, and the number of products that it took."""
-        if np.linalg.norm(state.residual, axis=1).max(initial=0.0) <= _ROUNDING * state.size:
-            return -state.residual, 0  # rounding: a body that nothing holds would magnify it
-        return self._corrected(state, accuracy)
-
-    def _corrected(self, state: State, accuracy: float) -> tuple[Array, int]:
-        product = self.derivative(state)
-        if self.structure.modes is None:
-            return solve_linear(product, -state.residual, accuracy)
-        from tribodyn.dynamics.harmonic.tangent_march import TangentMarch
-
-        nearly = TangentMarch(self, state)
-        solution, count = solve_linear(lambda x: product(nearly(x)), -state.residual, accuracy)
-        return nearly(solution), count
 
 
 def force_change(closed: Any, state: State) -> Callable[[Array, Callable[[Array], Array]], Array]:

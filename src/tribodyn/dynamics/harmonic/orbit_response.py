@@ -9,7 +9,8 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from tribodyn.dynamics.equations.compiled import Compiled
-from tribodyn.dynamics.harmonic.newton import Residual, State, uncorrected
+from tribodyn.dynamics.harmonic.newton import State, uncorrected
+from tribodyn.dynamics.harmonic.residual import ClockResidual
 from tribodyn.dynamics.time.response import Response, build_response
 from tribodyn.types import Array, ComplexArray, Index
 
@@ -77,7 +78,9 @@ class _Jumps(NamedTuple):
         return total
 
 
-def orbit_response(compiled: Compiled, residual: Residual, state: State, **facts: Any) -> Response:
+def orbit_response(
+    compiled: Compiled, residual: ClockResidual, state: State, **facts: Any
+) -> Response:
     """Evaluate a motion at the ends and in the middle of the steps of a grid."""
     structure, jumps, steps = residual.structure, _Jumps.of(state), len(state.y)
     spectrum, pulses = _spectrum(state, jumps)
@@ -118,7 +121,7 @@ def _spectrum(state: State, jumps: _Jumps) -> tuple[ComplexArray, ComplexArray]:
     return spectrum, pulses
 
 
-def starting_state(residual: Residual, state: State) -> tuple[Array, Array]:
+def starting_state(residual: ClockResidual, state: State) -> tuple[Array, Array]:
     """State of the closed structure (m,) when the clock starts, and the balancing torque (n,)."""
     structure = residual.structure
     closing = structure.contact_stiffness @ state.y.mean(axis=0)

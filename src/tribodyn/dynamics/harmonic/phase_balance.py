@@ -222,7 +222,7 @@ def phase_balance(
     points = _first_points(search) if steps is None else _read_steps(steps, search)
     points, residual, solution = search.first(points, start, tolerance, steps is None)
     step_error = float("nan")
-    smooth = all(part.cell is None for part in solution.state.parts)
+    smooth = all(part.cell is None for part in solution.state.each)
     poor, before = np.zeros(np.shape(points), dtype=bool), np.zeros(np.shape(points))
     while solution.error <= tolerance:
         errors = search.changes(points, residual, solution.state)
@@ -334,7 +334,7 @@ def _not_converged(
 ) -> str:
     """Message that names the contact with the largest residual."""
     worst: tuple[float, str] = (-1.0, "")
-    for part, state in zip(residual.parts, solution.state.parts, strict=True):
+    for part, state in zip(residual.parts, solution.state.each, strict=True):
         along = part.contacts.rows.along
         along = np.broadcast_to(along, (len(state.y), *along.shape[1:]))
         distance = np.abs(np.einsum("pjr,pr->pj", along, state.residual)).max(axis=0)

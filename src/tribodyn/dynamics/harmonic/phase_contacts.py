@@ -17,7 +17,14 @@ from numpy.polynomial import legendre
 
 from tribodyn.dynamics.harmonic.phase_grid import PhaseGrid
 from tribodyn.dynamics.harmonic.phase_rows import Mesh, PhaseRows
-from tribodyn.dynamics.modal.contact_equations import ContactLaw, Law, Rows, with_dead_zone
+from tribodyn.dynamics.modal.contact_equations import (
+    NO_BREAKS,
+    Breaks,
+    ContactLaw,
+    Law,
+    Rows,
+    with_dead_zone,
+)
 from tribodyn.types import Array, Index, Mask
 
 if TYPE_CHECKING:
@@ -180,13 +187,13 @@ class PhaseContacts(ContactLaw):
 
     def at(
         self, y: Array, rate: Array, excess: Array, closed: Mask | None, means: tuple[Array, Array]
-    ) -> tuple[Law, Cell | None]:
+    ) -> tuple[Law, Breaks, Cell | None]:
         """Law of a motion (p, r) at the points of the grid, or of pieces where it breaks."""
         # means: stiffness and damping of the closed contacts
         if not self.jumps.line.size:
             law = self.law(self.rows, 1.0, y, rate, excess, closed)
             if closed is not None or not self._opens(law):
-                return law, None
+                return law, NO_BREAKS, None
         pieces, rows = self._base
         moved = pieces.sample(y), pieces.sample(rate)
         law = self.law(rows, 1.0, *moved, excess, closed)
@@ -205,7 +212,7 @@ class PhaseContacts(ContactLaw):
         if crossings is not None and crossings.contact.size:
             number = len(weight) - crossings.contact.size
             stiffness[number:] = self._jumped(crossings, rows.at(slice(number, None)), law, moved)
-        return law, Cell(pieces, stiffness, damping)
+        return law, NO_BREAKS, Cell(pieces, stiffness, damping)
 
     def _opens(self, law: Law) -> bool:
         """Whether a flank comes to another side of its dead zone."""

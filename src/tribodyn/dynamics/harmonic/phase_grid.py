@@ -57,15 +57,15 @@ class PhaseGrid:
         return np.asarray((2 * np.abs(self.numbers) == np.array(self.shape)).any(axis=1))
 
     def spectrum(self, values: Array) -> ComplexArray:
-        """Half spectrum (k, ...) of values (p, ...)."""
+        """Amplitudes of the lines of the half spectrum (k, ...) of values (p, ...)."""
         axes = tuple(range(len(self.shape)))
-        lines = np.fft.rfftn(values.reshape(*self.shape, -1), axes=axes)
+        lines = np.fft.rfftn(values.reshape(*self.shape, -1), axes=axes, norm="forward")
         return np.asarray(lines.reshape(-1, values.shape[1]), dtype=complex)
 
     def values(self, spectrum: ComplexArray) -> Array:
         """Values (p, c) of a half spectrum (k, c)."""
         lines, axes = spectrum.reshape(*self.half, -1), tuple(range(len(self.shape)))
-        return np.asarray(np.fft.irfftn(lines, self.shape, axes).reshape(self.size, -1))
+        return np.asarray(np.fft.irfftn(lines, self.shape, axes, "forward").reshape(self.size, -1))
 
     @property
     def half(self) -> tuple[int, ...]:
@@ -88,7 +88,6 @@ class PhaseGrid:
         numbers = self.common(finer)
         padded = np.zeros((math.prod(finer.half), values.shape[1]), dtype=complex)
         padded[finer.places(numbers)] = self.spectrum(values)[self.places(numbers)]
-        padded *= finer.size / self.size
         return finer.values(padded)
 
     def lines(self, axis: int) -> Index:

@@ -286,7 +286,7 @@ def phase_response(
     """Evaluate a motion along a closed line through all phases, and over a piece of time."""
     structure, system, frequency = residual.structure, rows.system, rows.frequency
     numbers, force, others = _all_forces(rows, residual, state)
-    parts = zip(residual.parts, state.parts, strict=True)
+    parts = zip(residual.parts, state.each, strict=True)
     closing = sum(
         structure.push.T @ part.structure.push @ part.structure.contact_stiffness
         @ each.y.mean(axis=0)
@@ -326,23 +326,23 @@ def _all_forces(
     """Lines of all parts: numbers, forces (k, s), and compressions and forces of the contacts."""
     structure, count = residual.structure, len(rows.system.contacts)
     listed, forces, others = [], [], []
-    for part, each in zip(residual.parts, state.parts, strict=True):
+    for part, each in zip(residual.parts, state.each, strict=True):
         paired, grid = ~part.grid.unpaired, part.grid
         listed.append(grid.numbers[paired])
-        lines = (grid.spectrum(each.force) / grid.size)[paired]
+        lines = grid.spectrum(each.force)[paired]
         forces.append(lines @ (part.structure.push.T @ structure.push))
         columns = np.zeros((len(lines), 2 * count), dtype=complex)
         members = part.structure.members
         for first, values in ((0, each.law.compression), (count, each.law.contact)):
             sampled = part.integral(values, each.cell)
-            columns[:, first + members] = (grid.spectrum(sampled) / grid.size)[paired]
+            columns[:, first + members] = grid.spectrum(sampled)[paired]
         others.append(columns)
     grid = max((part.grid for part in residual.parts), key=lambda grid: min(grid.shape))
     loads = rows.force(grid.points) @ structure.coordinates.inverse.T @ structure.push
     if len(loads) > 1:
         paired = ~grid.unpaired
         listed.append(grid.numbers[paired])
-        forces.append((grid.spectrum(loads) / grid.size)[paired])
+        forces.append(grid.spectrum(loads)[paired])
     else:
         listed.append(np.zeros((1, len(grid.shape)), dtype=np.int64))
         forces.append(loads.astype(complex))

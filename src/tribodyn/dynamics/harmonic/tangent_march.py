@@ -17,7 +17,8 @@ from tribodyn.compiled.cache import cached_njit
 from tribodyn.types import Array
 
 if TYPE_CHECKING:
-    from tribodyn.dynamics.harmonic.newton import Residual, State
+    from tribodyn.dynamics.harmonic.newton import State
+    from tribodyn.dynamics.harmonic.residual import ClockResidual
 
 #: Part of the start that is left when the motion is recorded.
 _LEFT = 1e-4
@@ -29,7 +30,7 @@ _OPTIONS: dict[str, Any] = {
 class TangentMarch:
     """Integrate the linearized equations of a motion over one period of the clock."""
 
-    def __init__(self, residual: Residual, state: State) -> None:
+    def __init__(self, residual: ClockResidual, state: State) -> None:
         structure, self.rate = residual.structure, residual.rate
         assert structure.modes is not None
         values, right, left = structure.modes
@@ -62,7 +63,7 @@ class TangentMarch:
         return np.asarray(motion + march_tangent(*parts, right, self._lead))
 
 
-def _tangents(residual: Residual, state: State) -> Array:
+def _tangents(residual: ClockResidual, state: State) -> Array:
     """Forces per motion and rate at the contacts, at each sample (steps, s, 2 r)."""
     structure, breaks = residual.structure, state.breaks
     (s, r), steps = structure.contact_stiffness.shape, len(state.y)

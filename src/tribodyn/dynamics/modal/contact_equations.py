@@ -101,6 +101,8 @@ class Breaks(NamedTuple):
 
     def scatter(self, force: Array, values: Array) -> None:
         """Add values (b, s) to the two samples about each jump, by its distance from them."""
+        if not self.step.size:
+            return
         part = self.fraction[:, None]
         at = np.concatenate([self.step, self.after])
         shares = np.concatenate([(1.0 - part) * values, part * values])
@@ -175,6 +177,19 @@ class ContactEquations(ContactLaw):
     after: Rows
     events: Array  #: these events [-]
     steps: int
+    frequency: float = 0.0  #: of the clock [Hz]
+
+    def turning(self, frequency: float) -> ContactEquations:
+        """The same at a frequency of the clock."""
+        return replace(self, frequency=frequency)
+
+    def at(
+        self, y: Array, rate: Array, excess: Array, closed: Mask | None, _: tuple[Array, Array]
+    ) -> tuple[Law, Breaks, None]:
+        """Law of a motion (steps, r) at the steps, and where it jumps between them."""
+        motion = self.frequency, y, rate, excess, closed
+        law = self.law(self.rows, *motion)
+        return law, self.breaks(law, *motion), None
 
     def coarser(self) -> ContactEquations:
         """The same on half as many steps."""

@@ -1,0 +1,227 @@
+"""Residual of a motion at the contacts, on one clock or over several phases.
+
+The residual is the motion less the response of the closed structure to the forces that this motion
+causes: forces at points of the phases, responses at the lines of their Fourier series. Contacts
+that follow the same phases are a part with a grid of its own, on one clock all of them; parts are
+coupled by the lines that both of their grids have.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from functools import cached_property
+from itertools import permutations
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from tribodyn.dynamics.harmonic.newton import LINEAR, VECTORS, State, force_change, solve_linear
+from tribodyn.dynamics.harmonic.phase_contacts import Cell, PhaseContacts
+from tribodyn.dynamics.harmonic.phase_grid import PhaseGrid
+from tribodyn.dynamics.modal.closed_structure import ClosedStructure
+from tribodyn.dynamics.modal.contact_equations import ContactEquations
+from tribodyn.types import Array, ComplexArray, Index, Mask
+
+#: Bytes of the vectors of a linear solution, and the fewest of them.
+_MEMORY, _FEWEST = 2**29, 30
+#: Residual over the size of the motion that is rounding.
+_ROUNDING = 3e-14
+
+
+class OnGrid(NamedTuple):
+    """Contacts of a closed structure on a grid of the phases."""
+
+    structure: Any  #: closed structure, or the part of one with these contacts
+    grid: PhaseGrid
+    contacts: PhaseContacts | ContactEquations
+    receptances: ComplexArray  #: of their own forces (k, r, s); zero where lines have no sign
+    slope: ComplexArray  #: derivative of each line by time (k, 1)
+    loaded: ComplexArray  #: lines of the motion under external forces that act apart (k or 1, r)
+    members: Index  #: numbers of the contacts in the system
+    closed: Mask  #: springs that are closed at rest
+
+    @classmethod
+    def of(
+        cls, structure: Any, grid: PhaseGrid, contacts: PhaseContacts | ContactEquations,
+        loaded: ComplexArray, members: Index, closed: Mask,
+    ) -> OnGrid:  # fmt: skip
+        """Contacts with the receptances at the lines of their grid."""
+        receptances = structure.receptances(grid.omega)
+        receptances[grid.unpaired] = 0.0
+        slope = np.where(grid.unpaired, 0.0, 1j * grid.omega)[:, None]
+        return cls(structure, grid, contacts, receptances, slope, loaded, members, closed)
+
+    def rate(self, y: Array) -> Array:
+        """Derivative of a motion (p, r) by time."""
+        return self.grid.values(self.slope * self.grid.spectrum(y))
+
+    def at(self, y: Array, excess: Array, closed: bool) -> State:
+        """Forces of a motion (p, r), without its residual."""
+        rate, springs = self.rate(y), self.closed if closed else None
+        means = self.structure.contact_stiffness, self.structure.contact_damping
+        law, breaks, cell = self.contacts.at(y, rate, excess, springs, means)
+        force = self.integral(law.force, cell) + y @ means[0].T
+        force += rate @ means[1].T
+        breaks.scatter(force, breaks.correction)
+        return State(y, rate, law, breaks, force, y, cell)
+
+    @staticmethod
+    def integral(values: Array, cell: Cell | None) -> Array:
+        """Values at the points of the grid from those of a law."""
+        if cell is None:
+            return values
+        return cell.pieces.gather(cell.pieces.weight[:, None] * values)
+
+
+class _Link(NamedTuple):
+    """How the forces of a part move another one."""
+
+    into: Index  #: places of the common lines in the grid of the first
+    of: Index  #: and of the second
+    receptances: ComplexArray
+
+
+class Residual:
+    """Residual of a motion, whose parts are joined in one column if there are several."""
+
+    structure: ClosedStructure
+    links: dict[tuple[int, int], _Link]
+
+    def __init__(self, parts: Sequence[OnGrid], prior: Residual | None = None) -> None:
+        self.parts = list(parts)
+        before = [] if prior is None else prior.parts
+        links = {} if prior is None else prior.links
+        reused = {
+            n for n, (part, old) in enumerate(zip(parts, before, strict=False)) if part is old
+        }
+        self.links = {
+            pair: links[pair] if reused.issuperset(pair) else self._link(*pair)
+            for pair in permutations(range(len(parts)), 2)
+        }
+        self.ends = np.cumsum([0, *(part.grid.size * part.receptances.shape[1] for part in parts)])
+        self.excess = np.zeros(sum(part.members.size for part in parts))  #: added damping [N*s/m]
+
+    def _link(self, to: int, by: int) -> _Link:
+        first, second = self.parts[to], self.parts[by]
+        numbers = first.grid.common(second.grid)
+        into, of = first.grid.places(numbers), second.grid.places(numbers)
+        matrices = first.structure.receptances(first.grid.omega[into], second.structure.push)
+        return _Link(into, of, matrices)
+
+    def split(self, y: Array) -> list[Array]:
+        """Motions (p, r) of the parts."""
+        if len(self.parts) == 1:
+            return [y]
+        pieces = np.split(y.reshape(-1), self.ends[1:-1])
+        return [piece.reshape(part.grid.size, -1)
+                for piece, part in zip(pieces, self.parts, strict=True)]  # fmt: skip
+
+    @staticmethod
+    def joined(parts: Sequence[Array]) -> Array:
+        """Motions of the parts, of several in one column."""
+        if len(parts) == 1:
+            return parts[0]
+        return np.concatenate([part.reshape(-1) for part in parts])[:, None]
+
+    def responses(
+        self, forces: Sequence[Array | None], loaded: bool = False, of: Sequence[int] | None = None
+    ) -> list[Array]:
+        """Motions of parts, all by default, under the forces (p, s) of some, and the load."""
+        lines = [None if force is None else part.grid.spectrum(force)
+                 for part, force in zip(self.parts, forces, strict=True)]  # fmt: skip
+        motions = []
+        for to in range(len(self.parts)) if of is None else of:
+            part, own = self.parts[to], lines[to]
+            if own is None:
+                moved = np.zeros(part.receptances.shape[:2], dtype=complex)
+            else:
+                moved = (part.receptances @ own[..., None])[..., 0]
+            if loaded:
+                moved[: len(part.loaded)] += part.loaded
+            for by, pushing in enumerate(lines):
+                if by != to and pushing is not None:
+                    link = self.links[to, by]
+                    pushed = pushing[link.of, :, None]
+                    moved[link.into] += (link.receptances @ pushed)[..., 0]
+            motions.append(part.grid.values(moved))
+        return motions
+
+    def at(self, y: Array, closed: bool = False) -> State:
+        """Evaluate a motion; ``closed`` fixes the springs to those that are closed at rest."""
+        states = [
+            part.at(piece, self.excess[part.members], closed)
+            for part, piece in zip(self.parts, self.split(y), strict=True)
+        ]
+        moved = self.responses([state.force for state in states], loaded=True)
+        states = [
+            state._replace(residual=state.y - motion)
+            for state, motion in zip(states, moved, strict=True)
+        ]
+        if len(states) == 1:
+            return states[0]
+        residual = self.joined([state.residual for state in states])
+        return states[0]._replace(y=y, residual=residual, parts=tuple(states))
+
+    def derivative(self, state: State) -> Callable[[Array], Array]:
+        """Product of the derivative of the residual with a motion."""
+        pairs = list(zip(self.parts, state.each, strict=True))
+        changes = [force_change(part.structure, each) for part, each in pairs]
+
+        def product(motion: Array) -> Array:
+            triples = zip(changes, self.split(motion), self.parts, strict=True)
+            forces = [change(piece, part.rate) for change, piece, part in triples]
+            return motion - self.joined(self.responses(forces))
+
+        return product
+
+    def accuracy(self, norms: list[float]) -> float:
+        """Accuracy of the linear solution after steps that left residuals of these norms."""
+        return LINEAR
+
+    def nearly(self, state: State) -> Callable[[Array], Array] | None:
+        """Product with an approximate inverse of the derivative, if there is one."""
+        return None
+
+    def correction(self, state: State, accuracy: float = LINEAR) -> tuple[Array, int]:
+        """Newton step of a motion, and the number of products that it took."""
+        if np.linalg.norm(state.residual, axis=1).max(initial=0.0) <= _ROUNDING * state.size:
+            return -state.residual, 0  # rounding: a body that nothing holds would magnify it
+        vectors = int(np.clip(_MEMORY // state.y.nbytes, _FEWEST, VECTORS))
+        product, nearly = self.derivative(state), self.nearly(state)
+        if nearly is None:
+            return solve_linear(product, -state.residual, accuracy, vectors)
+        solution, count = solve_linear(
+            lambda x: product(nearly(x)), -state.residual, accuracy, vectors
+        )
+        return nearly(solution), count
+
+
+class ClockResidual(Residual):
+    """Residual of a periodic motion at one frequency of the clock."""
+
+    def __init__(
+        self, structure: ClosedStructure, contacts: ContactEquations, frequency: float, closed: Mask
+    ) -> None:
+        grid = PhaseGrid((contacts.steps,), np.array([frequency]))
+        structure.refuse_resonance(grid.omega)
+        still, members = np.zeros((1, structure.along.shape[1]), complex), np.arange(len(closed))
+        self.structure, self.contacts, self.frequency = structure, contacts, frequency
+        contacts = contacts.turning(frequency)
+        super().__init__([OnGrid.of(structure, grid, contacts, still, members, closed)])
+
+    @cached_property
+    def omega(self) -> Array:
+        """Angular frequencies of the harmonics [rad/s]."""
+        return self.parts[0].grid.omega
+
+    def rate(self, y: Array) -> Array:
+        """Derivative of a motion (steps, r) by time."""
+        return self.parts[0].rate(y)
+
+    def nearly(self, state: State) -> Callable[[Array], Array] | None:
+        """Time integration of the linearized equations over a period."""
+        if self.structure.modes is None:
+            return None
+        from tribodyn.dynamics.harmonic.tangent_march import TangentMarch
+
+        return TangentMarch(self, state)
