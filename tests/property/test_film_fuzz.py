@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from tribodyn.ehl import moes_dimensionless_central, solve_line_contact_moes
-from tribodyn.ehl.steady.fallbacks import verify
+from tribodyn.ehl.solver.fallbacks import verify
 
 COUNT = 1000
 

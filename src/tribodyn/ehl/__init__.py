@@ -5,6 +5,7 @@
 | ``models`` | film models by name, as a case file picks them |
 | ``formulas`` | films by formula: which groups, which regime, which film |
 | ``area`` | pressure and film of points, ellipses and lines of finite length |
+| ``solver`` | the equations of a line contact on a grid, and their engines |
 | ``steady`` | pressure and film of a contact at rest in its frame, one or many |
 | ``transient`` | pressure and film while load, radius and speed change |
 | ``thermal`` | the film with its heat: temperatures and shear across it, friction |
@@ -52,9 +53,8 @@ from tribodyn.ehl.models import FILM_MODELS, FilmModel
 from tribodyn.ehl.roughness import RoughnessProfile
 from tribodyn.ehl.steady.batch import LineContactBatch, solve_line_contacts
 from tribodyn.ehl.steady.line_contact import solve_line_contact, solve_line_contact_moes
-from tribodyn.ehl.steady.solution import LineContactSolution
+from tribodyn.ehl.steady.solution import LineContactSolution, ThermalLineContactSolution
 from tribodyn.ehl.thermal.thermal_model import BodyHeat, ThermalModel
-from tribodyn.ehl.thermal.thermal_solution import ThermalLineContactSolution
 from tribodyn.ehl.traction.film_state import FilmState
 from tribodyn.ehl.traction.film_temperature import blok_flash_temperature, inlet_heating_factor
 from tribodyn.ehl.traction.shear_models import (

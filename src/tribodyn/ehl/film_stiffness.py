@@ -14,9 +14,9 @@ from typing import Literal, NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike
 
-from tribodyn.ehl.steady.contact_problem import ContactProblem, DiscreteContact, SolvedContact
-from tribodyn.ehl.steady.fallbacks import solve_problem
-from tribodyn.ehl.steady.grid import estimate_film
+from tribodyn.ehl.solver.contact_problem import ContactProblem, DiscreteContact, SolvedContact
+from tribodyn.ehl.solver.fallbacks import solve_problem
+from tribodyn.ehl.solver.grid import estimate_film
 from tribodyn.errors import (
     ComputationError,
     require_between,

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import replace
-from typing import Any
 
 import numpy as np
 
@@ -124,7 +123,7 @@ _ALONG_PATH, _PASSES = 2e-3, 120
 _OF_SHEAR = ("eyring_stress", *LIMIT, *THINNING)
 
 
-def film_heat(law: str, options: Mapping[str, Any], bodies: tuple[float, float]) -> ThermalModel:
+def film_heat(law: str, options: Mapping[str, object], bodies: tuple[float, float]) -> ThermalModel:
     """Shear and bodies of a heated film: the shear of the friction law, if it shears the film."""
     shear, numbers = "ree-eyring", {}
     if LAWS[law].needs_film and "shear_model" in LAWS[law].options:

@@ -178,7 +178,7 @@ def mean_friction(
 
 
 def mean_law(
-    name: str, *, law_options: Mapping[str, Any] | None = None, rough: bool = True, **about: Any
+    name: str, *, law_options: Mapping[str, object] | None = None, rough: bool = True, **about: Any
 ) -> Callable[[Callable[..., Any]], None]:
     """Register a function of contacts and their pitch point as a law with one value everywhere.
 

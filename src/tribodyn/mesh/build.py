@@ -241,7 +241,7 @@ def table_of(
     settings: ToothContact,
     cycle: MeshCycle,
     operation: tuple[float, float],
-    columns: Mapping[str, Any],
+    columns: Mapping[str, object],
 ) -> MeshTable:
     """Make a mesh table of its columns."""
     return from_parts(

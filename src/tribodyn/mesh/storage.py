@@ -171,7 +171,7 @@ def _earlier(values: dict[str, Any]) -> dict[str, Any]:
     return {**values, **{k: v for k, v in new.items() if values.get(k) is None}}
 
 
-def _plain(value: Any) -> Any:
+def _plain(value: object) -> Any:
     """Convert a netCDF attribute, read as NumPy scalar, to a Python value."""
     return value.item() if isinstance(value, np.generic) else value
 

@@ -220,12 +220,12 @@ def _library_table(place: Path) -> TableFile:
     return TableFile(str(place), table.grid, columns, facts, table.gears)
 
 
-def _refuse(path: Any, what: str, why: str, remedy: str, where: str = "") -> NoReturn:
+def _refuse(path: object, what: str, why: str, remedy: str, where: str = "") -> NoReturn:
     raise InputError(what, f"{path}: {where}" if where else str(path), why, remedy)
 
 
 def _checked(
-    path: Any, facts: dict[str, float], columns: dict[str, Array], events: list[float]
+    path: object, facts: dict[str, float], columns: dict[str, Array], events: list[float]
 ) -> TableFile:
     """Check columns in SI and put them on a phase grid."""
     if "phase" not in columns:
@@ -261,7 +261,7 @@ def _checked(
     return table_file
 
 
-def _check_values(path: Any, columns: Mapping[str, Array]) -> None:
+def _check_values(path: object, columns: Mapping[str, Array]) -> None:
     for name, values in columns.items():
         bad = ~np.isfinite(values)
         if name not in _MAY_BE_NAN and bad.any():
@@ -279,7 +279,7 @@ def _check_values(path: Any, columns: Mapping[str, Array]) -> None:
 
 
 def _on_phase_grid(
-    path: Any, columns: dict[str, Array], events: list[float]
+    path: object, columns: dict[str, Array], events: list[float]
 ) -> tuple[PhaseGrid, dict[str, Array]]:
     """Put the smooth pieces between events on a phase grid; resample unevenly spaced rows."""
     phase = columns.pop("phase").reshape(-1)
@@ -326,7 +326,7 @@ def _on_phase_grid(
 
 
 def _cut(
-    path: Any, pieces: list[tuple[int, int]], phase: Array, event: float
+    path: object, pieces: list[tuple[int, int]], phase: Array, event: float
 ) -> Iterator[tuple[int, int]]:
     """Split the piece that contains an event; both parts include the row of the event."""
     if np.min(np.abs(phase - event)) > _SAME:
@@ -350,7 +350,7 @@ def _between(phase: Array, values: Array, at: Array) -> Array:
     return monotone_cubic(phase, values)(np.clip(at, phase[0], phase[-1]))
 
 
-def _in_si(path: Any, name: str, unit: str, values: Array) -> Array:
+def _in_si(path: object, name: str, unit: str, values: Array) -> Array:
     """Convert a column to SI, or raise if its unit has another dimension."""
     if unit in ("", "-", "1"):
         unit = ""

@@ -5,7 +5,6 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -177,7 +176,7 @@ def surveyed(
     points: Points,
     step_number: Array,
     survey: Survey,
-    begin: Any = None,
+    begin: object = None,
     verdict: bool = True,
     progress: Progress = SILENT,
 ) -> tuple[Outcomes, NDArray[np.str_]]:

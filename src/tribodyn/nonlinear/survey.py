@@ -271,7 +271,7 @@ def march_points(
             march(group)
 
 
-def each_in_threads(function: Callable[[Any], None], items: Sequence[Any]) -> None:
+def each_in_threads(function: Callable[[Any], None], items: Sequence[object]) -> None:
     """Call a function with every item, on as many threads as there are cores."""
     in_threads(function, items, os.cpu_count() or 1)
 

@@ -6,7 +6,7 @@ import pytest
 
 from tribodyn.ehl._kernel.inlet import flooded_inlet as compiled
 from tribodyn.ehl._kernel.inlet import inlet_slopes
-from tribodyn.ehl.steady.grid import inlet_tail
+from tribodyn.ehl.solver.grid import inlet_tail
 
 
 @nb.njit

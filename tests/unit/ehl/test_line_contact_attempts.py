@@ -8,12 +8,12 @@ import numpy as np
 import pytest
 
 from tribodyn.ehl import solve_line_contact_moes
-from tribodyn.ehl.steady import fallbacks as attempts
-from tribodyn.ehl.steady.contact_case import moes_case
-from tribodyn.ehl.steady.contact_problem import ContactProblem, Outcome
-from tribodyn.ehl.steady.engines import first_intervals, newton_engine
-from tribodyn.ehl.steady.fallbacks import ENGINES, continue_to, solve_problem, verify
-from tribodyn.ehl.steady.grid import choose_domain, estimate_film
+from tribodyn.ehl.solver import fallbacks as attempts
+from tribodyn.ehl.solver.contact_case import moes_case
+from tribodyn.ehl.solver.contact_problem import ContactProblem, Outcome
+from tribodyn.ehl.solver.engines import first_intervals, newton_engine
+from tribodyn.ehl.solver.fallbacks import ENGINES, continue_to, solve_problem, verify
+from tribodyn.ehl.solver.grid import choose_domain, estimate_film
 from tribodyn.errors import ComputationError
 
 

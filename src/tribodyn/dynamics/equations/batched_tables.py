@@ -144,7 +144,7 @@ def _values(
     return np.stack([rows.values(where, 0.0 if e is None else e, size) for e in entries])
 
 
-def _constants(where: str, entries: Sequence[Any], at: Array, size: int) -> Array:
+def _constants(where: str, entries: Sequence[object], at: Array, size: int) -> Array:
     """Values (systems, 1, 1, size) of entries that do not vary."""
     with suppress(ValueError):  # where their shapes differ
         values = np.array(entries).reshape(len(entries), -1)

@@ -51,7 +51,7 @@ def table_of(entry: Any) -> tuple[Any, int, float] | None:
     return (table, entry.cycles, entry.offset) if clocked else (table, 1, 0.0)
 
 
-def same_entry(first: Any, second: Any) -> bool:
+def same_entry(first: object, second: object) -> bool:
     """Whether two entries are one function over the same clock, as those of the ramps of a law."""
     if isinstance(first, ClockEntry) and isinstance(second, ClockEntry):
         clocks = (first.cycles, first.offset), (second.cycles, second.offset)
@@ -72,7 +72,7 @@ def on_clock(part: T, names: tuple[str, ...], cycles: int, offset: float) -> T:
     if cycles == 1 and offset == 0.0:
         return part
 
-    def entry(value: Any) -> Any:
+    def entry(value: object) -> Any:
         if callable(value):
             return ClockEntry(value, cycles, offset)
         return [entry(item) for item in value] if isinstance(value, list | tuple) else value

@@ -24,7 +24,7 @@ _ROUNDING = 1e-9
 _SMALL = 1e-8
 
 
-def read_events(value: Any, where: str) -> tuple[float, ...]:
+def read_events(value: object, where: str) -> tuple[float, ...]:
     """Check mesh phases at which an entry jumps."""
     events = tuple(real_numbers(where, value, "mesh phases").reshape(-1).tolist())
     bad = [event for event in events if not 0.0 <= event < 1.0]
@@ -35,7 +35,7 @@ def read_events(value: Any, where: str) -> tuple[float, ...]:
     return events
 
 
-def varies(entry: Any) -> bool:
+def varies(entry: object) -> bool:
     """Whether an entry is a function of the mesh phase, or holds one."""
     return callable(entry) or (
         isinstance(entry, list | tuple) and any(callable(item) for item in entry)
@@ -64,7 +64,7 @@ def entry_values(where: str, entry: Any, phases: Array, size: int) -> Array:
     return values
 
 
-def refuse_chance(where: str, entry: Any, phases: Array, values: Array) -> None:
+def refuse_chance(where: str, entry: object, phases: Array, values: Array) -> None:
     """Refuse a function whose values do not follow from the mesh phase alone."""
     repeated = np.arange(0, phases.size, max(1, phases.size // 31))[::-1]
     difference = np.abs(
@@ -81,7 +81,7 @@ def refuse_chance(where: str, entry: Any, phases: Array, values: Array) -> None:
         )
 
 
-def refuse_jumps(where: str, entry: Any, nodes: Array, values: Array) -> None:
+def refuse_jumps(where: str, entry: object, nodes: Array, values: Array) -> None:
     """Refuse a function that jumps between events; ``nodes`` (s, 3), ``values`` (s, 3, size).
 
     The bend over a jump persists when the step is divided, that of a kink falls with it, others

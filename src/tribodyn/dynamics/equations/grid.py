@@ -189,7 +189,7 @@ class RowEvaluator:
                 for each, part in parts:
                     self._values[id(each.values), cycles, offset] = part
 
-    def _looked_up(self, entry: Any, size: int) -> Array | None:
+    def _looked_up(self, entry: object, size: int) -> Array | None:
         """Values (p, size) of an entry that was looked up."""
         looked_up = table_of(entry)
         if looked_up is None:

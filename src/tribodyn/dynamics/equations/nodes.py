@@ -42,7 +42,7 @@ def coefficient_count(where: str, friction: LoadFriction) -> int:
     return _row_length(where, friction.coefficients)
 
 
-def _row_length(where: str, entry: Any, least: int = 1) -> int:
+def _row_length(where: str, entry: object, least: int = 1) -> int:
     """Number of values of an entry at one phase."""
     looked_up = table_of(entry)
     if looked_up is not None and (values := looked_up[0].values).ndim == 2:

@@ -30,7 +30,7 @@ class Turning(NamedTuple):
     cycles: tuple[int, ...]  #: turns of the shaft over each phase
 
 
-def read_cycles(name: str, value: Any) -> Cycles:
+def read_cycles(name: str, value: object) -> Cycles:
     """Whole number of at least 1 over one clock, or one whole number for each phase."""
     if not isinstance(value, list | tuple | np.ndarray):
         return require_whole(name, value)
@@ -87,7 +87,7 @@ def on_one_clock(system: System) -> list[Any]:
     return list(system.contacts)
 
 
-def read_frequencies(value: Any, phases: int) -> Array:
+def read_frequencies(value: object, phases: int) -> Array:
     """Frequencies of all phases [Hz]."""
     values = np.atleast_1d(np.asarray(value, dtype=float))
     if values.shape != (phases,) or not np.all(np.isfinite(values)) or not np.all(values > 0.0):

@@ -196,7 +196,7 @@ def _result(
     state, extra = family.split(number, point, period)
     mean, square, low, high, off = np.moveaxis(figures, 1, 0)
 
-    def shaped(values: Any) -> Any:
+    def shaped(values: object) -> Any:
         """Directions, speeds and the rest."""
         values = np.asarray(values)
         return values.reshape(len(followed), count, *values.shape[1:])

@@ -45,7 +45,7 @@ def plane_rows(
     return rows
 
 
-def friction_direction(mesh: Any, onto: Array) -> Callable[..., Array]:
+def friction_direction(mesh: object, onto: Array) -> Callable[..., Array]:
     """Friction of a mesh (p, n) from its three sums; a table if all three share their grid."""
     sums = [getattr(mesh, name) for name in FRICTION_SUMS]
     kind, grid = type(sums[0]), getattr(sums[0], "grid", None)

@@ -268,7 +268,7 @@ def _shafts(**values: ArrayLike) -> list[Body]:
     ]
 
 
-def _refuse_directions(mesh: Any) -> None:
+def _refuse_directions(mesh: object) -> None:
     """Refuse a mesh that defines contact directions."""
     if getattr(mesh, "direction", None) is not None or getattr(mesh, "friction", None) is not None:
         what = "the mesh defines contact directions"

@@ -174,7 +174,7 @@ def in_space(mesh: Any) -> tuple[Entry, Entry | None]:
     return padded(direction), None if friction is None else padded(friction)
 
 
-def directions_of_crossed_axes(mesh: Any) -> tuple[Entry, Entry | None]:
+def directions_of_crossed_axes(mesh: object) -> tuple[Entry, Entry | None]:
     """Direction and friction of a mesh over the coordinates of both gears."""
     entries: list[Entry | None] = []
     for function in (getattr(mesh, "direction", None), getattr(mesh, "friction", None)):

@@ -156,7 +156,7 @@ _FIXED = "That model turns the gears about fixed axes"
 _NO_SHAFTS = "That model has no shafts"
 
 
-def _supports(default: Any) -> dict[str, Option]:
+def _supports(default: object) -> dict[str, Option]:
     """Options of gears on springs and dampers."""
     pair: dict[str, Any] = {"pair": True, "absent": _FIXED}
     return {

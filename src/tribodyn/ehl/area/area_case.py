@@ -15,7 +15,7 @@ import numpy as np
 
 from tribodyn.contact.hertz import HertzEllipse, hertz_ellipse
 from tribodyn.ehl.formulas.elliptic import nijenbanning_film
-from tribodyn.ehl.steady.contact_case import (
+from tribodyn.ehl.solver.contact_case import (
     _HIGHEST_PRESSURE,
     LAWS,
     _check_growth,

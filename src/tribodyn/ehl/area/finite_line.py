@@ -14,8 +14,8 @@ from tribodyn.ehl.area.area_case import Grid
 from tribodyn.ehl.area.multigrid import AreaProblem, solve_area
 from tribodyn.ehl.area.point_contact import STATED_LIMIT, requested_nodes
 from tribodyn.ehl.area.solution import FiniteLineSolution
-from tribodyn.ehl.steady.contact_case import ContactCase, require_kind, si_case
-from tribodyn.ehl.steady.grid import estimate_film
+from tribodyn.ehl.solver.contact_case import ContactCase, require_kind, si_case
+from tribodyn.ehl.solver.grid import estimate_film
 from tribodyn.ehl.steady.line_contact import solve_line_contact
 from tribodyn.errors import (
     ComputationError,
@@ -307,7 +307,7 @@ def _warn_of_ends(outcome: Any) -> None:
         )
 
 
-def _check_profile(profile: Any) -> None:
+def _check_profile(profile: object) -> None:
     why = "the shape of the roller decides how its ends are loaded"
     remedy = "Give tribodyn.ehl.RollerProfile.straight(), .crowned(...) or .logarithmic(...)"
     require_kind("profile", profile, isinstance(profile, RollerProfile), why, remedy)

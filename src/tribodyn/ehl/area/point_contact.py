@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from typing import Any
 
 import numpy as np
 
@@ -128,7 +127,7 @@ def solve_point_contact(
     return solution
 
 
-def requested_nodes(nodes: Any, first: int, last: int) -> tuple[bool, int]:
+def requested_nodes(nodes: object, first: int, last: int) -> tuple[bool, int]:
     """Whether the grid is automatic, and its nodes."""
     if nodes == "auto":
         return True, first

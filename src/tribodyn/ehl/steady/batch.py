@@ -13,7 +13,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from tribodyn.checks import require_number
 from tribodyn.ehl.film_stiffness import FilmSlopes, film_distance, film_slopes
-from tribodyn.ehl.steady.contact_case import si_case
+from tribodyn.ehl.solver.contact_case import si_case
 from tribodyn.ehl.steady.line_contact import STATED_LIMIT, SolverOptions, solve_case
 from tribodyn.ehl.steady.solution import LineContactSolution
 from tribodyn.ehl.thermal.thermal_model import ThermalModel

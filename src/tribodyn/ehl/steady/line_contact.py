@@ -12,15 +12,14 @@ from numpy.typing import ArrayLike
 
 from tribodyn.checks import require_number, require_whole
 from tribodyn.ehl.flow_factors import FlowFactors
-from tribodyn.ehl.steady.contact_case import ContactCase, moes_case, require_kind, si_case
-from tribodyn.ehl.steady.contact_problem import ContactProblem
-from tribodyn.ehl.steady.fallbacks import Verified, solve_problem, solve_rough
-from tribodyn.ehl.steady.grid import choose_domain, choose_nodes, cut_error, estimate_film
-from tribodyn.ehl.steady.grid_error import GridError, grid_error
-from tribodyn.ehl.steady.solution import LineContactSolution, assemble
+from tribodyn.ehl.solver.contact_case import ContactCase, moes_case, require_kind, si_case
+from tribodyn.ehl.solver.contact_problem import ContactProblem
+from tribodyn.ehl.solver.fallbacks import Verified, solve_problem, solve_rough
+from tribodyn.ehl.solver.grid import choose_domain, choose_nodes, cut_error, estimate_film
+from tribodyn.ehl.solver.grid_error import GridError, grid_error
+from tribodyn.ehl.steady.solution import LineContactSolution, assemble, with_heat
 from tribodyn.ehl.thermal.thermal_contact import HeatedFilm, solve_heated
 from tribodyn.ehl.thermal.thermal_model import ThermalModel, read_thermal
-from tribodyn.ehl.thermal.thermal_solution import with_heat
 from tribodyn.errors import InputError, real_numbers, require_between, warn
 from tribodyn.interrupt import aside
 from tribodyn.lubricant import Lubricant

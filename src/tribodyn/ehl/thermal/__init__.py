@@ -5,5 +5,4 @@
 | ``thermal_model`` | how the oil shears and what of heat a contact needs |
 | ``surface_history`` | how warm the moving surfaces become by a heat, steady or not |
 | ``thermal_contact`` | pressure, film and temperatures together |
-| ``thermal_solution`` | the result: temperatures, friction, and the balance of heat |
 """

@@ -5,15 +5,17 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
-from typing import Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from tribodyn.ehl.steady.solution import LineContactSolution
 from tribodyn.errors import InputError, require_between, require_positive
 from tribodyn.lubricant import Lubricant
 from tribodyn.types import Array, Index
+
+if TYPE_CHECKING:
+    from tribodyn.ehl.steady.solution import LineContactSolution
 
 
 @dataclass(frozen=True, eq=False)
@@ -184,7 +186,7 @@ class FilmState:
         return np.array([np.interp(0.0, x, h) for x, h in pairs])
 
 
-def require_same(name: str, values: Sequence[Any]) -> None:
+def require_same(name: str, values: Sequence[object]) -> None:
     """Refuse values that are not all equal."""
     other = next((value for value in values if value != values[0]), None)
     if other is not None:

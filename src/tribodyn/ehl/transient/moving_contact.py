@@ -13,7 +13,7 @@ from numpy.typing import ArrayLike
 from tribodyn.contact.hertz import dry_half_width
 from tribodyn.ehl.formulas.dimensionless_groups import Groups, survey_film
 from tribodyn.ehl.roughness import RoughnessProfile, warn_if_unresolved
-from tribodyn.ehl.steady.contact_case import ContactScales, contact_scales, moes_numbers
+from tribodyn.ehl.solver.contact_case import ContactScales, contact_scales, moes_numbers
 from tribodyn.ehl.steady.line_contact import solve_line_contact
 from tribodyn.ehl.thermal.thermal_contact import MOST_SLIDING
 from tribodyn.ehl.thermal.thermal_model import ThermalModel

@@ -9,7 +9,7 @@ from numpy.typing import ArrayLike
 
 from tribodyn.checks import positive
 from tribodyn.ehl.roughness import RoughnessProfile
-from tribodyn.ehl.steady.contact_case import si_case
+from tribodyn.ehl.solver.contact_case import si_case
 from tribodyn.ehl.steady.line_contact import solve_line_contact
 from tribodyn.ehl.transient.transient import solve_transient_line_contact
 from tribodyn.errors import InputError, require_between

@@ -317,7 +317,7 @@ def hypoid_blank(
     return HypoidBlank(hand_pinion=hand, blade_groups=groups, **cut)
 
 
-def _blade_groups(process: str, groups: int | None, arguments: Mapping[str, Any]) -> int:
+def _blade_groups(process: str, groups: int | None, arguments: Mapping[str, object]) -> int:
     """Blade groups of the cutter; zero for face milling."""
     if process == "face-milling":
         if groups is not None:

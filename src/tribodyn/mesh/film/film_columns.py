@@ -144,7 +144,7 @@ def warn_of_loaded(compute: Callable[[], Answer], again: Callable[[], object]) -
 
 
 def friction_by_law(
-    law: str, contact: TribologicalContact, options: Mapping[str, Any]
+    law: str, contact: TribologicalContact, options: Mapping[str, object]
 ) -> Array | FrictionParts:
     """Friction of every contact; warn where a real part of the load is outside of the law."""
     load = np.asarray(contact.load_per_width)

@@ -149,7 +149,7 @@ def table_for(
     return _cached_table(shared, key, table)
 
 
-def _cached_table(shared: _Shared, key: Any, make: Callable[[], Table]) -> Table:
+def _cached_table(shared: _Shared, key: object, make: Callable[[], Table]) -> Table:
     """Table of a key, the same object in the blocks that share it."""
     with shared.lock:
         if key not in shared.tables:

@@ -47,7 +47,7 @@ def compliance_of(
     places: ContactPlaces,
     total_force: float,
     model: StiffnessModel,
-    options: Mapping[str, Any] = NO_OPTIONS,
+    options: Mapping[str, object] = NO_OPTIONS,
 ) -> Compliance:
     """Compliance of the teeth at given places by a named model."""
     if model.influence is not None:
@@ -184,7 +184,7 @@ def contact_settings(
     reference: str | None,
     material: Material | None,
     slices: int | None,
-    options: Mapping[str, Any],
+    options: Mapping[str, object],
 ) -> dict[str, Any]:
     """Arguments of :func:`contact_problem` but for the pair and its load."""
     takes_reference = reference is not None and "reference" in MODELS[provider].options
@@ -358,7 +358,7 @@ _EVEN: dict[str, Any] = {
 
 
 def body_share(
-    pair: SpurPair, torque: float, *, options: Mapping[str, Any], **settings: Any
+    pair: SpurPair, torque: float, *, options: Mapping[str, object], **settings: Any
 ) -> float:
     """Part of the mean deflection under a torque that lies between the rim and the bore."""
     key = (pair, torque, tuple(settings.items()), tuple(sorted(options.items())))

@@ -29,7 +29,7 @@ from tribodyn.types import Array
 
 
 def gear_influences(
-    pair: SpurPair, material: Material, model: StiffnessModel, options: Mapping[str, Any]
+    pair: SpurPair, material: Material, model: StiffnessModel, options: Mapping[str, object]
 ) -> tuple[Any, Any]:
     """Structure of pinion and wheel by a model that knows it, the same under every load."""
     model.require_known_teeth(pair)
@@ -65,7 +65,7 @@ def sliced_problem(
     contacts: FaceContacts,
     total_force: float,
     model: StiffnessModel,
-    options: Mapping[str, Any],
+    options: Mapping[str, object],
     *,
     teeth_alike: bool = False,
 ) -> ContactProblem:
@@ -140,7 +140,7 @@ def slice_stiffness(
     material: Material,
     contacts: FaceContacts,
     normal_force: float,
-    options: Mapping[str, Any],
+    options: Mapping[str, object],
 ) -> Array:
     """Stiffness of each slice by a model of pairs, as that part of a spur pair (p, c)."""
     count, stiffness = contacts.slices, np.zeros(contacts.path.shape)
@@ -163,7 +163,7 @@ def face_compliance(
     places: ContactPlaces,
     total_force: float,
     model: StiffnessModel,
-    options: Mapping[str, Any],
+    options: Mapping[str, object],
 ) -> Compliance:
     """Compliance of all slices by a named model."""
     if model.influence is None:

@@ -12,9 +12,9 @@ from typing import NamedTuple
 
 import numpy as np
 
-from tribodyn.ehl.steady.contact_problem import ContactProblem, DiscreteContact, Outcome
-from tribodyn.ehl.steady.engines import newton_engine
-from tribodyn.ehl.steady.grid import FEWEST, MOST, cut_error
+from tribodyn.ehl.solver.contact_problem import ContactProblem, DiscreteContact, Outcome
+from tribodyn.ehl.solver.engines import newton_engine
+from tribodyn.ehl.solver.grid import FEWEST, MOST, cut_error
 from tribodyn.types import Array
 
 #: Fall of the differences that shows that the inlet is resolved, and that of the theory.

@@ -10,15 +10,15 @@ from functools import lru_cache, partial
 import numpy as np
 
 from tribodyn.ehl.flow_factors import FlowFactors
-from tribodyn.ehl.steady.contact_case import ContactCase
-from tribodyn.ehl.steady.contact_problem import (
+from tribodyn.ehl.solver.contact_case import ContactCase
+from tribodyn.ehl.solver.contact_problem import (
     ContactProblem,
     DiscreteContact,
     Outcome,
     heat_factors,
 )
-from tribodyn.ehl.steady.engines import first_intervals, multigrid_engine, newton_engine
-from tribodyn.ehl.steady.grid import MOST
+from tribodyn.ehl.solver.engines import first_intervals, multigrid_engine, newton_engine
+from tribodyn.ehl.solver.grid import MOST
 from tribodyn.errors import ComputationError, InputError, Problem, require_between
 from tribodyn.model import Registry
 from tribodyn.types import Array, ComplexArray

@@ -16,7 +16,7 @@ from tribodyn.ehl.formulas.dimensionless_groups import (
     rigid_piezoviscous,
 )
 from tribodyn.ehl.formulas.line import blended, isoviscous
-from tribodyn.ehl.steady.contact_case import ContactScales
+from tribodyn.ehl.solver.contact_case import ContactScales
 from tribodyn.errors import InputError
 
 INLETS = ("flooded", "zero")
@@ -86,7 +86,7 @@ def cut_error(start: float, film: float) -> float:
 
 
 def choose_domain(
-    domain: Any, inlet: str, film: float, scales: ContactScales, tolerance: float = math.inf
+    domain: object, inlet: str, film: float, scales: ContactScales, tolerance: float = math.inf
 ) -> Domain:
     """Extent of the grid: by the film and its tolerance, or as stated."""
     if not isinstance(inlet, str) or inlet not in INLETS:
@@ -173,7 +173,7 @@ _ENDLESS = 1e9
 _COARSEST = 255
 
 
-def choose_nodes(nodes: Any) -> tuple[int, bool]:
+def choose_nodes(nodes: object) -> tuple[int, bool]:
     """Nodes of the finest grid, and whether coarser ones may do."""
     if isinstance(nodes, str) and nodes == "auto":
         return MOST, True

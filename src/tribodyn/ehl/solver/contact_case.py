@@ -115,7 +115,7 @@ class ContactCase:
     compressible: bool  #: whether the density rises with pressure
 
 
-def _scalar(name: str, value: Any, unit: str) -> float:
+def _scalar(name: str, value: object, unit: str) -> float:
     """One finite number, or a message that names the field."""
     number = real_numbers(Argument(name), value, f"a number {unit}".rstrip())
     if number.ndim:
@@ -170,10 +170,10 @@ def si_case(
 
 
 def moes_case(
-    M: Any,
-    L: Any,
-    pressure_viscosity_index: Any,
-    pressure_viscosity_coefficient: Any,
+    M: object,
+    L: object,
+    pressure_viscosity_index: object,
+    pressure_viscosity_coefficient: object,
     viscosity_law: str,
     compressible: bool,
 ) -> ContactCase:
@@ -194,14 +194,14 @@ def moes_case(
     return ContactCase(scales, 1.0, 1.0, 0.5 * math.pi, 1.0, 1.0, 4.0, None, bool(compressible))
 
 
-def require_kind(name: str, value: Any, fits: bool, why: str, remedy: str) -> None:
+def require_kind(name: str, value: object, fits: bool, why: str, remedy: str) -> None:
     """Raise :class:`InputError` for an object of another type than wanted."""
     if not fits:
         what = f"{name} is of the type {type(value).__name__}"
         raise InputError(what, f"argument {name}", why, remedy)
 
 
-def _check_lubricant(lubricant: Any) -> None:
+def _check_lubricant(lubricant: object) -> None:
     why = "the viscosity, its rise with pressure and the density are needed"
     remedy = (
         "Give tribodyn.lubricant.Lubricant(dynamic_viscosity, density, "

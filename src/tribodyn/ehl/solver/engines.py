@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from tribodyn.ehl.steady.contact_problem import ContactProblem, DiscreteContact, Outcome
+from tribodyn.ehl.solver.contact_problem import ContactProblem, DiscreteContact, Outcome
 from tribodyn.errors import InputError
 from tribodyn.interrupt import stoppable
 from tribodyn.types import Array, Index
