@@ -6,8 +6,9 @@ import math
 
 import pytest
 
-from known_ratings import MPA, UM, helical_example, rate_helical, rate_spur, spur_example
-from tribodyn.rating import ShaftMaterial, ShaftNotch, ShaftStress, rate_shaft
+from known_ratings import MPA, TEST_OIL, UM, helical_example, rate_helical, rate_spur, spur_example
+from tribodyn.gear import BasicRack, cylindrical_pair
+from tribodyn.rating import ShaftMaterial, ShaftNotch, ShaftStress, rate_pair, rate_shaft
 
 #: Factor, value as printed, SI unit of the print; pairs belong to pinion and wheel.
 SPUR = {
@@ -105,3 +106,34 @@ def test_shafts_of_an_examination_by_din_743():
     rating = rate_shaft(key, steel, ShaftStress(bent, twisted))
     assert rating.safety == pytest.approx(1.472, abs=5e-4)
     assert rating.yield_safety / 1.8 == pytest.approx(2.568, abs=5e-4)  # overload of 1.8
+
+
+def test_a_spur_pair_whose_figures_another_program_prints():
+    """Teeth 19 and 104 of github.com/hanslhansl/din3990 (tests/test_1.py), to its 16 digits.
+
+    DIN 3990-11 has the factors of geometry of ISO 6336; K factors are those printed, Z_E is 189.8.
+    """
+    pair = cylindrical_pair(
+        pinion_teeth=19, wheel_teeth=104, normal_module=4e-3, helix_angle=0.0,
+        normal_pressure_angle=math.radians(20.0), pinion_profile_shift_coefficient=0.5,
+        wheel_profile_shift_coefficient=0.15, pinion_face_width=48.64e-3,
+        wheel_face_width=48.64e-3, pinion_tip_diameter=88e-3, wheel_tip_diameter=425.2e-3,
+        pinion_rack=BasicRack(1.0, 1.25, 0.25), wheel_rack=BasicRack(1.0, 1.25, 0.25),
+    )  # fmt: skip
+    speed = 980.0 * math.pi / 30.0
+    loads = {"K_v": 1.0278576187783273, "K_Hbeta": 1.1064272863295082, "K_Halpha": 1.0}
+    rating = rate_pair(
+        pair, torque=55e3 / speed, speed=speed, oil=TEST_OIL, application_factor=1.75,
+        factors={**loads, "K_Falpha": 1.0, "Z_E": 189.8e3},
+    )  # fmt: skip
+    printed = {
+        "F_t": 14103.41869503906, "v": 3.89976368065613, "Z_eps": 0.906214912960638,
+        "M_1": 1.00554704549864, "M_2": 0.8835590102280203, "Z_H": 2.3959406670899934,
+        "sigma_H0": 875.3827378988153e6, "K_Fbeta": 1.0864854433487987,
+    }  # fmt: skip
+    assert {n: float(rating.factors[n]) for n in printed} == pytest.approx(printed, rel=1e-9)
+    assert rating.pinion.factors["sigma_H"] == pytest.approx(1241.7875902772687e6, rel=1e-9)
+    roots = {"s_Fn": (8.748743355951145, 9.239504610725831), "rho_F": (1.3161477577, 1.3259991929)}
+    for name, values in roots.items():
+        ours = [1e3 * gear.factors[name] for gear in rating.gears.values()]
+        assert ours == pytest.approx(values, rel=1e-4)  # its theta is iterated to 3e-4 degrees

@@ -208,3 +208,23 @@ def test_both_hands_are_stressed_alike():
     pairs = [helical_example(hand=hand) for hand in ("left", "right")]
     left, right = (root_stress_by_elements(pair, "wheel", mesh_of(pair)) for pair in pairs)
     assert left.greatest == pytest.approx(right.greatest, rel=1e-9)
+
+
+@pytest.mark.slow
+def test_rings_and_external_gears_of_many_teeth_have_the_ratio_of_a_rack():
+    """The lower ratio of rings is that of their straighter teeth, not of their fillets or rims."""
+    figures = {"wheel_profile_shift_coefficient": 0.0, "pinion_profile_shift_coefficient": 0.0}
+    ring = ring_example(wheel_teeth=-300, wheel_tip_diameter=None, **figures)
+    gear = ring_example(
+        wheel_teeth=300, wheel_tip_diameter=None, wheel_bore_diameter=572e-3, **figures
+    )
+    ratios = [root_stress_by_elements(pair, "wheel").ratio for pair in (ring, gear)]
+    assert ratios[0] == pytest.approx(ratios[1], rel=0.02)
+    rims = [ring_example(wheel_rim_diameter=rim) for rim in (0.17, 0.3)]
+    thin, thick = (root_stress_by_elements(pair, "wheel").ratio for pair in rims)
+    assert thin == pytest.approx(thick, rel=0.01)
+
+
+def test_a_rim_that_is_too_thin_is_named_as_such():
+    with pytest.raises(InputError, match=r"the rim of 150 mm .* Give a larger rim"):
+        root_stress_by_elements(ring_example(wheel_rim_diameter=0.15), "wheel")

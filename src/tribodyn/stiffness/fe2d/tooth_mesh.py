@@ -232,13 +232,13 @@ def tooth_mesh(
 def _check_rim(form: ToothForm, bore_radius: float) -> None:
     rim = form.sign * (form.root_radius - bore_radius)
     if rim < _THINNEST_RIM * form.normal_module:
+        name, change = ("rim", "larger") if form.sign < 0 else ("bore", "smaller")
         raise InputError(
-            f"the bore of {2e3 * bore_radius:.4g} mm leaves a rim of {rim * 1e3:.3g} mm "
-            "under the root circle",
-            where="bore_diameter",
+            f"the {name} of {2e3 * bore_radius:.4g} mm leaves {rim * 1e3:.3g} mm behind the root",
+            where=f"{name}_diameter",
             why=f"The finite element model needs {_THINNEST_RIM:g} modules, "
             f"{_THINNEST_RIM * form.normal_module * 1e3:.3g} mm",
-            remedy="Give a smaller bore",
+            remedy=f"Give a {change} {name}",
         )
 
 
