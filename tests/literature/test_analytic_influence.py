@@ -27,7 +27,7 @@ from tribodyn.stiffness import (
     weber_banaschek_compression,
 )
 from tribodyn.stiffness.teeth.analytic import analytic_influence
-from tribodyn.stiffness.teeth.weber import weber_influence
+from tribodyn.stiffness.teeth.influence import weber_influence
 
 WIDTH = 20e-3
 #: One pair carrying 100 N/mm [N/m].

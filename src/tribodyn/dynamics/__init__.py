@@ -9,14 +9,13 @@ from tribodyn.dynamics.harmonic.harmonic_balance import harmonic_balance
 from tribodyn.dynamics.harmonic.phase_response import Lines, PhaseResponse
 from tribodyn.dynamics.harmonic.radial_clearance import RadialClearance, clearance_motion
 from tribodyn.dynamics.linear.campbell import Campbell, Resonance, campbell
-from tribodyn.dynamics.linear.forced_response import ForcedResponse, forced_response
+from tribodyn.dynamics.linear.linear_system import ForcedResponse, forced_response
 from tribodyn.dynamics.linear.natural_modes import NaturalModes, natural_modes
 from tribodyn.dynamics.orbits.continuation import continuation
 from tribodyn.dynamics.orbits.solution_branch import Branch, SpecialPoint
 from tribodyn.dynamics.orbits.steady_state import steady_state
 from tribodyn.dynamics.running_up.run_up import run_up
-from tribodyn.dynamics.running_up.run_up_profile import SpeedProfile, speed_ramp
-from tribodyn.dynamics.running_up.run_up_result import RunUp
+from tribodyn.dynamics.running_up.run_up_result import RunUp, SpeedProfile, speed_ramp
 from tribodyn.dynamics.running_up.speed_sweep import Jump, SpeedSweep, speed_sweep
 from tribodyn.dynamics.structure.force_law import MeshForce, follow_load, law_contact, law_contacts
 from tribodyn.dynamics.structure.fzg12 import FZG12_LIGHT, FZG12_MESH_FREQUENCY, FZG12_NAMES, fzg12

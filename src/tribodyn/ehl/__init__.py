@@ -11,9 +11,8 @@
 | ``thermal`` | the film with its heat: temperatures and shear across it, friction |
 | ``film_stiffness`` | stiffness and damping of the film |
 | ``traction`` | shear of the oil, and its temperature |
-| ``load_share`` | how much of the load the film carries between rough surfaces, and the regime |
 | ``asperities`` | summits of rough flanks from their roughness, and their contact |
-| ``mixed_contact`` | which part of its load the film of a rough line contact carries, solved |
+| ``mixed_contact`` | how much of its load the film of a rough contact carries, and the regime |
 | ``flow_factors`` | mean flow between rough surfaces |
 | ``roughness`` | measured heights of a surface |
 """
@@ -47,15 +46,19 @@ from tribodyn.ehl.formulas.line import (
     pan_hamrock_central,
     pan_hamrock_minimum,
 )
-from tribodyn.ehl.load_share import balanced_load_share, film_load_share, lubrication_regime
-from tribodyn.ehl.mixed_contact import MixedLineContact, mixed_line_contact
+from tribodyn.ehl.mixed_contact import (
+    MixedLineContact,
+    balanced_load_share,
+    film_load_share,
+    lubrication_regime,
+    mixed_line_contact,
+)
 from tribodyn.ehl.models import FILM_MODELS, FilmModel
 from tribodyn.ehl.roughness import RoughnessProfile
 from tribodyn.ehl.steady.batch import LineContactBatch, solve_line_contacts
 from tribodyn.ehl.steady.line_contact import solve_line_contact, solve_line_contact_moes
 from tribodyn.ehl.steady.solution import LineContactSolution, ThermalLineContactSolution
 from tribodyn.ehl.thermal.thermal_model import BodyHeat, ThermalModel
-from tribodyn.ehl.traction.film_state import FilmState
 from tribodyn.ehl.traction.film_temperature import blok_flash_temperature, inlet_heating_factor
 from tribodyn.ehl.traction.shear_models import (
     SHEAR_MODELS,
@@ -64,7 +67,7 @@ from tribodyn.ehl.traction.shear_models import (
     newtonian_shear_stress,
     ree_eyring_shear_stress,
 )
-from tribodyn.ehl.traction.traction import Traction, film_traction
+from tribodyn.ehl.traction.traction import FilmState, Traction, film_traction
 from tribodyn.ehl.transient.solution import (
     ThermalTransientLineContact,
     TransientLineContact,

@@ -24,6 +24,7 @@ from tribodyn.errors import (
     require_positive,
     warn,
 )
+from tribodyn.record import from_parts
 from tribodyn.types import Array, ComplexArray
 
 #: Change of ln(w) for the slope of the estimated film.
@@ -312,14 +313,12 @@ def _on_coarse_grid(solution: SolvedContact) -> DiscreteContact:
     if grid.n <= _INTERVALS:
         return grid
     X = np.linspace(grid.X[0], grid.X[-1], _INTERVALS + 1)
-    problem = ContactProblem(
+    problem = from_parts(
+        ContactProblem,
+        grid,
         nodes=_INTERVALS + 1,
         domain=(float(grid.X[0]), float(grid.X[-1])),
-        lam=grid.lam,
-        oil=grid.oil,
         film=float(np.interp(0.0, grid.X, grid.H)),
-        load=grid.load,
-        tail=grid.tail,
         moes_load=solution.moes_load,
         profile=np.interp(X, grid.X, grid.shape - 0.5 * grid.X**2),
         tolerance=1e-8,

@@ -17,7 +17,7 @@ from tribodyn.model import Model, Registry
 from tribodyn.types import Array, Mask
 
 if TYPE_CHECKING:
-    from tribodyn.ehl.traction.film_state import FilmState
+    from tribodyn.ehl.traction.traction import FilmState
     from tribodyn.friction.mesh_means import PitchPoint
 
 

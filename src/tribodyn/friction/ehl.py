@@ -8,7 +8,6 @@ from dataclasses import replace
 import numpy as np
 
 from tribodyn.ehl.thermal.thermal_model import BodyHeat, ThermalModel
-from tribodyn.ehl.traction.film_state import FilmState
 from tribodyn.ehl.traction.film_temperature import (
     film_temperature_rise,
     film_thermal_resistance,
@@ -16,7 +15,7 @@ from tribodyn.ehl.traction.film_temperature import (
     thermal_oil,
 )
 from tribodyn.ehl.traction.shear_models import EYRING, EYRING_STRESS, LIMIT, SHEAR_MODELS, THINNING
-from tribodyn.ehl.traction.traction import FilmShear
+from tribodyn.ehl.traction.traction import FilmShear, FilmState
 from tribodyn.errors import Argument, InputError, warn
 from tribodyn.friction.base import LAWS, TribologicalContact
 from tribodyn.model import choice, flag

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 
 from tribodyn.errors import Argument, InputError, require_between, require_positive
 from tribodyn.units import ZERO_CELSIUS
@@ -298,10 +299,12 @@ def viscosity_at_100_degc(viscosity_at_40: float, index: float) -> float:
         span = f"{ends[0] * 1e6:.4g} to {ends[1] * 1e6:.4g} mm^2/s"
         why = f"With that index an oil has {span} at 40 degC: 2 to 1000 mm^2/s at 100 degC"
         raise InputError(what, Argument("viscosity_at_40"), why, "Check the value and its unit")
+    return halved(lambda at_100: viscosity_at_40_degc(at_100, index), viscosity_at_40, low, high)
+
+
+def halved(rising: Callable[[float], float], value: float, low: float, high: float) -> float:
+    """Argument between two ends at which a rising function has a value, by bisection."""
     for _ in range(_HALVINGS):
         middle = 0.5 * (low + high)
-        if viscosity_at_40_degc(middle, index) < viscosity_at_40:
-            low = middle
-        else:
-            high = middle
+        low, high = (middle, high) if rising(middle) < value else (low, middle)
     return high

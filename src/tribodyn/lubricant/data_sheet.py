@@ -8,6 +8,7 @@ from tribodyn.lubricant.astm import (
     LEAST_AT_100,
     MARGIN,
     TemperaturePoint,
+    halved,
     viscosity_at_40_degc,
     viscosity_at_100_degc,
     viscosity_index,
@@ -20,8 +21,6 @@ from tribodyn.units import ZERO_CELSIUS
 AT_40, AT_100 = ZERO_CELSIUS + 40.0, ZERO_CELSIUS + 100.0
 #: Temperatures at which an oil of a data sheet is known [K].
 SHEET_RANGE = (AT_40 - MARGIN, AT_100 + MARGIN)
-#: Halvings of the range of a viscosity: more than a float has digits.
-_HALVINGS = 60
 #: Difference of a stated viscosity index from that of both viscosities that their rounding allows.
 _INDEX_TOLERANCE = 5.0
 
@@ -61,16 +60,13 @@ def points_through(
     def points_of(at_100: float) -> tuple[TemperaturePoint, TemperaturePoint]:
         return (AT_40, viscosity_at_40_degc(at_100, index)), (AT_100, at_100)
 
+    def viscosity_of(at_100: float) -> float:
+        return walther_viscosity(temperature, points_of(at_100))
+
     low, high = LEAST_AT_100, GREATEST_AT_100
-    ends = [walther_viscosity(temperature, points_of(end)) for end in (low, high)]
+    ends = [viscosity_of(end) for end in (low, high)]
     require_between("viscosity", viscosity, ends[0], ends[1], "m^2/s")
-    for _ in range(_HALVINGS):
-        middle = 0.5 * (low + high)
-        if walther_viscosity(temperature, points_of(middle)) < viscosity:
-            low = middle
-        else:
-            high = middle
-    return points_of(high)
+    return points_of(halved(viscosity_of, viscosity, low, high))
 
 
 def conductivity_of_petroleum(density_at_15_degc: float, temperature: float) -> float:

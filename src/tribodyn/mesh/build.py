@@ -18,7 +18,7 @@ from tribodyn.errors import ModelWarning, collected, require_positive, warn
 from tribodyn.friction import FrictionParts, TribologicalContact, pitch_point
 from tribodyn.gear import Material
 from tribodyn.lubricant import Lubricant
-from tribodyn.mesh.columns import FILM_COLUMNS, MIXED_COLUMNS
+from tribodyn.mesh.columns import FILM_COLUMNS, MIXED_COLUMNS, MeshColumns
 from tribodyn.mesh.cycle import MeshCycle, PairsInContact, mesh_cycle, pairs_in_contact
 from tribodyn.mesh.film.film_columns import as_columns, friction_columns
 from tribodyn.mesh.gears import Gears
@@ -340,15 +340,8 @@ def _steps(pair: Gears, model: str) -> int:
 
 
 def _motion_columns(motion: Kinematics, direction: Array) -> dict[str, Array]:
-    return {
-        "sliding_direction": direction,
-        "sliding_speed": motion.sliding_speed,
-        "entrainment_speed": motion.entrainment_speed,
-        "slide_to_roll_ratio": motion.slide_to_roll_ratio,
-        "equivalent_radius": motion.equivalent_radius,
-        "pinion_curvature_radius": motion.pinion_curvature_radius,
-        "wheel_curvature_radius": motion.wheel_curvature_radius,
-    }
+    columns = {n: v for n, v in vars(motion).items() if n in MeshColumns.__dataclass_fields__}
+    return {**columns, "sliding_direction": direction}
 
 
 def _spread(contact_values: dict[str, Array], in_contact: Mask) -> dict[str, Any]:

@@ -30,7 +30,7 @@ from tribodyn.stiffness.models.prescribed import (
     tabulated_stiffness,
 )
 from tribodyn.stiffness.teeth.face_influence import FaceInfluence, SlicedInfluence
-from tribodyn.stiffness.teeth.influence import GearInfluence
+from tribodyn.stiffness.teeth.influence import GearInfluence, weber_banaschek_compression
 from tribodyn.stiffness.teeth.tooth_bending import (
     LoadPoint,
     ToothBendingCompliance,
@@ -44,7 +44,6 @@ from tribodyn.stiffness.teeth.tooth_compliance import (
     tooth_compliance,
     wind_up_compliance,
 )
-from tribodyn.stiffness.teeth.weber import weber_banaschek_compression
 from tribodyn.stiffness.tip_relief.harris import HarrisMap, transmission_error_over_torque
 from tribodyn.stiffness.tip_relief.lead import LeadOptimum, optimize_lead
 from tribodyn.stiffness.tip_relief.search import (

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from tribodyn.dynamics import Contact, SpeedProfile, System, run_up, speed_ramp
-from tribodyn.dynamics.running_up.run_up_profile import read_profile
+from tribodyn.dynamics.running_up.run_up_result import read_profile
 from tribodyn.dynamics.running_up.run_up_tables import Tables, sampled_grid
 from tribodyn.errors import ComputationError, InputError
 

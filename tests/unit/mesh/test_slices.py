@@ -11,7 +11,7 @@ import pytest
 from tribodyn.contact import effective_modulus, face_contacts, hertz_line, path_of_contact
 from tribodyn.dynamics import follow_load, helical12
 from tribodyn.ehl import FILM_MODELS
-from tribodyn.ehl.traction.film_state import FilmState
+from tribodyn.ehl.traction.traction import FilmState
 from tribodyn.errors import InputError, ModelWarning
 from tribodyn.friction import LAWS, TribologicalContact
 from tribodyn.gear import FlankModification, Material, cylindrical_pair

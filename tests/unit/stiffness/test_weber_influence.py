@@ -8,7 +8,7 @@ import pytest
 from tribodyn.errors import InputError
 from tribodyn.gear import Material
 from tribodyn.stiffness import load_point
-from tribodyn.stiffness.teeth.weber import half_plane_compliance, weber_influence
+from tribodyn.stiffness.teeth.influence import half_plane_compliance, weber_influence
 
 WIDTH = 8e-3
 

@@ -15,7 +15,6 @@ from typing import Any
 import numpy as np
 
 from tribodyn.arrays.memory import Memo
-from tribodyn.dynamics.equations.clock import table_of
 from tribodyn.dynamics.equations.entry import (
     Entry,
     entry_values,
@@ -23,6 +22,7 @@ from tribodyn.dynamics.equations.entry import (
     refuse_jumps,
     varies,
 )
+from tribodyn.dynamics.equations.phases import table_of
 from tribodyn.dynamics.equations.system import System
 from tribodyn.errors import InputError
 from tribodyn.types import Array, Index, Mask

@@ -13,7 +13,6 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from tribodyn.dynamics.equations.clock import same_entry, table_of
 from tribodyn.dynamics.equations.entry import varies
 from tribodyn.dynamics.equations.grid import (
     Grid,
@@ -22,6 +21,7 @@ from tribodyn.dynamics.equations.grid import (
     system_events,
     unrepeated,
 )
+from tribodyn.dynamics.equations.phases import same_entry, table_of
 from tribodyn.dynamics.equations.system import (
     CONTACT_ENTRIES,
     FRICTION_ENTRIES,

@@ -20,19 +20,17 @@ from numpy.typing import ArrayLike
 
 from tribodyn.arrays.memory import Memo
 from tribodyn.checks import require_flag, require_number, require_whole
-from tribodyn.dynamics.equations.clock import (
-    on_clock,
-    refuse_several_clocks,
-    with_turning_error,
-)
 from tribodyn.dynamics.equations.entry import Entry, read_events, varies
 from tribodyn.dynamics.equations.phases import (
     Cycles,
     Turning,
     count_phases,
+    on_clock,
     on_one_clock,
     read_cycles,
     read_turning,
+    refuse_several_clocks,
+    with_turning_error,
 )
 from tribodyn.errors import InputError, real_numbers, require_between, require_positive
 from tribodyn.types import Array

@@ -5,9 +5,8 @@ The public names are those of :mod:`tribodyn.dynamics`.
 | module | content |
 |---|---|
 | ``run_up`` | the motion while the speed changes as prescribed |
-| ``run_up_profile`` | prescribed speed, and time over mesh phase |
 | ``run_up_tables`` | grids and row tables that follow the speed |
 | ``run_up_march`` | integration cycle by cycle, and the recorded samples |
-| ``run_up_result`` | samples and figures of every mesh cycle |
+| ``run_up_result`` | prescribed speed, samples and figures of every mesh cycle |
 | ``speed_sweep``, ``speed_sweep_follow`` | steady motions over the speed, upwards and downwards |
 """

@@ -16,8 +16,12 @@ from tribodyn.dynamics.equations.system import System
 from tribodyn.dynamics.linear.natural_modes import NaturalModes, natural_modes
 from tribodyn.dynamics.orbits.steady_state import steady_state
 from tribodyn.dynamics.running_up.run_up_march import CycleMarcher, Pace, Samples
-from tribodyn.dynamics.running_up.run_up_profile import SpeedProfile, read_profile
-from tribodyn.dynamics.running_up.run_up_result import CycleStatistics, RunUp
+from tribodyn.dynamics.running_up.run_up_result import (
+    CycleStatistics,
+    RunUp,
+    SpeedProfile,
+    read_profile,
+)
 from tribodyn.dynamics.running_up.run_up_tables import Table, Tables, systems_by_frequency
 from tribodyn.dynamics.time.ensemble import lane_statistics
 from tribodyn.dynamics.time.simulate import read_start

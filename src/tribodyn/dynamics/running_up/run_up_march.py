@@ -21,7 +21,7 @@ from tribodyn.dynamics.equations.orbit_coordinates import (
 from tribodyn.dynamics.equations.program import Program
 from tribodyn.dynamics.equations.system import System
 from tribodyn.dynamics.modal.modal_march import ModalMarcher
-from tribodyn.dynamics.running_up.run_up_profile import SpeedProfile
+from tribodyn.dynamics.running_up.run_up_result import SpeedProfile
 from tribodyn.dynamics.running_up.run_up_tables import Table, Tables, blend_weight
 from tribodyn.dynamics.time.response import Response, build_response
 from tribodyn.errors import ComputationError

@@ -188,6 +188,11 @@ def support_damping(
     return ((ratio or 0.0) * critical[0], (ratio or 0.0) * critical[1])
 
 
+def _values(gears: Gearing, *names: str) -> dict[str, Any]:
+    """Some values of the gears by name, and the settings of their contact."""
+    return {**{name: getattr(gears, name) for name in names}, **gears.contact}
+
+
 @STRUCTURES.define(
     "spur-6dof",
     options=_supports(REQUIRED),
@@ -203,16 +208,11 @@ def _spur6(
     bearing_damping_ratio: float | None,
 ) -> System:
     return spur6(
-        gears.mesh,
-        mass=gears.mass,
-        moment_of_inertia=gears.moment_of_inertia,
-        base_radius=gears.base_radius,
-        torque=gears.torque,
+        **_values(gears, "mesh", "mass", "moment_of_inertia", "base_radius", "torque"),
         bearing_stiffness=pair_values(bearing_stiffness),
         bearing_damping=support_damping(
             bearing_stiffness, gears.mass, bearing_damping, bearing_damping_ratio
         ),
-        **gears.contact,
     )
 
 
@@ -220,13 +220,7 @@ def _spur6(
     "torsional", meaning="both gears turn about fixed axes", papers=("kahraman-singh",)
 )
 def _torsional(gears: Gearing) -> System:
-    return torsional(
-        gears.mesh,
-        moment_of_inertia=gears.moment_of_inertia,
-        base_radius=gears.base_radius,
-        torque=gears.torque,
-        **gears.contact,
-    )
+    return torsional(**_values(gears, "mesh", "moment_of_inertia", "base_radius", "torque"))
 
 
 #: Options of the two shafts of the rig: default, range, quantity, description of each shaft.
@@ -351,14 +345,8 @@ def _spatial_options() -> dict[str, Option]:
     meaning="both gears move along three axes, turn and tilt on supports of their own",
 )
 def _helical12(gears: Gearing, **options: Any) -> System:
-    return helical12(
-        gears.mesh,
-        mass=gears.mass,
-        moment_of_inertia=gears.moment_of_inertia,
-        torque=gears.torque,
-        supports=SpatialSupports(**options),
-        **gears.contact,
-    )
+    values = _values(gears, "mesh", "mass", "moment_of_inertia", "torque")
+    return helical12(supports=SpatialSupports(**options), **values)
 
 
 _OWN_AXES = "That model has no crossed axes"
@@ -419,14 +407,8 @@ def _hypoid_options() -> dict[str, Option]:
     meaning="both gears move along three axes, turn and tilt; shafts join them to engine and load",
 )
 def _hypoid14(gears: Gearing, **options: Any) -> System:
-    return hypoid14(
-        gears.mesh,
-        mass=gears.mass,
-        moment_of_inertia=gears.moment_of_inertia,
-        torque=gears.torque,
-        supports=HypoidSupports(**options),
-        **gears.contact,
-    )
+    values = _values(gears, "mesh", "mass", "moment_of_inertia", "torque")
+    return hypoid14(supports=HypoidSupports(**options), **values)
 
 
 #: Where the gears of a mesh move: in their plane, in space, or in space on crossed axes.

@@ -8,14 +8,13 @@ from typing import Any
 
 import numpy as np
 
-from tribodyn.ehl.traction.film_state import FilmState
 from tribodyn.ehl.traction.film_temperature import (
     film_temperature_rise,
     film_thermal_resistance,
     thermal_oil,
 )
 from tribodyn.ehl.traction.shear_models import SHEAR_MODELS
-from tribodyn.ehl.traction.traction import FilmShear
+from tribodyn.ehl.traction.traction import FilmShear, FilmState
 from tribodyn.errors import require_between
 from tribodyn.record import Record, fact, quantity, record
 from tribodyn.types import Array

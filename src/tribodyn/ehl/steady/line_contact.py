@@ -23,6 +23,7 @@ from tribodyn.ehl.thermal.thermal_model import ThermalModel, read_thermal
 from tribodyn.errors import InputError, real_numbers, require_between, warn
 from tribodyn.interrupt import aside
 from tribodyn.lubricant import Lubricant
+from tribodyn.record import from_parts
 from tribodyn.types import Array
 
 #: Heights that are added to the gap, at the nodes or over the position.
@@ -268,24 +269,19 @@ def solve_case(case: ContactCase, options: SolverOptions) -> LineContactSolution
     domain = choose_domain(options.domain, options.inlet, film, scales, within)
     if flooded:
         tolerance -= min(cut_error(domain.start, film), 0.5 * tolerance)
-    problem = ContactProblem(
+    problem = from_parts(
+        ContactProblem,
+        *(scales, domain, options),
         nodes=count,
         domain=(domain.start, domain.end),
-        lam=scales.lam,
-        oil=scales.oil,
         film=film,
         load=0.5 * math.pi - domain.tail_load,
-        tail=domain.tail,
-        moes_load=scales.moes_load,
-        tolerance=options.tolerance,
-        flux_tolerance=options.flux_tolerance,
         film_tolerance=tolerance if automatic else 0.0,
-        levels=options.levels,
+        profile=None,
+        start=None if options.start is None else _start(options.start),
     )
     if options.profile is not None:
         problem = replace(problem, profile=_heights(options.profile, case, problem))
-    if options.start is not None:
-        problem = replace(problem, start=_start(options.start))
 
     heat = options.heat
 

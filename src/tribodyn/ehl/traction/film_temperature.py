@@ -338,16 +338,10 @@ def inlet_heating_factor(
     >>> round(float(factor), 3)
     0.789
     """
-    require_between("slide_to_roll_ratio", slide_to_roll_ratio, -np.inf, np.inf)
-    ratio = np.asarray(slide_to_roll_ratio, dtype=float)
-    speed, pressure, viscosity, coefficient, conductivity, modulus = positive(
-        entrainment_speed=entrainment_speed,
-        hertz_pressure=hertz_pressure,
-        dynamic_viscosity=dynamic_viscosity,
-        temperature_viscosity_coefficient=temperature_viscosity_coefficient,
-        thermal_conductivity=thermal_conductivity,
-        effective_modulus=effective_modulus,
-    )
+    arguments = dict(locals())
+    ratio = np.asarray(arguments.pop("slide_to_roll_ratio"), dtype=float)
+    require_between("slide_to_roll_ratio", ratio, -np.inf, np.inf)
+    speed, pressure, viscosity, coefficient, conductivity, modulus = positive(**arguments)
     loading = viscosity * coefficient * speed**2 / conductivity
     numerator = 1.0 - 13.2 * pressure / modulus * loading**0.42
     denominator = 1.0 + 0.213 * (1.0 + 2.23 * np.abs(ratio) ** 0.83) * loading**0.64

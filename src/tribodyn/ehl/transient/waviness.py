@@ -59,12 +59,7 @@ def amplitude_reduction(
     >>> float(amplitude_reduction(100e-6, 100e-6, 20.0, 10.0).round(3))
     0.577
     """
-    length, width, load, viscosity = positive(
-        wavelength=wavelength,
-        half_width=half_width,
-        moes_load=moes_load,
-        moes_viscosity=moes_viscosity,
-    )
+    length, width, load, viscosity = positive(**locals())
     number = length / width * load**0.75 / np.sqrt(viscosity)
     return np.asarray(1.0 / (1.0 + _LINEAR * number + _SQUARE * number**2))
 

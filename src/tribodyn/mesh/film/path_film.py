@@ -19,7 +19,7 @@ import numpy as np
 from tribodyn.contact import hertz_line
 from tribodyn.ehl import FILM_MODELS
 from tribodyn.ehl.steady.batch import Films
-from tribodyn.ehl.traction.film_state import FilmState
+from tribodyn.ehl.traction.traction import FilmState
 from tribodyn.errors import quiet, warn
 from tribodyn.friction import LAWS, FrictionParts, TribologicalContact
 from tribodyn.mesh.cycle import (

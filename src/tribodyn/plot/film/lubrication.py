@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from tribodyn.drawing import Need, Sketch, drawing
-from tribodyn.ehl.load_share import REGIME_LIMITS, REGIMES
+from tribodyn.ehl.mixed_contact import REGIME_LIMITS, REGIMES
 from tribodyn.plot.film.path import Path, gaps_sentence
 from tribodyn.plot.mesh.cycle import roll_angle_positions, sharing_under_load, table_drawing
 from tribodyn.plot.theme.colors import MUTED, PAIR_COLORS, PINION, TOTAL, WHEEL

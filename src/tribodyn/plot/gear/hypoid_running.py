@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from tribodyn.drawing import Sketch, drawing
-from tribodyn.ehl.load_share import REGIME_LIMITS
+from tribodyn.ehl.mixed_contact import REGIME_LIMITS
 from tribodyn.plot.gear.hypoid import flank_rows, outline, pattern
 from tribodyn.plot.theme.colors import (
     FILLS,

@@ -149,7 +149,7 @@ def _below(sector: BevelSector) -> Array:
 
 #: Folders, relative to this one, and modules on which the numbers depend.
 _SOURCES = (
-    (".", "bevel bevel_sector bevel_tooth condense ring sections"),
+    (".", "bevel bevel_sector bevel_tooth ring sections"),
     ("../fe2d", "ring tooth_mesh"),
     ("../../gear/hypoid", "conjugate ease_off envelope wheel_flanks"),
 )

@@ -12,8 +12,7 @@ from tribodyn.errors import ComputationError
 from tribodyn.stiffness.fe2d.ring import quadratic_shapes
 from tribodyn.stiffness.fe2d.tooth_mesh import SectorMesh, numbered_sector
 from tribodyn.stiffness.fe3d.bevel_tooth import BevelTooth
-from tribodyn.stiffness.fe3d.condense import condensed
-from tribodyn.stiffness.fe3d.sections import SolidMatrices, elasticity
+from tribodyn.stiffness.fe3d.sections import SolidMatrices, condensed, elasticity
 from tribodyn.stiffness.fe3d.sector import node_freedoms, turned_stiffness
 from tribodyn.types import Array, Index
 

@@ -9,7 +9,7 @@ import numpy as np
 
 from tribodyn.arrays.splines import bspline_values, interpolation_knots
 from tribodyn.progress import SILENT, Progress
-from tribodyn.stiffness.fe3d.condense import eliminated
+from tribodyn.stiffness.fe3d.sections import eliminated
 from tribodyn.types import Array, Index
 
 #: Harmonics that are all solved; beyond, the next one is so much larger, and those between

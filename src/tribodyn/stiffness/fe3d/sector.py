@@ -9,13 +9,14 @@ import numpy as np
 
 from tribodyn.gear import SpurGear
 from tribodyn.stiffness.fe2d.tooth_mesh import MeshSize, SectorMesh, tooth_mesh
-from tribodyn.stiffness.fe3d.condense import condensed, eliminated
 from tribodyn.stiffness.fe3d.face import FaceBasis, FaceSize, face_basis
 from tribodyn.stiffness.fe3d.sections import (
     SectionMatrices,
     annulus_matrices,
+    condensed,
     elasticity,
     element_matrices,
+    eliminated,
 )
 from tribodyn.types import Array, Index
 

@@ -44,7 +44,7 @@ def _analytic(gear: SpurGear, material: Material, *, reference: str) -> GearInfl
 
 
 def _weber(gear: SpurGear, material: Material, *, reference: str) -> GearInfluence:
-    from tribodyn.stiffness.teeth.weber import weber_influence
+    from tribodyn.stiffness.teeth.influence import weber_influence
 
     return weber_influence(gear, material, reference=reference)
 

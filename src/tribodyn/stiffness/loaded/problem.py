@@ -14,8 +14,7 @@ from tribodyn.contact.face_contacts import checked_slices
 from tribodyn.errors import Argument, ComputationError, InputError
 from tribodyn.gear import Material, flank_gap, hunting_period, pitch_gap, run_out_gap
 from tribodyn.interrupt import stoppable
-from tribodyn.stiffness.teeth.influence import GearInfluence
-from tribodyn.stiffness.teeth.weber import local_terms
+from tribodyn.stiffness.teeth.influence import GearInfluence, local_terms
 from tribodyn.types import Array, Index, Mask
 
 #: Separation of flanks that cannot meet [m].

@@ -14,10 +14,9 @@ import numpy as np
 from tribodyn.errors import Argument, ComputationError, InputError, ModelOption, require_positive
 from tribodyn.gear import Material, SpurGear, SpurPair
 from tribodyn.stiffness.model import MODELS, MeshState, reference_option
-from tribodyn.stiffness.teeth.influence import GearInfluence
+from tribodyn.stiffness.teeth.influence import GearInfluence, local_terms
 from tribodyn.stiffness.teeth.tooth_bending import flank_nodes, load_point
 from tribodyn.stiffness.teeth.tooth_compliance import tooth_compliance
-from tribodyn.stiffness.teeth.weber import local_terms
 from tribodyn.types import Array, Mask
 
 #: The load share settles to this relative change; each pass gains more than one digit.

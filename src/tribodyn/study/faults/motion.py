@@ -233,7 +233,7 @@ def contacts_over_turns(
 ) -> tuple[tuple[Contact, ...], tuple[LoadFriction, ...]]:
     """Contacts and friction of teeth over whole turns, from those of a stiffness."""
     from tribodyn.dynamics import law_contact
-    from tribodyn.dynamics.equations.clock import on_clock
+    from tribodyn.dynamics.equations.phases import on_clock
     from tribodyn.dynamics.equations.system import FRICTION_ENTRIES
     from tribodyn.dynamics.structure.force_law import with_load_friction
 
