@@ -28,7 +28,7 @@ from tribodyn.study.studies.runner import run_each
 from tribodyn.study.studies.sweep_result import SweepPoint
 
 if TYPE_CHECKING:
-    from tribodyn.dynamics import Response, System
+    from tribodyn.dynamics import System
     from tribodyn.study.case.case import Case
 
 
@@ -76,16 +76,6 @@ def varied(
     return run_each(member, range(len(changes)), task="Tooth contacts", progress=progress)
 
 
-def result_under(
-    case: MachineCase,
-    progress: Progress,
-    of_meshes: list[MeshWarning],
-    start: Response | None = None,
-) -> LoadResult:
-    """Compute a machine at its operating point, from a similar motion if any."""
-    return run_load(case, case.operating_point, progress, of_meshes, start)
-
-
 def results_under(
     case: MachineCase, changes: Sequence[Mapping[str, object]], progress: Progress = SILENT
 ) -> Iterator[tuple[LoadResult | InputError | ComputationError, tuple[str, ...]]]:
@@ -97,7 +87,8 @@ def results_under(
         with collected() as caught, single_blas_thread():
             try:
                 changed = case.replace(change)
-                result = result_under(changed, stages, of_meshes, start)
+                point = changed.operating_point
+                result = run_load(changed, point, stages, of_meshes, start)
                 result.figures.update(rated_figures(changed, result))
             except (InputError, ComputationError) as error:
                 yield error, ()

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -27,7 +27,6 @@ if TYPE_CHECKING:
     from tribodyn.dynamics import Campbell, NaturalModes
     from tribodyn.study.case.case import Case
     from tribodyn.study.machine.case import MachineCase
-    from tribodyn.types import Array
 
 _SPEED = "operation.speed"
 #: Smallest share of the energy that is reported.
@@ -78,7 +77,7 @@ def natural_modes(
     from tribodyn.dynamics import natural_modes as compute
 
     if not case.lumped:
-        return modes_at_rest(case, progress).modes
+        return modes_at_rest(case, progress)[0]
     return compute(build_system(case, progress=progress)[0])
 
 
@@ -122,10 +121,9 @@ def campbell(
     [(5, 3784), (4, 4730)]
     """
     if not case.lumped:
-        if between is None:
-            return parts_campbell(case, None, progress)
-        low, high = ends_of(case, _SPEED, between)
-        return parts_campbell(case, np.linspace(low, high, 8), progress)
+        limits = None if between is None else ends_of(case, _SPEED, between)
+        speeds = None if limits is None else np.linspace(*limits, 8)
+        return campbell_of(structure_at_rest(case, progress), speeds)
     system, mesh_frequency = build_system(case, progress=progress)
     ends = None if between is None else operation_values("speed", between, case)
     return diagram_of(system, case, mesh_frequency, ends, orders)
@@ -153,21 +151,9 @@ def _describe_shares(shares: dict[str, float]) -> str:
     return ", ".join(f"{name} {100 * share:.0f} %" for name, share in largest if share >= _LEAST)
 
 
-class ModesOfParts(NamedTuple):
-    """Natural modes, and what the harmonics of the meshes strain of each of them."""
-
-    modes: MachineModes
-    orders: tuple[MeshOrder, ...]
-
-
-def modes_at_rest(case: MachineCase, progress: Progress = SILENT) -> ModesOfParts:
-    """Natural modes of a machine or a stage with the teeth at its operating point."""
+def modes_at_rest(
+    case: MachineCase, progress: Progress = SILENT
+) -> tuple[MachineModes, tuple[MeshOrder, ...]]:
+    """Natural modes of a machine at its operating point, and what the meshes strain of them."""
     modes = machine_modes(structure_at_rest(case, progress))
-    return ModesOfParts(modes, mesh_orders(modes))
-
-
-def parts_campbell(
-    case: MachineCase, speeds: Array | None = None, progress: Progress = SILENT
-) -> MachineCampbell:
-    """Campbell diagram of a machine or a stage over the speed of its input [rad/s]."""
-    return campbell_of(structure_at_rest(case, progress), speeds)
+    return modes, mesh_orders(modes)

@@ -19,9 +19,10 @@ from tribodyn.study.case.values import FaultError, Plain, read_value
 from tribodyn.study.faults.clock import MOST_CYCLES, PairTurns, varies_over_turns
 from tribodyn.study.faults.turning import refuse_long_period
 from tribodyn.study.first_use import compile_in_parallel
+from tribodyn.study.machine.run import run_load
 from tribodyn.study.pipeline.assembly import rotation_of
 from tribodyn.study.planetary.common import common_lines, line_labels
-from tribodyn.study.studies.case_grid import Member, result_under, results_under, varied
+from tribodyn.study.studies.case_grid import Member, results_under, varied
 from tribodyn.study.studies.levels import MachineLevels, levels_of
 from tribodyn.study.studies.study_axes import read_axes
 
@@ -330,7 +331,7 @@ def parts_run_up(
 
     middle = case.replace({"operation.speed": float(np.sqrt(ends[0] * ends[1]))})
     with collected(), single_blas_thread():
-        result = result_under(middle, progress, [])
+        result = run_load(middle, middle.operating_point, progress, [])
     if result.system.phases:
         span = duration + hold + duration * down
         time = np.linspace(0.0, span, _STEADY)

@@ -82,7 +82,9 @@ def _steady_cycles(lanes: Lanes, places: int, progress: Progress) -> Cycles:
             law = forces(
                 compiled.system, nodes, beat, q, v, scales=Scales.of_lanes(lane_scales), extra=extra
             )
-            for name, values in _signals(member, nodes, law, lane_scales).items():
+            for name, values in signals_at(
+                member.system, member.mesh, nodes, law, lane_scales[:, None, None, :]
+            ).items():
                 _put(values, nodes, phase, signals[name], figures[name], to)
         progress.advance(group.size)
     progress.finish()
@@ -112,11 +114,6 @@ def _put(values: Array, nodes: Nodes, phase: Array, to: Array, figures: Any, lan
     left[0::3], left[2::3] = left[0::3] + 1e-13, left[2::3] - 1e-13
     for lane, row in zip(lanes, values.reshape(lanes.size, -1), strict=True):
         to[lane] = np.interp(phase + 1e-13, left, row)
-
-
-def _signals(member: Any, nodes: Nodes, law: Forces, scales: Array) -> dict[str, Array]:
-    """Signals on the samples of the steps (lanes, steps, 3)."""
-    return signals_at(member.system, member.mesh, nodes, law, scales[:, None, None, :])
 
 
 def signals_at(
