@@ -149,7 +149,7 @@ def mean_friction(
     law: str,
     state: tuple[ArrayLike, ...],
     lubricant_factor: ArrayLike,
-    factor: Callable[[Array, Array, Array, Array], Any],
+    factor: Callable[[Array, Array, Array, Array], Array | float],
     fastest: float = _FASTEST,
 ) -> Array:
     """Formula of this family, times a factor of load, speed, radius and viscosity.
@@ -179,13 +179,13 @@ def mean_friction(
 
 def mean_law(
     name: str, *, law_options: Mapping[str, object] | None = None, rough: bool = True, **about: Any
-) -> Callable[[Callable[..., Any]], None]:
+) -> Callable[[Callable[..., Array]], None]:
     """Register a function of contacts and their pitch point as a law with one value everywhere.
 
     With ``rough`` it receives the arguments of the formula above as ``state``, and its own options.
     """
 
-    def keep(function: Callable[..., Any]) -> None:
+    def keep(function: Callable[..., Array]) -> None:
         def law(contact: TribologicalContact, **options: Any) -> Array:
             point: PitchPoint = contact.require("pitch")
             if rough:

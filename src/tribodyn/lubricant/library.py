@@ -19,14 +19,18 @@ _SAME_TEMPERATURE = 0.01
 _OF_OTHER_TEMPERATURES = ("viscosity_index", "density_fall", "base_oil")
 
 
+#: An oil as the library has it: tables with value, unit and source, or lists of them.
+OilRecord = dict[str, Any]
+
+
 @lru_cache(maxsize=1)
-def _records() -> Registry[dict[str, Any]]:
+def _records() -> Registry[OilRecord]:
     """Read the library once."""
     import tomllib
     from importlib.resources import files
 
     text = files("tribodyn.lubricant").joinpath("library.toml").read_text(encoding="utf-8")
-    records: Registry[dict[str, Any]] = Registry("oil of the library")
+    records: Registry[OilRecord] = Registry("oil of the library")
     for name, record in tomllib.loads(text).items():
         records.register(name)(record)
     return records
@@ -114,7 +118,7 @@ def temperature_range(name: str) -> tuple[float, float]:
 
 
 def _common(
-    name: str, record: dict[str, Any], unused: tuple[str, ...] = (), remark: str = ""
+    name: str, record: OilRecord, unused: tuple[str, ...] = (), remark: str = ""
 ) -> dict[str, Any]:
     """Arguments common to all oils of the library; sources of unused entries are left out."""
     quantities_of: dict[str, list[str]] = {}
@@ -130,7 +134,7 @@ def _common(
     }
 
 
-def _at_temperature(name: str, record: dict[str, Any], temperature: float | None) -> Lubricant:
+def _at_temperature(name: str, record: OilRecord, temperature: float | None) -> Lubricant:
     """Oil with data at two temperatures."""
     cold, warm = (
         (float(point["temperature"]), float(point["value"]))
@@ -145,7 +149,7 @@ def _at_temperature(name: str, record: dict[str, Any], temperature: float | None
     )
 
 
-def _as_known(name: str, record: dict[str, Any], temperature: float | None) -> Lubricant:
+def _as_known(name: str, record: OilRecord, temperature: float | None) -> Lubricant:
     """Oil with data at one temperature, at that temperature or at another one."""
     known_point = float(record["temperature"]["value"])
     if temperature is not None and not abs(temperature - known_point) <= _SAME_TEMPERATURE:
@@ -162,7 +166,7 @@ def _as_known(name: str, record: dict[str, Any], temperature: float | None) -> L
     )
 
 
-def _by_index(name: str, record: dict[str, Any], temperature: float) -> Lubricant:
+def _by_index(name: str, record: OilRecord, temperature: float) -> Lubricant:
     """Oil away from its known point: along the line of its viscosity index through that point."""
     known_point = float(record["temperature"]["value"])
     low, high = SHEET_RANGE

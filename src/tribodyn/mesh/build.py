@@ -256,7 +256,7 @@ def table_of(
     )
 
 
-def _face_columns(cycle: MeshCycle) -> dict[str, Any]:
+def _face_columns(cycle: MeshCycle) -> dict[str, Array]:
     """Where the contacts are on the face, if they are slices of it."""
     slices = cycle.slices
     if slices is None:

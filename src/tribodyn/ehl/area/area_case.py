@@ -9,7 +9,6 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, field
-from typing import Any
 
 import numpy as np
 
@@ -22,8 +21,10 @@ from tribodyn.ehl.solver.contact_case import (
     _check_lubricant,
     _scalar,
     contact_scales,
+    positive_scalar,
+    speed_and_modulus,
 )
-from tribodyn.errors import InputError, require_between, require_one_of, require_positive
+from tribodyn.errors import InputError, require_between, require_one_of
 from tribodyn.lubricant import Lubricant
 from tribodyn.types import Array
 
@@ -114,35 +115,25 @@ def entrained_radius(radius_x: float, radius_y: float, angle: float) -> float:
 
 
 def point_case(
-    normal_force: Any,
-    principal_radii: tuple[Any, Any],
-    entrainment_speed: Any,
-    lubricant: Any,
-    effective_modulus: Any,
-    entrainment_angle: Any,
+    normal_force: float,
+    principal_radii: tuple[float, float],
+    entrainment_speed: float,
+    lubricant: Lubricant,
+    effective_modulus: float,
+    entrainment_angle: float,
     viscosity_law: str,
     compressible: bool,
 ) -> PointCase:
     """Check a contact in SI."""
-    force = _scalar("normal_force", normal_force, "[N]")
-    radius_x, radius_y = principal_radii
-    radii = _scalar("radius_x", radius_x, "[m]"), _scalar("radius_y", radius_y, "[m]")
-    speed = _scalar("entrainment_speed", entrainment_speed, "[m/s]")
-    modulus = _scalar("effective_modulus", effective_modulus, "[Pa]")
-    angle = _scalar("entrainment_angle", entrainment_angle, "[rad]")
-    require_positive("normal_force", force, "N", remedy="1 kN is 1000 N")
-    for name, radius in zip(("radius_x", "radius_y"), radii, strict=True):
-        require_positive(
-            name, radius, "m", remedy="8 mm are 8e-3 m; a contact without curvature is a line"
-        )
-    require_positive(
-        "entrainment_speed",
-        speed,
-        "m/s",
-        remedy="A film needs a rolling motion: give half the sum of the surface speeds",
+    force = positive_scalar("normal_force", normal_force, "N", "1 kN is 1000 N")
+    remedy = "8 mm are 8e-3 m; a contact without curvature is a line"
+    radius_x, radius_y = (
+        positive_scalar(name, radius, "m", remedy)
+        for name, radius in zip(("radius_x", "radius_y"), principal_radii, strict=True)
     )
-    require_between("effective_modulus", modulus, 1e5, 1e13, "Pa", remedy="220 GPa are 2.2e11 Pa")
-    turn = 2.0 * math.pi
+    radii = radius_x, radius_y
+    speed, modulus = speed_and_modulus(entrainment_speed, effective_modulus)
+    angle, turn = _scalar("entrainment_angle", entrainment_angle, "[rad]"), 2.0 * math.pi
     require_between("entrainment_angle", angle, -turn, turn, "rad", remedy="45 deg are 0.7854 rad")
     _check_lubricant(lubricant)
     law = require_one_of("viscosity_law", viscosity_law, LAWS)
@@ -160,8 +151,8 @@ def point_case(
     alpha = 0.0 if law == "isoviscous" else lubricant.pressure_viscosity_coefficient
     material = alpha * modulus * viscous**0.25
     names = "normal_force, the radii and entrainment_speed"
-    require_between("M", load, *_LOADS, remedy=f"It follows from {names}: check their units")
     remedy = f"It follows from {names}: check their units"
+    require_between("M", load, *_LOADS, remedy=remedy)
     require_between("L", material, 0.0, _GREATEST_MATERIAL, remedy=remedy)
     # The numbers of a line with the same growth alpha p_h: the oil knows the pressure alone.
     scales = contact_scales(

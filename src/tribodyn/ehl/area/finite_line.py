@@ -5,13 +5,12 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from dataclasses import dataclass, field
-from typing import Any
 
 import numpy as np
 
 from tribodyn.checks import require_number
 from tribodyn.ehl.area.area_case import Grid
-from tribodyn.ehl.area.multigrid import AreaProblem, solve_area
+from tribodyn.ehl.area.multigrid import AreaProblem, Outcome, solve_area
 from tribodyn.ehl.area.point_contact import STATED_LIMIT, requested_nodes
 from tribodyn.ehl.area.solution import FiniteLineSolution
 from tribodyn.ehl.solver.contact_case import ContactCase, require_kind, si_case
@@ -295,7 +294,7 @@ def _checked_numbers(
     return edge, limit
 
 
-def _warn_of_ends(outcome: Any) -> None:
+def _warn_of_ends(outcome: Outcome) -> None:
     """Warn of a film at the ends that the grid does not resolve."""
     if float(outcome.film.min()) <= 0.0:
         warn(
@@ -362,8 +361,12 @@ def _problem(
     return Grid(x, y), problem
 
 
+#: Force, length, profile, and what failed before.
+_Stated = tuple[float, float, RollerProfile, tuple[str, ...]]
+
+
 def _assemble(
-    case: ContactCase, grid: Grid, problem: AreaProblem, outcome: Any, stated: tuple[Any, ...]
+    case: ContactCase, grid: Grid, problem: AreaProblem, outcome: Outcome, stated: _Stated
 ) -> FiniteLineSolution:
     """Solution in SI, with the infinite line at the load of mid length."""
     force, length, profile, attempts = stated

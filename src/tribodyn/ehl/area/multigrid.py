@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 from functools import cache, lru_cache
-from typing import Any, NamedTuple
+from types import ModuleType
+from typing import NamedTuple
 
 import numpy as np
 
@@ -12,7 +13,7 @@ from tribodyn.types import Array, ComplexArray
 
 
 @cache
-def _kernels() -> Any:
+def _kernels() -> ModuleType:
     """Import the compiled part, and Numba with it, where it is needed first."""
     from tribodyn.ehl._kernel import area_relaxation
 

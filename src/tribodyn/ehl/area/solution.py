@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from typing import Any
-
 import numpy as np
 
 from tribodyn.contact.hertz import dry_half_width
@@ -101,12 +99,12 @@ class PointContactSolution(Record):
     compressible: bool = fact()
 
     @property
-    def line_half_width(self) -> Any:
+    def line_half_width(self) -> Array:
         """Half width of the dry contact at every position across the entrainment [m]."""
         across, half, side = self.y, self.semi_axis_x, self.semi_axis_y
         if abs(np.sin(self.entrainment_angle)) > abs(np.cos(self.entrainment_angle)):
             across, half, side = self.x, self.semi_axis_y, self.semi_axis_x
-        return half * np.sqrt(np.maximum(1.0 - (across / side) ** 2, 0.0))
+        return np.asarray(half * np.sqrt(np.maximum(1.0 - (across / side) ** 2, 0.0)))
 
     def friction(
         self,

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, field
-from typing import Any
 
 import numpy as np
 
@@ -124,29 +123,35 @@ def _scalar(name: str, value: object, unit: str) -> float:
     return float(number)
 
 
+def positive_scalar(name: str, value: float, unit: str, remedy: str) -> float:
+    """One positive number."""
+    number = _scalar(name, value, f"[{unit}]")
+    require_positive(name, number, unit, remedy=remedy)
+    return number
+
+
+def speed_and_modulus(entrainment_speed: float, effective_modulus: float) -> tuple[float, float]:
+    """Entrainment speed and effective modulus of any contact."""
+    remedy = "A film needs a rolling motion: give half the sum of the surface speeds"
+    speed = positive_scalar("entrainment_speed", entrainment_speed, "m/s", remedy)
+    modulus = _scalar("effective_modulus", effective_modulus, "[Pa]")
+    require_between("effective_modulus", modulus, 1e5, 1e13, "Pa", remedy="220 GPa are 2.2e11 Pa")
+    return speed, modulus
+
+
 def si_case(
-    load_per_width: Any,
-    equivalent_radius: Any,
-    entrainment_speed: Any,
-    lubricant: Any,
-    effective_modulus: Any,
+    load_per_width: float,
+    equivalent_radius: float,
+    entrainment_speed: float,
+    lubricant: Lubricant,
+    effective_modulus: float,
     viscosity_law: str,
     compressible: bool,
 ) -> ContactCase:
     """Check a contact in SI."""
-    load = _scalar("load_per_width", load_per_width, "[N/m]")
-    radius = _scalar("equivalent_radius", equivalent_radius, "[m]")
-    speed = _scalar("entrainment_speed", entrainment_speed, "[m/s]")
-    modulus = _scalar("effective_modulus", effective_modulus, "[Pa]")
-    require_positive("load_per_width", load, "N/m", remedy="1 N/mm is 1000 N/m")
-    require_positive("equivalent_radius", radius, "m", remedy="8 mm are 8e-3 m")
-    require_positive(
-        "entrainment_speed",
-        speed,
-        "m/s",
-        remedy="A film needs a rolling motion: give half the sum of the surface speeds",
-    )
-    require_between("effective_modulus", modulus, 1e5, 1e13, "Pa", remedy="220 GPa are 2.2e11 Pa")
+    load = positive_scalar("load_per_width", load_per_width, "N/m", "1 N/mm is 1000 N/m")
+    radius = positive_scalar("equivalent_radius", equivalent_radius, "m", "8 mm are 8e-3 m")
+    speed, modulus = speed_and_modulus(entrainment_speed, effective_modulus)
     _check_lubricant(lubricant)
     M, L = moes_numbers(load, radius, speed, lubricant, modulus)
     if require_one_of("viscosity_law", viscosity_law, LAWS) == "isoviscous":

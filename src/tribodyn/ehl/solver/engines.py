@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -11,6 +11,9 @@ from tribodyn.ehl.solver.contact_problem import ContactProblem, DiscreteContact,
 from tribodyn.errors import InputError
 from tribodyn.interrupt import stoppable
 from tribodyn.types import Array, Index
+
+if TYPE_CHECKING:
+    from tribodyn.ehl._kernel.steady import SteadyContact
 
 #: Intervals of the coarsest grid at least, and interval that resolves an inlet, whose length
 #: goes with the film to the power 2/3, between rigid bodies with its root.
@@ -77,7 +80,7 @@ def newton_engine(problem: ContactProblem) -> Outcome:
     )
 
 
-def steady_contact(problem: ContactProblem, factor: int = 1) -> Any:
+def steady_contact(problem: ContactProblem, factor: int = 1) -> SteadyContact:
     """Contact for the kernels, with the profile on the grid ``factor`` times as wide."""
     from tribodyn.ehl._kernel.steady import SteadyContact
 
