@@ -130,3 +130,27 @@ def test_numbers_of_a_line_are_the_smallest() -> None:
     assert line_cause((2, 0), meshes) == "2 x a"
     assert line_cause((0, 6), meshes) == "3 x b"
     assert line_cause((2, -1), meshes) == "2 x a - 1 x b / 2"
+
+
+def test_the_spectrum_names_the_largest_combination_lines() -> None:
+    """Sums and differences of two meshes of computed teeth stand at their exact frequencies."""
+    from tribodyn import plot
+
+    base = case({"z1": 29, "z2": 71, "z3": 23, "z4": 67}, phases="on")
+    keys = ("stiffness", "transmission_error_amplitude")
+    computed = {f"meshes.mesh{n}.{key}": None for n in (1, 2) for key in keys}
+    motion = td.run(base.replace({**computed, "stiffness.model": "iso6336"})).motion
+    named = [trace for trace in plot.machine_orders(motion).data if trace.name == "several phases"]
+    first, second = 1000 / 60 * 29, 1000 / 60 * 29 / 71 * 23
+    assert list(motion.mesh_frequency) == pytest.approx([first, second])
+    texts = dict(zip(named[0].text, named[0].x, strict=True))
+    assert len(texts) == 5
+    rates = {"mesh1": first, "mesh2": second}
+    for text, hertz in texts.items():
+        words = text.replace(" - ", " + -").split(" + ")
+        parts = [word.split(" x ") for word in words]
+        assert {name for _, name in parts} == {"mesh1", "mesh2"}
+        expected = sum(float(count) * rates[name] for count, name in parts)
+        assert abs(expected) == pytest.approx(hertz, rel=1e-9)
+    constant = td.run(base).motion  # of constant stiffness: linear, no combinations
+    assert all(trace.name != "several phases" for trace in plot.machine_orders(constant).data)

@@ -33,6 +33,9 @@ if TYPE_CHECKING:
 
 
 _HARMONICS = 10
+#: Strongest lines of a part that are searched, parts with the largest swing, and combinations of
+#: phases that are named in a figure.
+_STRONGEST, _SEARCHED, _NAMED = 60, 6, 5
 
 
 def _lines(motion: MachineMotion, quantity: str, amplitudes: Array) -> list[Trace]:
@@ -62,6 +65,31 @@ def _lines(motion: MachineMotion, quantity: str, amplitudes: Array) -> list[Trac
     return traces
 
 
+def _combinations(motion: MachineMotion, quantity: str, signal: Array) -> list[Trace]:
+    """Largest lines that several phases make together in one part, with their causes."""
+    if motion.phase_turns is None:
+        return []  # on one clock an order has no cause of its own
+    columns = signal.reshape(len(signal), -1)
+    largest: dict[str, tuple[float, float]] = {}
+    for column in np.argsort(-np.ptp(columns, axis=0), kind="stable")[:_SEARCHED]:
+        for each in motion.lines(columns[:, column], _STRONGEST):
+            if np.count_nonzero(each.numbers) > 1 and (" + " in each.cause or " - " in each.cause):
+                before = largest.get(each.cause, (0.0, 0.0))
+                largest[each.cause] = max(before, (abs(each.amplitude), each.frequency))
+    chosen = sorted(largest, key=lambda cause: -largest[cause][0])[:_NAMED]
+    if not chosen:
+        return []
+    amplitudes, frequencies = np.array([largest[cause] for cause in chosen]).T
+    x, y = displayed("frequency", frequencies), displayed(quantity, amplitudes)
+    hover = f"%{{y:.4g}} {display_unit(quantity)} at %{{x:.6g}} {display_unit('frequency')}"
+    points = marked(
+        x, y, "several phases", MUTED, 6, symbol="diamond", text=chosen, showlegend=False,
+        textposition="top center", hovertemplate=f"{hover}, %{{text}}<extra></extra>",
+    )  # fmt: skip
+    named = {**points, "mode": "markers+text", "cliponaxis": False}
+    return [strokes(*stems(x, y), MUTED, 1, showlegend=False), named]
+
+
 def _total(motion: MachineMotion, signal: Array) -> Array:
     """Amplitudes over all directions and parts at the orders of the meshes."""
     waves = np.abs(motion.harmonics(signal, np.array(list(motion.mesh_orders(_HARMONICS)))))
@@ -81,6 +109,8 @@ def _caption(motion: MachineMotion) -> str:
         + below * bool(kinds)
         + " The colour names the mesh whose harmonic lies at that frequency."
         * (len(motion.mesh) > 1)
+        + " Diamonds are the largest lines that several phases make together, in one part, with "
+        "their cause." * (motion.phase_turns is not None)
     )
 
 
@@ -98,15 +128,18 @@ def machine_orders(motion: MachineMotion) -> Sketch:
         ("acceleration", "Housing", motion.acceleration),
     ]
     rows = [
-        (q, label, _above_rounding(_total(motion, signal), signal))
+        (q, label, _above_rounding(_total(motion, signal), signal), signal)
         for q, label, signal in signals
         if signal.shape[1]
     ]
     panels = [
-        from_zero(axis_label(quantity, label), _lines(motion, quantity, values))
-        for quantity, label, values in rows
+        from_zero(
+            axis_label(quantity, label),
+            [*_lines(motion, quantity, values), *_combinations(motion, quantity, signal)],
+        )
+        for quantity, label, values, signal in rows
     ]
-    quantity, label, values = rows[-1]
+    quantity, label, values, _ = rows[-1]
     orders = motion.mesh_orders(_HARMONICS)
     top = int(np.argmax(values))
     meshes = list(orders.values())[top]
