@@ -76,6 +76,7 @@ __all__ = ["ANY", "FILES", "LINES", "import_circles", "lines_of_code", "measures
 #: study: hunting pairs move over phases, lines name their cause, no longest period
 #: types: arrays of texts have a name; arguments: annotations with a name
 #: stiffness: rims of rings named as such
+#: study: one reader for cases of every kind
 LINES: dict[str, int] = {
     "__init__": 105,
     "__main__": 3,
@@ -84,7 +85,7 @@ LINES: dict[str, int] = {
     "app": 2007,
     "arguments": 573,
     "arrays": 161,
-    "cases": 1372,
+    "cases": 1374,
     "checkpoints": 142,
     "checks": 56,
     "cli": 2832,
@@ -92,21 +93,21 @@ LINES: dict[str, int] = {
     "contact": 422,
     "cookbook": 107,
     "drawing": 195,
-    "dynamics": 15418,
-    "ehl": 9642,
+    "dynamics": 15378,
+    "ehl": 9604,
     "errors": 224,
-    "exchange": 2190,
-    "faults": 1717,
+    "exchange": 2193,
+    "faults": 1721,
     "files": 247,
-    "friction": 1463,
+    "friction": 1462,
     "gear": 3735,
     "interrupt": 215,
     "losses": 938,
-    "lubricant": 556,
+    "lubricant": 553,
     "machine": 5655,
     "measurement": 3372,
     "members": 3,
-    "mesh": 5639,
+    "mesh": 5632,
     "model": 223,
     "nomenclature": 215,
     "notebook": 57,
@@ -118,8 +119,8 @@ LINES: dict[str, int] = {
     "report": 1729,
     "scope": 55,
     "signals": 1782,
-    "stiffness": 5270,
-    "study": 19193,
+    "stiffness": 5262,
+    "study": 19086,
     "surrogate": 767,
     "types": 8,
     "uncertainty": 289,
@@ -128,7 +129,7 @@ LINES: dict[str, int] = {
     "variants": 1048,
 }
 #: Modules of the package, and its annotations without a type.
-FILES, ANY = 733, 2261
+FILES, ANY = 726, 2236
 
 _NO_CODE = {
     tokenize.COMMENT, tokenize.NL, tokenize.NEWLINE, tokenize.INDENT, tokenize.DEDENT,

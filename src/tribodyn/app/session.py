@@ -385,8 +385,8 @@ def _plain(option: Option, text: str) -> Any:
 
 def initial_case(folder: Workspace, requested: str) -> tuple[AnyCase, str]:
     """Load the case of ``tribodyn app``: built-in, a file of the folder, or a new one."""
-    from tribodyn.study.case.read import read_case
     from tribodyn.study.case.reference import start_toml
+    from tribodyn.study.machine.read import read_case
 
     if not requested:
         return read_case(start_toml(), "case.toml"), ""

@@ -105,9 +105,10 @@ def _carry_out(order: Mapping[str, Any], tell: Tell) -> None:
 
 
 def _case(order: Mapping[str, Any]) -> Case | MachineCase:
-    from tribodyn.study.machine.read import read_any_case
+    from tribodyn.study.machine.read import read_case
 
-    return read_any_case(order["case"], "case.toml")
+    case: Case | MachineCase = read_case(order["case"], "case.toml")
+    return case
 
 
 def _run(order: Mapping[str, object], folder: Path, tell: Tell) -> None:

@@ -8,9 +8,9 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from tribodyn.errors import InputError, OutputExistsError
-from tribodyn.study.case.read import named_files, parse_toml, read_text
+from tribodyn.study.case.read import parse_toml, read_text
 from tribodyn.study.machine.housing_files import copy_housing
-from tribodyn.study.machine.read import is_machine, machine_files, read_any_case
+from tribodyn.study.machine.read import files_of, read_case
 
 if TYPE_CHECKING:
     from tribodyn.study.case.case import Case
@@ -86,12 +86,11 @@ class Workspace:
     def read(self, text: str, place: Path) -> Case | MachineCase:
         """Read a case from text as a file of the folder."""
         name = self.relative_name(place)
-        data = parse_toml(text, name)
-        files = [named for _, named in named_files(text, name)]
-        for named in [*files, *(machine_files(data) if is_machine(data) else ())]:
+        for named in files_of(parse_toml(text, name)):
             if not (place.parent / named).resolve().is_relative_to(self.root):
                 raise self._outside(named)
-        return read_any_case(text, str(place))
+        case: Case | MachineCase = read_case(text, str(place))
+        return case
 
     def save_case(self, case: Case | MachineCase, name: str, force: bool = False) -> Path:
         """Write a case file with the files of a housing; replace one only with ``force``."""

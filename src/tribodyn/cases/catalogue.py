@@ -16,8 +16,9 @@ from tribodyn.errors import InputError
 from tribodyn.study.case.case import Case
 from tribodyn.study.case.checks import DEFAULT_MARK
 from tribodyn.study.case.provenance import changed_keys, same
-from tribodyn.study.case.read import read_case, read_text
+from tribodyn.study.case.read import read_text
 from tribodyn.study.case.values import Plain
+from tribodyn.study.machine.read import read_case
 
 
 def case_files() -> dict[str, Path]:
@@ -133,7 +134,8 @@ def _models(origin: str | None, plain: Mapping[str, str]) -> list[Case]:
 def _model(path: Path) -> Case | None:
     """A named case, or None where another package brings one that is faulty."""
     try:
-        return read_case(read_text(path), path.name)
+        model: Case = read_case(read_text(path), path.name)
+        return model
     except InputError:
         return None
 

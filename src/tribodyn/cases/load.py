@@ -75,7 +75,7 @@ def _load_toml(
 ) -> Any:
     from tribodyn.cases.catalogue import with_known_reasons
     from tribodyn.study.case.read import read_text
-    from tribodyn.study.machine.read import read_any_case
+    from tribodyn.study.machine.read import read_case
     from tribodyn.validated_files import file_kind
 
     paths = all_files()
@@ -92,8 +92,8 @@ def _load_toml(
     if not kind:
         raise InputError(_not_found(name, path, list(paths)))
     if name in paths:
-        return read_any_case(read_text(path), path.name, path.parent, changes, by)
-    case = read_any_case(read_text(path), name, None, changes, by)
+        return read_case(read_text(path), path.name, path.parent, changes, by)
+    case = read_case(read_text(path), name, None, changes, by)
     return with_known_reasons(case) if case.lumped else case
 
 

@@ -20,8 +20,8 @@ from tribodyn.exchange.machine_parts import part_name
 from tribodyn.exchange.rexs_file import WHOLE_CASE, model_of
 from tribodyn.lubricant import Lubricant
 from tribodyn.study.case.case import Case
-from tribodyn.study.case.read import parse_toml, read_case
-from tribodyn.study.machine.read import is_machine
+from tribodyn.study.case.read import parse_toml
+from tribodyn.study.machine.read import kind_of_tables, read_case
 
 #: Values closer than this are the same: files hold decimal fractions of millimetres.
 _SAME = 1e-9
@@ -89,8 +89,9 @@ def _case(model: GearboxModel, stage: Stage, load: Load, changes: dict[str, Any]
     if "lubricant.name" in changes:  # another oil than that of the file
         file_values = {key: v for key, v in file_values.items() if not key.startswith("lubricant.")}
         notes = {key: note for key, note in notes.items() if not key.startswith("lubricant.")}
-    if model.file.stored_case and not is_machine(parse_toml(model.file.stored_case, model.path)):
-        stored_case = read_case(model.file.stored_case, f"{model.path}: {WHOLE_CASE}")
+    text = model.file.stored_case
+    if text and kind_of_tables(parse_toml(text, model.path)).lumped:
+        stored_case = read_case(text, f"{model.path}: {WHOLE_CASE}")
         return _updated(model, stored_case, file_values).replace(changes)
     data: dict[str, Any] = {**file_values, **MODELS, **changes}
     for key in ("operation.speed", "operation.torque"):

@@ -27,7 +27,7 @@ from tribodyn.study.case.case import Case
 from tribodyn.study.case.section import flat_keys
 from tribodyn.study.case.user_input import Source, plain
 from tribodyn.study.machine.case import MachineCase
-from tribodyn.study.machine.read import read_any_case
+from tribodyn.study.machine.read import read_case
 from tribodyn.study.machine.unused_keys import changed_machine
 from tribodyn.types import Array
 
@@ -152,7 +152,9 @@ def _stored_machine(model: GearboxModel) -> MachineCase | None:
     """Machine that tribodyn stored in the file, with the changes made since."""
     if not model.file.stored_case:
         return None
-    stored = read_any_case(model.file.stored_case, model.path, Path(model.path).parent)
+    stored: Case | MachineCase = read_case(
+        model.file.stored_case, model.path, Path(model.path).parent
+    )
     if stored.lumped:
         return None
     written = GearboxModel(model_of(tree_of(stored).model, "the case in the file"))

@@ -10,7 +10,6 @@ from tribodyn.arguments import guarded
 if TYPE_CHECKING:
     from tribodyn.cases.papers.friction_experiment import friction_experiment
     from tribodyn.study.case.case import Case
-    from tribodyn.study.case.read import read_case
     from tribodyn.study.faults.clock import TurningClock, turning_clock
     from tribodyn.study.faults.recording_set import RecordingSet, record_set
     from tribodyn.study.faults.wear import Wear, wear
@@ -19,6 +18,7 @@ if TYPE_CHECKING:
     from tribodyn.study.machine.load_cases import LoadCase
     from tribodyn.study.machine.modes import MachineCampbell
     from tribodyn.study.machine.motion import MachineMotion, PeriodicSamples
+    from tribodyn.study.machine.read import read_case
     from tribodyn.study.machine.result import (
         LoadResult,
         MachineResult,
@@ -137,7 +137,7 @@ __all__ = [
 #: Public names by the module that they are taken from.
 _NAMES = {
     "case.case": "Case",
-    "case.read": "read_case",
+    "machine.read": "read_case",
     "machine.case": "MachineCase PartsCase PlanetaryCase",
     "machine.load_cases": "LoadCase",
     "faults.clock": "TurningClock turning_clock",

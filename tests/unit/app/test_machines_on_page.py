@@ -22,9 +22,8 @@ from tribodyn.app.workspace import Workspace
 from tribodyn.cases.load import load_case
 from tribodyn.errors import InputError
 from tribodyn.progress import SILENT
-from tribodyn.study import bifurcation
+from tribodyn.study import bifurcation, read_case
 from tribodyn.study.faults.sensors import sensors_of
-from tribodyn.study.machine.read import read_any_case
 
 MACHINE = GEARED.partition("[[load_cases]]")[0]
 
@@ -73,7 +72,7 @@ def test_a_typed_value_changes_the_machine_and_a_wrong_one_is_marked(desk: TabSe
     assert typed(desk, "bearings.A.position", value="40", unit="mm") == []
     assert typed(desk, "friction.law", value="constant")[0]["key"] == "friction.coefficient"
     assert typed(desk, "friction.coefficient", value="0.05") == []
-    desk.take(read_any_case(MACHINE), "")
+    desk.take(read_case(MACHINE), "")
     assert typed(desk, "bearings.A.radial_stiffness", value="4e8 N/m, 3e8 N/m") == []
     assert desk.case.bearings["A"].radial_stiffness == (4e8, 3e8)
 
@@ -108,7 +107,7 @@ def test_studies_of_one_mesh_list_the_meshes_that_they_take(desk: TabSession) ->
 @pytest.mark.parametrize("kind", ["bifurcation", "continuation", "basins"])
 def test_motions_are_those_of_the_chosen_mesh(kind: str, tmp_path: Path) -> None:
     """Meshes of constant springs have no computed teeth, but move."""
-    case = read_any_case(SMALL, "small.toml")
+    case = read_case(SMALL, "small.toml")
     first = first_values(kind, case)
     assert first["mesh"] == "first"
     fields = form_of(kind, first, case, ())["groups"][0]["fields"]
@@ -120,7 +119,7 @@ def test_motions_are_those_of_the_chosen_mesh(kind: str, tmp_path: Path) -> None
 @pytest.mark.slow
 @pytest.mark.filterwarnings("ignore::tribodyn.errors.ModelWarning")
 def test_a_diagram_of_the_page_is_that_of_the_command(tmp_path: Path) -> None:
-    case = read_any_case(SMALL, "small.toml")
+    case = read_case(SMALL, "small.toml")
     values = {"values": "1200..1234 rpm:2", "cycles": "4", "transient": "2", "mesh": "second"}
     compute("bifurcation", case, first_values("bifurcation", case) | values, SILENT, tmp_path / "b")
     names = {"mesh": "second", "cycles": 4, "transient": 2, "keep": 4}
@@ -203,7 +202,7 @@ FEW = {
 @pytest.mark.filterwarnings("ignore::tribodyn.errors.ModelWarning")  # the page lists them
 @pytest.mark.parametrize("kind", ["modes", *FEW])
 def test_studies_of_machines_display_and_save_their_result(kind: str, tmp_path: Path) -> None:
-    case = read_any_case(MACHINE)
+    case = read_case(MACHINE)
     if kind in ("harris", "losses", "friction-from-loss"):  # of meshes with computed teeth
         case = load_case("two-stage-spur").replace({"friction.law": "schlenk"}, by="test")
     values = first_values(kind, case) | FEW.get(kind, {})

@@ -15,8 +15,7 @@ from tribodyn.errors import InputError
 from tribodyn.exchange import machine_from_rexs, read_rexs, stage_from_rexs, write_rexs
 from tribodyn.gear import zero_backlash_center_distance
 from tribodyn.machine import DeepGrooveBallBearing, TaperedRollerBearing, static_balance
-from tribodyn.study import MachineCase
-from tribodyn.study.machine.read import read_any_case
+from tribodyn.study import MachineCase, read_case
 
 MODELS = Path(__file__).parents[2] / "references" / "rexs"
 RPM = math.pi / 30.0
@@ -288,7 +287,7 @@ def test_tables_in_python_hold_lists_of_numbers_and_of_names() -> None:
         load_cases=[{"share": 0.3, "speed": 50.0}],
         assumed={"meshes.first.stiffness": "estimated"},
     )  # fmt: skip
-    again = read_any_case(case.to_toml())
+    again = read_case(case.to_toml())
     assert again.to_toml() == case.to_toml()
     assert again.shafts["in"].sections[1].inner_diameter == 0.01
     assert again.bearings["A"].radial_stiffness == (4e8, 5e8)

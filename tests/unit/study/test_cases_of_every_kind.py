@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import pickle
+import re
 import tomllib
 from typing import Any
 
@@ -11,8 +12,8 @@ import pytest
 import tribodyn as td
 from tribodyn.cases.catalogue import all_files
 from tribodyn.errors import InputError
+from tribodyn.study import read_case
 from tribodyn.study.case.provenance import changed_keys, provenance
-from tribodyn.study.machine.read import read_any_case
 
 CASES = (
     *("fzg-roughness", "fzg-12dof", "helical-pair", "hypoid-mixed-ehl"),
@@ -59,7 +60,7 @@ def test_a_changed_case_knows_the_values_that_it_began_with(case: Any) -> None:
     assert changed_keys(other) == ("operation.torque",)
     assert other.stated.base["operation.torque"] == case["operation.torque"]
     text = other.to_toml()
-    again = read_any_case(text, "case.toml")
+    again = read_case(text, "case.toml")
     assert "[based_on]" in text
     assert again == other
     assert again.to_toml() == text
@@ -88,12 +89,12 @@ def test_a_reason_is_dropped_once_its_value_changes(name: str, key: str) -> None
         record = f'{{ value = "{recorded!r} {unit}", reason = "a guess" }}'
         reason = '"a guess"' if recorded is None else record
         text = f'{case.to_toml().partition("[assumed]")[0]}\n[assumed]\n"{key}" = {reason}'
-        given = read_any_case(text, "x.toml")
+        given = read_case(text, "x.toml")
         assert given.assumed == ({key: "a guess"} if stays else {})
         assert (provenance(given)[key] == "assumed: a guess") == stays
         assert key not in given.replace({key: 1.2 * case[key]}).assumed
         other = changed(given)
-        again = read_any_case(other.to_toml(), "x.toml")
+        again = read_case(other.to_toml(), "x.toml")
         assert again == other
         assert again.assumed == given.assumed
 
@@ -101,7 +102,7 @@ def test_a_reason_is_dropped_once_its_value_changes(name: str, key: str) -> None
 def test_records_of_values_are_checked() -> None:
     wrong = f'{STAGE}\n[based_on]\n"planets.low.normal_module" = "2 kg"\n"planet.x" = 1\n'
     with pytest.raises(InputError) as error:
-        read_any_case(wrong, "x.toml")
+        read_case(wrong, "x.toml")
     texts = [str(problem) for problem in error.value.problems]
     assert any("x.toml" in text and "2 kg" in text for text in texts)
     assert any('there is no key "planet.x"' in text for text in texts)
@@ -118,7 +119,7 @@ def test_a_load_case_is_changed_by_its_name() -> None:
 
 
 def test_the_former_name_of_a_central_value_stays() -> None:
-    case = read_any_case(STAGE.replace('"600 N*m"', '"600 N*m +- 5 %"'), "x.toml")
+    case = read_case(STAGE.replace('"600 N*m"', '"600 N*m +- 5 %"'), "x.toml")
     with pytest.warns(DeprecationWarning, match="get"):
         assert case.central("operation.torque") == case["operation.torque"] == 600.0
     assert case.uncertain == {"operation.torque": "600 N*m +- 5 %"}
@@ -224,9 +225,9 @@ WIDTHS = {"pair": "gears.pinion", "machine": "gears.z1", "stage": "gears.s"}
 @pytest.mark.parametrize("kind", TEXTS)
 def test_a_file_is_written_as_it_was_read(kind: str) -> None:
     """Comments, empty lines, indents, lists over lines and numbers as typed."""
-    case = read_any_case(TEXTS[kind], "x.toml")
+    case = read_case(TEXTS[kind], "x.toml")
     assert case.to_toml() == TEXTS[kind]
-    assert read_any_case(TEXTS[kind].replace("\n", "\r\n"), "x.toml").to_toml() == TEXTS[kind]
+    assert read_case(TEXTS[kind].replace("\n", "\r\n"), "x.toml").to_toml() == TEXTS[kind]
     key = f"{WIDTHS[kind]}.face_width"
     other = case.replace({"operation.speed": "1300 rpm", key: 0.051, "material.density": 7850.0})
     lines = other.to_toml().partition("\n[based_on]")[0].splitlines()
@@ -234,7 +235,7 @@ def test_a_file_is_written_as_it_was_read(kind: str) -> None:
     assert 'speed = "1300 rpm"' in new
     assert any('face_width = "51 mm"' in line for line in new)
     assert '\n\n[material]\ndensity = "7850 kg/m^3"\n' in other.to_toml()
-    again = read_any_case(other.to_toml(), "x.toml")
+    again = read_case(other.to_toml(), "x.toml")
     assert again == other
     assert again.to_toml() == other.to_toml()
     back = other.replace({"operation.speed": "1200 rpm", key: case[key], "material": None})
@@ -245,16 +246,16 @@ def test_a_file_is_written_as_it_was_read(kind: str) -> None:
 @pytest.mark.parametrize("kind", TEXTS)
 def test_a_new_key_is_written_in_its_table(kind: str) -> None:
     keys = {f"{WIDTHS[kind]}.profile_shift_coefficient": -0.1, f"{WIDTHS[kind]}.density": 7850.0}
-    other = read_any_case(TEXTS[kind], "x.toml").replace(keys)
+    other = read_case(TEXTS[kind], "x.toml").replace(keys)
     text = other.to_toml()
     assert text.index("teeth") < text.index("density = ") < text.index("[operation]")
     assert 'density = "7850 kg/m^3"' in text
-    assert read_any_case(text) == other
+    assert read_case(text) == other
 
 
 def test_rows_of_a_list_keep_their_comments() -> None:
     """Each row its own: the first gets a torque, the second keeps that which it has."""
-    case = read_any_case(MACHINE, "x.toml")
+    case = read_case(MACHINE, "x.toml")
     keys = {"load_cases.slow.torque": "200 N*m", "load_cases.fast.speed": "700 rpm"}
     text = case.replace(keys).to_toml()
     slow, fast = text.partition("\n# The end.")[0].split("[[load_cases]]")[1:]
@@ -266,12 +267,12 @@ def test_rows_of_a_list_keep_their_comments() -> None:
 
 @pytest.mark.parametrize("kind", TEXTS)
 def test_a_case_from_python_has_meanings_as_comments(kind: str) -> None:
-    read = read_any_case(TEXTS[kind], "x.toml")
+    read = read_case(TEXTS[kind], "x.toml")
     case = type(read)(**tomllib.loads(TEXTS[kind]))
     text = case.to_toml()
     lines = text.partition("[assumed]")[0].splitlines()
     assert all("  # " in line for line in lines if line.startswith(("teeth", "speed", "[gears")))
-    again = read_any_case(text, "x.toml")
+    again = read_case(text, "x.toml")
     assert again == case == read
     assert again.to_toml() == text
 
@@ -281,3 +282,37 @@ def test_built_in_files_are_written_as_they_are(name: str) -> None:
     text = all_files()[name].read_text(encoding="utf-8")
     written = [line for line in td.load_case(name).to_toml().splitlines() if "_file" not in line]
     assert written == [line for line in text.splitlines() if "_file" not in line]
+
+
+@pytest.mark.parametrize("kind", TEXTS)
+@pytest.mark.parametrize(
+    ("wrong", "right"),
+    [("torqe", "torque"), ("operaton", "operation"), ("spede", "speed"), ("teet", "teeth")],
+)
+def test_a_misspelt_key_is_one_problem(kind: str, wrong: str, right: str) -> None:
+    """It is not missing besides, nor is what depends on it."""
+    text = re.sub(rf"\b{right}(?=\]|\s*=)", wrong, TEXTS[kind], count=1)
+    with pytest.raises(InputError) as error:
+        read_case(text, "x.toml")
+    (problem,) = error.value.problems
+    line = next(n for n, each in enumerate(text.splitlines(), 1) if wrong in each)
+    assert str(problem.where).startswith(f"x.toml:{line}: ")
+    assert f'Did you mean "{right}"?' in str(problem)
+
+
+@pytest.mark.parametrize("kind", TEXTS)
+def test_a_written_case_keeps_spreads_and_reasons(kind: str) -> None:
+    spread = '"4e2 N*m +- 5 %"  # measured'
+    reason = '[assumed]\n"operation.speed" = "a guess"  # of the owner\n'
+    text = TEXTS[kind].replace('"4e2 N*m"', spread) + f"\n{reason}"
+    case = read_case(text, "x.toml")
+    assert case.to_toml() == text
+    assert case.uncertain == {"operation.torque": "4e2 N*m +- 5 %"}
+    assert case["operation.torque"] == 400.0
+    other = case.replace({"material.density": 7850.0})
+    again = read_case(other.to_toml(), "x.toml")
+    assert again == other
+    assert again.uncertain == case.uncertain
+    assert again.assumed == other.assumed == {"operation.speed": "a guess"}
+    assert f"operation.torque = {spread}"[10:] in other.to_toml()
+    assert again.replace({"operation.speed": "900 rpm"}).assumed == {}

@@ -9,8 +9,8 @@ import pytest
 
 import tribodyn as td
 from tribodyn.errors import InputError
+from tribodyn.study import read_case
 from tribodyn.study.case.changes import with_values
-from tribodyn.study.machine.read import read_any_case
 
 
 @pytest.mark.parametrize(
@@ -56,7 +56,7 @@ def test_a_part_may_be_added_as_a_whole() -> None:
 def test_values_in_lists_have_spreads(name: str, key: str, middle: str, change: float) -> None:
     case = td.load_case(name).replace({key: f"{middle} +- 5 %"})
     assert case.uncertain == {key: f"{middle} +- 5 %"}
-    assert read_any_case(case.to_toml(), "x.toml").uncertain == case.uncertain
+    assert read_case(case.to_toml(), "x.toml").uncertain == case.uncertain
     assert case.replace({"solver.coupling_tolerance": 1e-5}).uncertain == case.uncertain
     certain = case.replace({key: change})
     assert (certain.uncertain, certain[key]) == ({}, pytest.approx(change))

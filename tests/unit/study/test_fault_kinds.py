@@ -10,8 +10,8 @@ from tests.unit.study.test_machine_run import GEARED
 
 import tribodyn as td
 from tribodyn.errors import InputError
+from tribodyn.study import read_case
 from tribodyn.study.faults.kinds import KINDS, LACKS, keys_in
-from tribodyn.study.machine.read import read_any_case
 
 PARTS = {
     "pair": {"gear": "wheel"},
@@ -37,7 +37,7 @@ def cases() -> dict[str, Any]:
     changes = {**spur, **teeth, **models, **size, "load_cases": None}
     return {
         "pair": td.load_case("fzg-roughness").replace({"stiffness.model": "analytic"}),
-        "machine": read_any_case(GEARED).replace(changes, by="test"),
+        "machine": read_case(GEARED).replace(changes, by="test"),
         "stage": td.load_case("planetary-stage"),
     }
 

@@ -20,8 +20,8 @@ from tribodyn.machine import (
     PlanetaryStage,
     Shaft,
 )
+from tribodyn.study import read_case
 from tribodyn.study.machine.motion import mesh_rotation
-from tribodyn.study.machine.read import read_any_case
 
 pytestmark = pytest.mark.filterwarnings("ignore::tribodyn.errors.ModelWarning")
 STAGE = """
@@ -59,7 +59,7 @@ torque = "200 N*m"
 
 @pytest.mark.slow
 def test_transmission_error_of_a_stage_with_an_unloaded_planet_is_micrometres() -> None:
-    result = td.run(read_any_case(STAGE, "stage.toml"))
+    result = td.run(read_case(STAGE, "stage.toml"))
     figures = result.summary()
     assert figures["planets.low.planets_unloaded"] == 1.0
     for mesh in ("low_sun2", "low_ring2"):
@@ -99,7 +99,7 @@ def stage() -> Machine:
 
 
 @pytest.mark.parametrize(
-    "machine", [read_any_case(GEARED).machine(), stage()], ids=["gears", "planets"]
+    "machine", [read_case(GEARED).machine(), stage()], ids=["gears", "planets"]
 )
 def test_turning_drive_has_no_transmission_error(machine: Machine) -> None:
     structure, motion = rotating(machine)

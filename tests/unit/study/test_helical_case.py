@@ -12,8 +12,8 @@ from tribodyn.cli import call
 from tribodyn.errors import InputError
 from tribodyn.exchange import case_from_rexs, read_rexs, write_rexs
 from tribodyn.mesh.gears import spatial_columns
+from tribodyn.study import read_case
 from tribodyn.study.case.provenance import changed_keys
-from tribodyn.study.case.read import read_case
 
 CASE = """
 [gears]

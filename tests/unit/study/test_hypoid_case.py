@@ -19,8 +19,8 @@ from tribodyn.losses.gearbox import PARTS, turning_bodies
 from tribodyn.mesh.hypoid.cells import contact_cells
 from tribodyn.plot import FIGURES
 from tribodyn.report.figure_blocks import HYPOID_SECTIONS
+from tribodyn.study import read_case
 from tribodyn.study.case.hypoid import mounting
-from tribodyn.study.case.read import read_case
 from tribodyn.study.pipeline.assembly import geometry, whole_system
 from tribodyn.study.pipeline.citations import cite
 from tribodyn.study.pipeline.preview import gearbox_losses_of

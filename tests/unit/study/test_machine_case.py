@@ -7,8 +7,8 @@ from tribodyn import load_case
 from tribodyn.errors import InputError
 from tribodyn.machine import Bearing
 from tribodyn.machine.bearing import takes_axial_force
+from tribodyn.study import read_case
 from tribodyn.study.machine.case import MachineCase
-from tribodyn.study.machine.read import read_any_case
 
 #: Four gears and two ratios, without shafts, bearings or tooth contact.
 SMALL = """
@@ -39,7 +39,7 @@ def reducer() -> MachineCase:
 
 
 def test_a_machine_of_four_gears_needs_no_shafts_and_bearings():
-    case = read_any_case(SMALL, "small.toml")
+    case = read_case(SMALL, "small.toml")
     machine = case.machine()
     assert case.implied_shafts == ("in", "middle", "out")
     assert dict(machine.clock.cycles) == {"first": 51, "second": 23}
@@ -48,7 +48,7 @@ def test_a_machine_of_four_gears_needs_no_shafts_and_bearings():
 
 
 def test_what_is_written_reads_back(reducer):
-    again = read_any_case(reducer.to_toml(), "again.toml")
+    again = read_case(reducer.to_toml(), "again.toml")
     assert again.to_toml() == reducer.to_toml()
     assert again.load_cases == reducer.load_cases
     assert repr(again.machine()) == repr(reducer.machine())
@@ -56,7 +56,7 @@ def test_what_is_written_reads_back(reducer):
 
 def test_numbers_from_python_are_written_with_their_units(reducer):
     changed = reducer.replace({"operation.speed": 100.0, "meshes.first.backlash": 1e-4})
-    again = read_any_case(changed.to_toml(), "again.toml")
+    again = read_case(changed.to_toml(), "again.toml")
     assert again.operating_point.speed == 100.0
     assert again.pair("first", again.operating_point).backlash == 1e-4
 
@@ -127,7 +127,7 @@ def test_messages_name_the_part(reducer, changes, place, text):
 def test_problems_of_a_file_have_their_lines():
     broken = SMALL.replace('"7e8 N/m"', '"7e8 N"').replace("teeth = 34", "teeth = 3.4")
     with pytest.raises(InputError) as caught:
-        read_any_case(broken, "small.toml")
+        read_case(broken, "small.toml")
     text = str(caught.value)
     assert "small.toml:14: meshes.second.stiffness" in text
     assert "small.toml:6: gears.z4.teeth" in text
@@ -153,7 +153,7 @@ def test_a_case_from_python_takes_numbers_in_si():
     )
     assert case.shafts["in"].length == 0.2
     assert case.bearings["inleft"].stiffness_matrix[2, 2] == 5e8
-    again = read_any_case(case.to_toml(), "again.toml")
+    again = read_case(case.to_toml(), "again.toml")
     assert again.to_toml() == case.to_toml()
     assert again.load_cases[0].torque == 25.0
 
@@ -179,6 +179,6 @@ def test_floating_bearings_of_a_case_file(reducer):
     )
     assert floating.bearings["A"].floating
     assert not takes_axial_force(floating.bearings["A"])
-    assert read_any_case(floating.to_toml(), "again.toml").bearings["A"].floating
+    assert read_case(floating.to_toml(), "again.toml").bearings["A"].floating
     stiff = Bearing("in", 0.0, floating=True)
     assert stiff.stiffness_matrix.diagonal().tolist() == [0.0, 1e9, 1e9, 0.0, 0.0, 0.0]

@@ -14,6 +14,7 @@ import tribodyn as td
 from tribodyn.errors import InputError
 from tribodyn.machine import Gear, Machine, Mesh, Operation, Shaft
 from tribodyn.measurement import read, shaft_angle
+from tribodyn.study import read_case
 from tribodyn.study.faults.impact_transfer import impact_spectrum, pulse
 from tribodyn.study.faults.machine_motion import (
     machine_turning_motion,
@@ -21,7 +22,6 @@ from tribodyn.study.faults.machine_motion import (
 )
 from tribodyn.study.faults.machine_section import bearing_impacts, faults_of_mesh
 from tribodyn.study.machine.first_look import warn_of_period
-from tribodyn.study.machine.read import read_any_case
 
 AXIS = {"kind": "eccentricity", "gear": "gears.z1", "amplitude": "2 um"}
 DEFECT = {
@@ -42,7 +42,7 @@ SEAT = {"dynamics.seat_mass": "10 kg", "dynamics.seat_frequency": "2 kHz"}
 
 @cache
 def result() -> Any:
-    return td.run(read_any_case(GEARED))
+    return td.run(read_case(GEARED))
 
 
 def case_with(seat: bool = True, **faults: dict[str, Any]) -> Any:
@@ -199,7 +199,7 @@ def test_a_wrong_fault_names_its_key(faults: dict[str, Any], expected: str) -> N
 
 def test_faults_are_written_and_read_back() -> None:
     case = case_with(axis=AXIS, outer=DEFECT)
-    again = read_any_case(case.to_toml())
+    again = read_case(case.to_toml())
     assert dict(again.values()) == dict(case.values())
     assert again.faults == case.faults
 
@@ -221,7 +221,7 @@ def test_an_idler_is_eccentric_in_one_direction() -> None:
         "bc": Mesh(("b", "c"), 2e-3, stiffness=1e8, angle=0.7),
     }
     machine = Machine(shafts, gears, meshes, operation=Operation("a", "c", 100.0, 50.0))
-    tables = read_any_case(
+    tables = read_case(
         GEARED.replace("z1", "a").replace("z2", "b") + '[faults.f]\nkind = "eccentricity"\n'
         'gear = "b"\namplitude = "1 um"\nphase = "20 deg"\n'
     ).faults
@@ -350,7 +350,7 @@ def rigid_shafts() -> Any:
     lines = [
         line for line in GEARED.splitlines() if not line.startswith(("sections", "transmission"))
     ]
-    return td.run(read_any_case("\n".join(lines)).replace({"operation.torque": "5 N*m"}))
+    return td.run(read_case("\n".join(lines)).replace({"operation.torque": "5 N*m"}))
 
 
 def test_a_loose_seat_lifts_once_a_turn() -> None:

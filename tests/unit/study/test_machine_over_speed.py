@@ -9,7 +9,7 @@ from tests.unit.study.test_machine_run import GEARED, command
 import tribodyn as td
 from tribodyn.mesh.build import _cached_teeth
 from tribodyn.plot import FIGURES
-from tribodyn.study.machine.read import read_any_case
+from tribodyn.study import read_case
 
 #: The same machine with computed teeth: spur gears of constant friction.
 TEETH = (
@@ -31,7 +31,7 @@ backlash = "0.1 mm"
 
 @pytest.fixture(scope="module")
 def case():
-    return read_any_case(GEARED)
+    return read_case(GEARED)
 
 
 @pytest.fixture(scope="module")
@@ -115,7 +115,7 @@ def test_a_fast_run_up_lags_behind_the_resonance_and_says_what_is_coarse(case):
 
 
 def test_teeth_whose_load_does_not_depend_on_the_speed_are_computed_once():
-    case = read_any_case(TEETH)
+    case = read_case(TEETH)
     td.run(case.replace({"load_cases": None}))
     before = _cached_teeth.cache_info().misses
     levels = td.speed_sweep(case, ("2000 rpm", "3000 rpm"), 3)

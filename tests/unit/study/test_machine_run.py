@@ -10,8 +10,8 @@ import tribodyn as td
 from tribodyn import plot
 from tribodyn.cli import main
 from tribodyn.machine import machine_modes
+from tribodyn.study import read_case
 from tribodyn.study.machine.modes import axial_notes, mode_rows
-from tribodyn.study.machine.read import read_any_case
 from tribodyn.study.machine.run import structure_at_rest
 from tribodyn.study.pipeline.summary_figures import figure_of, is_figure
 from tribodyn.study.studies.needs import STUDIES, takes
@@ -83,7 +83,7 @@ def command(*arguments: str) -> int:
 
 @pytest.fixture(scope="module")
 def case():
-    return read_any_case(GEARED, "geared.toml")
+    return read_case(GEARED, "geared.toml")
 
 
 @pytest.fixture(scope="module")
@@ -151,7 +151,7 @@ def test_a_result_is_saved_with_its_report_and_every_figure(result, tmp_path):
     files = {"case.toml", "summary.json", "motion.nc", "load-1-motion.nc", "report.html"}
     assert names == {*files, "response.csv"}
     assert json.loads((folder / "summary.json").read_text()) == result.summary()
-    again = read_any_case((folder / "case.toml").read_text(encoding="utf-8"), "case.toml")
+    again = read_case((folder / "case.toml").read_text(encoding="utf-8"), "case.toml")
     assert again.to_toml() == result.case.to_toml()
     text = (folder / "report.html").read_text(encoding="utf-8")
     for heading in ("The machine", "Flow of power", "Which mesh causes which line", "Mesh first"):
@@ -207,7 +207,7 @@ def test_the_built_in_reducer_runs_with_its_teeth(tmp_path):
 
 def test_a_mode_along_the_axis_of_a_shaft_names_what_holds_it():
     spur = GEARED.replace('helix_angle = "21 deg"\nhand = "left"\ncenter_distance = "190 mm"\n', "")
-    case = read_any_case(spur.replace('"2e8 N/m"\n[gears', '"3e5 N/m"\n[gears'))
+    case = read_case(spur.replace('"2e8 N/m"\n[gears', '"3e5 N/m"\n[gears'))
     modes = machine_modes(structure_at_rest(case))
     (note,) = [each for each in axial_notes(modes) if "shaft output" in each]
     assert "C with 0.3 N/um holds it at this load, D not at all" in note
@@ -233,7 +233,7 @@ def test_names_of_bearings_do_not_overlap_in_the_side_view():
         f'[bearings.{name}]\nshaft = "input"\nposition = "{at} mm"\nradial_stiffness = "1e8 N/m"\n'
         for name, at in zip(names, (40, 60), strict=True)
     )
-    figure = plot.machine(read_any_case(text.replace("[gears.z1]", f"{more}[gears.z1]")).machine())
+    figure = plot.machine(read_case(text.replace("[gears.z1]", f"{more}[gears.z1]")).machine())
     notes = {note.text: note for note in figure.layout.annotations}
     shifts = [notes[name].yshift for name in notes if "bearing" in name]
     assert len(set(shifts)) == 3

@@ -12,13 +12,13 @@ import tribodyn as td
 from tribodyn.errors import ModelWarning
 from tribodyn.exchange import write_tables
 from tribodyn.report import render_machine_report
-from tribodyn.study.machine.read import read_any_case
+from tribodyn.study import read_case
 from tribodyn.study.machine.run import MeshWarning, warn_of_meshes
 
 
 @pytest.fixture(scope="module")
 def result():
-    return td.run(read_any_case(GEARED))
+    return td.run(read_case(GEARED))
 
 
 @pytest.fixture

@@ -10,7 +10,7 @@ from tests.unit.study.test_machine_run import GEARED, command
 import tribodyn as td
 from tribodyn.errors import InputError
 from tribodyn.measurement import Recording, compare
-from tribodyn.study.machine.read import read_any_case
+from tribodyn.study import read_case
 
 #: A machine of two meshes whose errors have one line each.
 TWO_MESHES = """
@@ -51,7 +51,7 @@ torque = "100 N*m"
 
 @pytest.fixture(scope="module")
 def result():
-    return td.run(read_any_case(TWO_MESHES))
+    return td.run(read_case(TWO_MESHES))
 
 
 def recording(result, ratio=1.0, noise=0.0):
@@ -125,7 +125,7 @@ def test_commands_compare_results_and_a_recording(result, tmp_path, monkeypatch,
 
 
 def test_variants_have_the_figures_of_their_values():
-    case = read_any_case(TWO_MESHES)
+    case = read_case(TWO_MESHES)
     spread = {"operation.torque": "100 N*m +- 3 %", "meshes.first.stiffness": "3e8 N/m +- 5 %"}
     variants = td.ensemble(case, spread, 4, seed=1)
     figures = variants.figures()
@@ -139,9 +139,9 @@ def test_variants_have_the_figures_of_their_values():
 
 
 def test_the_torque_causes_the_spread_of_the_static_force():
-    case = read_any_case(TWO_MESHES.replace('"100 N*m"', '"100 N*m +- 3 %"'))
+    case = read_case(TWO_MESHES.replace('"100 N*m"', '"100 N*m +- 3 %"'))
     case = case.replace({"bearings.A.radial_stiffness": "2e8 N/m +- 10 %"}, by="test")
-    assert read_any_case(case.to_toml()).uncertain == case.uncertain
+    assert read_case(case.to_toml()).uncertain == case.uncertain
     shares = td.sobol_indices(case, "meshes.first.static_mesh_force", size=4, seed=1)
     assert list(shares.input) == ["bearings.A.radial_stiffness", "operation.torque"]
     assert shares.total_order[0, 0] < 1e-9 < 0.1 < shares.total_order[0, 1]
@@ -159,12 +159,12 @@ def test_the_torque_causes_the_spread_of_the_static_force():
 )
 def test_spreads_that_make_no_sense_are_refused(spread, text):
     with pytest.raises(InputError, match=text):
-        td.ensemble(read_any_case(TWO_MESHES), spread, 4, seed=1)
+        td.ensemble(read_case(TWO_MESHES), spread, 4, seed=1)
 
 
 def test_a_spread_beyond_the_range_of_its_key_is_refused_in_the_file():
     with pytest.raises(InputError, match=r"meshes\.first\.stiffness"):
-        read_any_case(TWO_MESHES.replace('"3e8 N/m"', '"uniform 1 N/m .. 3e8 N/m"'))
+        read_case(TWO_MESHES.replace('"3e8 N/m"', '"uniform 1 N/m .. 3e8 N/m"'))
 
 
 def test_the_command_for_ensembles_takes_machines(tmp_path, monkeypatch, capsys):
@@ -177,7 +177,7 @@ def test_the_command_for_ensembles_takes_machines(tmp_path, monkeypatch, capsys)
 
 
 def test_keys_of_machines_have_units():
-    case, teeth = read_any_case(GEARED), read_any_case(TEETH)
+    case, teeth = read_case(GEARED), read_case(TEETH)
     units = {
         "bearings.A.radial_stiffness": "N/m",
         "meshes.first.transmission_error_amplitude": "m",

@@ -12,7 +12,7 @@ import tribodyn as td
 from tribodyn.dynamics.orbits.system_family import family_of
 from tribodyn.errors import InputError
 from tribodyn.nonlinear import bifurcation
-from tribodyn.study.machine.read import read_any_case
+from tribodyn.study import read_case
 from tribodyn.study.studies.case_grid import moving, moving_at
 from tribodyn.study.studies.needs import STUDIES, needs_table, takes
 
@@ -21,7 +21,7 @@ pytestmark = pytest.mark.filterwarnings("ignore::tribodyn.errors.ModelWarning")
 
 @pytest.fixture(scope="module")
 def small() -> Any:
-    return read_any_case(SMALL, "small.toml")
+    return read_case(SMALL, "small.toml")
 
 
 @pytest.fixture(scope="module")

@@ -13,7 +13,7 @@ import tribodyn as td
 from tribodyn.errors import InputError
 from tribodyn.machine import load_shares
 from tribodyn.mesh import sharing
-from tribodyn.study.machine.read import read_any_case
+from tribodyn.study import read_case
 from tribodyn.study.studies.case_grid import results_under
 
 #: Constant stiffness of a pair of teeth, so that the tooth contact takes no time.
@@ -101,7 +101,7 @@ def test_variants_have_the_load_shares_of_their_errors(case):
     text = {"planets.low.pin_errors": "0 um +- 10 um", "planets.low.sun_support": "1e9 N/m"}
     spread = case.replace(text, by="test")
     assert list(spread.uncertain) == ERRORS
-    assert read_any_case(spread.to_toml()).uncertain == spread.uncertain
+    assert read_case(spread.to_toml()).uncertain == spread.uncertain
     variants = td.ensemble(spread, size=4, seed=1)
     factors = variants.figures()["planets.low.load_factor"]
     assert factors[0] == pytest.approx(1.0)  # at the middle no pin has an error

@@ -22,7 +22,6 @@ from tribodyn.study.case.provenance import (
     changed_keys,
     effective,
     provenance,
-    spec_of,
 )
 from tribodyn.study.case.write import case_text
 from tribodyn.study.pipeline.cautions import case_cautions
@@ -150,7 +149,7 @@ def other_values(spec: Option, value: Any) -> list[Any]:
 
 def mutated(case: Any, key: str) -> Any:
     """The case with another value of one key, or None if the change alone is no valid case."""
-    for other in other_values(spec_of(case, key), effective(case)[key]):
+    for other in other_values(case.option_of(key), effective(case)[key]):
         try:
             return case.replace({key: other})
         except InputError:

@@ -11,7 +11,7 @@ from test_summary_names import QUICK
 from tests.unit.study.test_machine_run import GEARED
 
 import tribodyn as td
-from tribodyn.study.machine.read import read_any_case
+from tribodyn.study import read_case
 
 pytestmark = pytest.mark.filterwarnings("ignore::tribodyn.errors.ModelWarning")
 
@@ -20,7 +20,7 @@ def _computed(kind: str) -> Any:
     if kind == "machine":
         loads = [{"name": name, "share": 0.5, "torque": f"{torque} N*m"}
                  for name, torque in (("operation", 40), ("slow 1.5", 60))]  # fmt: skip
-        return td.run(read_any_case(GEARED, "geared.toml").replace({"load_cases": loads}))
+        return td.run(read_case(GEARED, "geared.toml").replace({"load_cases": loads}))
     if kind == "stage":
         return td.run(td.load_case("planetary-stage").replace(QUICK, by="test"))
     return td.run("fzg-stiffness")

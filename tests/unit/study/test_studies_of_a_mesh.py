@@ -4,8 +4,7 @@ import pytest
 
 import tribodyn as td
 from tribodyn.cli.app import COMMANDS
-from tribodyn.study import harris_map, loss_map, operating_data, optimize_tip_relief
-from tribodyn.study.machine.read import read_any_case
+from tribodyn.study import harris_map, loss_map, operating_data, optimize_tip_relief, read_case
 from tribodyn.study.studies.needs import KINDS, PARTS, STUDIES, kind_of, mesh_names, takes
 
 pytestmark = pytest.mark.filterwarnings("ignore::tribodyn.errors.ModelWarning")
@@ -59,8 +58,8 @@ _ENDS = 'input = "in"\noutput = "out"'
 
 
 def _cases():
-    pair = read_any_case(_PAIR + _MODELS.format(operation='speed_of = "pinion"'))
-    return pair, read_any_case(_MACHINE + _MODELS.format(operation=_ENDS))
+    pair = read_case(_PAIR + _MODELS.format(operation='speed_of = "pinion"'))
+    return pair, read_case(_MACHINE + _MODELS.format(operation=_ENDS))
 
 
 def test_a_mesh_between_rigid_shafts_is_the_pair():

@@ -11,9 +11,8 @@ from tests.unit.study.test_machine_run import GEARED
 
 import tribodyn as td
 from tribodyn.cli import main
-from tribodyn.study import SUMMARY
+from tribodyn.study import SUMMARY, read_case
 from tribodyn.study.machine.first_look import kinematic_figures
-from tribodyn.study.machine.read import read_any_case
 from tribodyn.study.machine.summary import peak_over_mean, without_rounding
 from tribodyn.study.pipeline.assembly import geometry
 from tribodyn.study.pipeline.response_series import measured, mesh_force
@@ -61,7 +60,7 @@ def test_forces_of_a_pair() -> None:
 
 
 def test_forces_of_a_machine() -> None:
-    result = td.run(read_any_case(GEARED, "geared.toml"))
+    result = td.run(read_case(GEARED, "geared.toml"))
     motion, figures = result.motion, result.summary()
     expected = levels(motion.mesh_force[:, :1], motion.weight)
     del expected["rms"]

@@ -7,9 +7,9 @@ import tribodyn as td
 from tribodyn.errors import ComputationError, InputError
 from tribodyn.gear import FlankModification, cylindrical_pair
 from tribodyn.gear.flank_gap import least_gap
+from tribodyn.study import read_case
 from tribodyn.study.case.provenance import assumptions
 from tribodyn.study.case.to_models import has_usual_backlash
-from tribodyn.study.machine.read import read_any_case
 from tribodyn.study.machine.run import balanced_machine, rehearse_machine, run_machine
 from tribodyn.study.pipeline.run import prepare_run, rehearse
 
@@ -120,7 +120,7 @@ def test_meshes_of_a_machine_have_a_usual_backlash_each():
     assert plays == pytest.approx([0.08e-3, 0.1e-3])
     assert not [a for a in machine.assumptions if a.key.endswith("backlash")]
     # play by the centre distance is that of the drawing
-    wide = read_any_case(OVERHUNG.replace('"3 mm"', '"3 mm"\ncenter_distance = "117.5 mm"'), "w")
+    wide = read_case(OVERHUNG.replace('"3 mm"', '"3 mm"\ncenter_distance = "117.5 mm"'), "w")
     assert next(pair.backlash for _, pair, _ in wide.mesh_pairs()) > 0.3e-3
     assert not [a for a in wide.assumptions if a.key.endswith("backlash")]
 
@@ -132,12 +132,12 @@ def test_stages_have_a_usual_backlash():
 
 
 def test_check_and_run_of_a_machine_name_the_mesh_that_touches_early():
-    case = read_any_case(OVERHUNG, "box.toml")
+    case = read_case(OVERHUNG, "box.toml")
     rehearse_machine(case)
     balanced = balanced_machine(case, case.operating_point)
     tilt = abs(balanced.misalignment["low"])
     assert tilt > 5e-6  # by the deflected shafts alone
-    narrow = read_any_case(OVERHUNG + '[dynamics]\nbacklash = "2 um"\n', "box.toml")
+    narrow = read_case(OVERHUNG + '[dynamics]\nbacklash = "2 um"\n', "box.toml")
     place, fault = problem(rehearse_machine, narrow)
     assert (place, fault) == problem(run_machine, narrow)
     assert place == "box.toml:25: dynamics.backlash"
@@ -157,9 +157,9 @@ def test_check_finds_a_bearing_that_the_load_pulls_out(direction):
         line = helical[begin : helical.index("\n", begin)]
         place = line[: line.index("radial")]
         helical = helical.replace(line, f"{place}{angular}{sense} }}")
-    rehearse_machine(read_any_case(helical, "box.toml"))
-    outward = read_any_case(helical.replace("direction = 1", "direction = -1"), "box.toml")
-    inward = read_any_case(helical.replace("direction = -1", "direction = 1"), "box.toml")
+    rehearse_machine(read_case(helical, "box.toml"))
+    outward = read_case(helical.replace("direction = 1", "direction = -1"), "box.toml")
+    inward = read_case(helical.replace("direction = -1", "direction = 1"), "box.toml")
     failing = []
     for case in (outward, inward):
         try:

@@ -5,37 +5,25 @@ from __future__ import annotations
 from collections.abc import Mapping
 from copy import copy
 from dataclasses import replace
-from functools import cached_property, partial
+from functools import cached_property
 from inspect import Signature
-from typing import TYPE_CHECKING, Any, ClassVar, Literal
+from typing import Any, ClassVar, Literal, Self
 
 from tribodyn.aliases import with_old_names
 from tribodyn.errors import InputError, Problem
 from tribodyn.study.case import to_models
 from tribodyn.study.case.case_data import CaseData
-from tribodyn.study.case.changes import changed_tables
 from tribodyn.study.case.checks import cross_problems
 from tribodyn.study.case.gears import is_needed, with_gear_defaults
 from tribodyn.study.case.hypoid import torque_problem
 from tribodyn.study.case.provenance import (
     changed_after,
     effective_values,
-    read_stated,
     reason_faults,
-    settled,
-    spec_at,
-    spec_of,
-    tables,
     without_records,
 )
 from tribodyn.study.case.section import choices, section_at, signature_of
-from tribodyn.study.case.user_input import (
-    Source,
-    UserInput,
-    plain,
-    unsound,
-    without_spread,
-)
+from tribodyn.study.case.user_input import Source, UserInput, unsound
 from tribodyn.study.case.values import (
     FaultError,
     Plain,
@@ -45,9 +33,6 @@ from tribodyn.study.case.values import (
     unknown_key,
     with_typed_keys,
 )
-
-if TYPE_CHECKING:
-    from tribodyn.model import Option
 
 #: Attributes derived from the tables, which are not pickled.
 _DERIVED = {
@@ -87,17 +72,15 @@ class Case(CaseData, case=True):
     lumped: ClassVar[Literal[True]] = True  #: whether ``[dynamics]`` names a lumped structure
 
     def __init__(self, source: Source | None = None, /, **data: Any) -> None:
-        problems = list(unsound(data))
-        if problems:
-            raise InputError((source or Source()).place(problems))
-        data, misspelt, typed_keys = correct_keys(data)
-        central_values, self._spread, spread_faults = without_spread(data)
-        inputs = UserInput(central_values if source is not None else plain(central_values))
-        source = source or Source()
-        stated, problems = read_stated(inputs.data, partial(spec_at, inputs))
+        origin = source or Source()
+        if problems := list(unsound(data)):
+            raise InputError(origin.place(problems))
+        data, misspelt, typed_keys = correct_keys(data, Case)
+        stated, problems, spread_faults = self._take(source, data)
+        records = {name: data[name] for name in ("assumed",) if name in data}
+        inputs = UserInput({**self.data, **records})
         complete = with_gear_defaults(inputs)
-        body = without_records(complete.data)
-        marks = body.pop("assumed", {})
+        body = {name: value for name, value in complete.data.items() if name != "assumed"}
         chosen = choices(complete)
         vars(self).update(read_fields(type(self), body, "", chosen, problems))
         problems = [
@@ -105,7 +88,7 @@ class Case(CaseData, case=True):
             for key, problem in problems
             if is_needed(key, inputs.get("gears.kind"))
         ]
-        problems += [*misspelt, *reason_faults(marks)]
+        problems += [*misspelt, *reason_faults(self.data.get("assumed", {}))]
         spread_keys = {key for key, _ in spread_faults}
         problems = [fault for fault in problems if fault[0] not in spread_keys] + spread_faults
         problems += self._spread_faults({key for key, _ in problems})
@@ -119,51 +102,15 @@ class Case(CaseData, case=True):
                 fault for fault in to_models.gear_problems(self.gears) if fault[0] not in reported
             ]
         if problems:
-            raise InputError(source.place(with_typed_keys(problems, typed_keys)))
-        self._source, self._assumed = source, dict(marks)
+            raise InputError(origin.place(with_typed_keys(problems, typed_keys)))
         self._effective = effective_values(self)
-        self._stated, stale = settled(self, marks, inputs, stated)
-        for key in stale:
-            del self._assumed[key]
-        self._user_input = UserInput({**inputs.data, **tables(self._stated, self._assumed)})
+        self._settle(stated)
 
     def __getstate__(self) -> dict[str, Any]:
         """Return the state without derived attributes."""
         return {key: value for key, value in vars(self).items() if key not in _DERIVED}
 
-    def replace(self, changes: Mapping[str, Any], *, by: str = "") -> Case:
-        """Return a new case with some values changed; it is checked as a whole.
-
-        Parameters
-        ----------
-        changes : mapping
-            Dotted key to value: a float in SI, text with a unit, a pint quantity, or None to go
-            back to the default. A changed value is no longer marked as assumed or documented by
-            the origin of the case.
-        by : str
-            Source of the change, for messages, for example ``"--set"``; then a bare number for
-            a dimension is refused as in a file.
-
-        Raises
-        ------
-        InputError
-            As for a case file.
-
-        Examples
-        --------
-        >>> import tribodyn
-        >>> rough = tribodyn.load_case("fzg-roughness").replace(
-        ...     {"gears.composite_roughness": "0.991 um"})
-        >>> round(rough.gears.composite_roughness * 1e6, 3)
-        0.991
-        """
-        if not by and (changed := self._with_numbers(changes)) is not None:
-            return changed
-        source = self._source.with_replaced(changes, by or "replace:")
-        inputs = self._user_input.data
-        return type(self)(source, **changed_tables(Case, inputs, changes, self._spread, by))
-
-    def _with_numbers(self, changes: Mapping[str, Any]) -> Case | None:
+    def _with_numbers(self, changes: Mapping[str, Any]) -> Self | None:
         """Return a copy with changed numbers, checked by a fast path; None if that does not apply.
 
         It applies where numbers replace numbers outside ``[gears]`` without other effects: which
@@ -172,14 +119,14 @@ class Case(CaseData, case=True):
         base = self._stated.base
         if not base or self.origin not in (None, base.get("origin")):
             return None
-        changed: Case = object.__new__(type(self))
+        changed: Self = object.__new__(type(self))
         vars(changed).update(self.__getstate__(), _shared=vars(self).setdefault("_shared", {}))
         numbers = {}
         # Convert NumPy floats.
         changes = {key: float(v) if isinstance(v, float) else v for key, v in changes.items()}
         for key, value in changes.items():
             table, _, name = key.partition(".")
-            spec, old = spec_of(self, key), self._user_input.get(key)
+            spec, old = self.option_of(key), self._user_input.get(key)
             numeric = type(value) is float and spec is not None and spec.kind == "number"
             indirect = table in ("gears", "faults") or key in self._spread or key in self._assumed
             if not numeric or indirect or old is None or self._effective.get(key) is None:
@@ -193,27 +140,12 @@ class Case(CaseData, case=True):
             vars(changed)[table] = section
         if to_models.case_problems(changed):
             return None
-        changed._files = self._named_files()
         changed._effective, changed._changed = self._effective | numbers, None
         changed._user_input = self._user_input.with_numbers(changes)
+        vars(changed)["data"] = without_records(changed._user_input.data)
         changed._source = self._source.with_replaced(changes, "replace:")
         changed_after(self, changed, numbers)
         return changed
-
-    def option_of(self, key: str) -> Option | None:
-        """Unit and range of a key.
-
-        Parameters
-        ----------
-        key : str
-            Dotted, such as ``"operation.torque"``.
-
-        Returns
-        -------
-        Option or None
-            None where the case has no such key.
-        """
-        return spec_of(self, key)
 
     def _unknown_key(self, key: str) -> Problem:
         path = tuple(key.split("."))

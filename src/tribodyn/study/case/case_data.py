@@ -4,16 +4,17 @@ from __future__ import annotations
 
 import math
 from abc import abstractmethod
-from collections.abc import Callable, Container, Iterator
+from collections.abc import Callable, Container, Iterator, Mapping
+from copy import copy
 from functools import cached_property, partial
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, ClassVar, Self
+from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple, Self
 
 from tribodyn.arguments.reading import brief
 from tribodyn.errors import InputError, Problem
-from tribodyn.model import text
+from tribodyn.model import NO_OPTIONS, text
 from tribodyn.study.case import to_models
-from tribodyn.study.case.changes import with_values
+from tribodyn.study.case.changes import changed_tables, with_values
 from tribodyn.study.case.gears import Gears
 from tribodyn.study.case.hypoid import hypoid_flanks
 from tribodyn.study.case.provenance import (
@@ -22,10 +23,21 @@ from tribodyn.study.case.provenance import (
     default_of,
     derived_values,
     provenance,
+    read_stated,
+    settled,
+    tables,
     without_records,
 )
 from tribodyn.study.case.rating_tables import Materials, RatingTable
-from tribodyn.study.case.section import CaseTables, Section, flat, table
+from tribodyn.study.case.section import (
+    CaseTables,
+    Section,
+    file_entries,
+    flat,
+    option_at,
+    place_files,
+    table,
+)
 from tribodyn.study.case.sections import (
     Dynamics,
     Film,
@@ -37,7 +49,15 @@ from tribodyn.study.case.sections import (
     Solver,
     Stiffness,
 )
-from tribodyn.study.case.user_input import Source, Stated, UserInput, spread_problem
+from tribodyn.study.case.user_input import (
+    Source,
+    Stated,
+    UserInput,
+    plain,
+    spread_problem,
+    without_spread,
+)
+from tribodyn.study.case.values import KeyedProblems
 from tribodyn.study.case.write import case_rows, case_table, case_text, every_value
 from tribodyn.study.faults.section import Faults
 
@@ -47,6 +67,14 @@ if TYPE_CHECKING:
     from tribodyn.lubricant import Lubricant
     from tribodyn.mesh.table_file import TableFile
     from tribodyn.model import Option
+
+
+class Taken(NamedTuple):
+    """What was read beside the tables of a case."""
+
+    stated: Stated  #: values that reasons and origin were stated for
+    problems: KeyedProblems
+    spread_faults: KeyedProblems
 
 
 class BaseCase:
@@ -59,15 +87,101 @@ class BaseCase:
     _source: Source
     _spread: dict[str, str]
     _assumed: dict[str, str]
-    _user_input: UserInput
     _stated: Stated
     _effective: dict[str, Any]
     _changed: tuple[str, ...] | None = None
-    _named_files: Callable[[], dict[str, Path]]  #: files that the case names, by dotted key
+    __init__: Callable[..., None]
+
+    def _take(self, source: Source | None, typed: dict[str, Any]) -> Taken:
+        """Set the tables as the user typed them, those from Python in SI; return what is stated."""
+        values, spread, faults = without_spread(typed if source is not None else plain(typed))
+        data = without_records(values)
+        place_files(self.root, data, Path())
+        vars(self).update(data=data, _source=source or Source(), _spread=spread)
+        stated, problems = read_stated(self, values)
+        return Taken(stated, problems, faults)
+
+    def _settle(self, stated: Stated) -> None:
+        """Set the reasons that hold for the values, and the values that the case began with."""
+        marks = self.data.get("assumed", {})
+        self._stated, stale = settled(self, marks, UserInput(self.data), stated)
+        self._assumed = {key: why for key, why in marks.items() if key not in stale}
+        if stale:
+            vars(self)["data"] = {**self.data, "assumed": self._assumed}
+
+    @classmethod
+    def _changed_tables(
+        cls,
+        data: Mapping[str, Any],
+        changes: Mapping[str, Any],
+        spread: Mapping[str, str] = NO_OPTIONS,
+        by: str = "",
+    ) -> dict[str, Any]:
+        """Tables with values changed, without what the changes leave without effect."""
+        return changed_tables(cls.root, data, changes, spread, by)
 
     @abstractmethod
+    def _all_values(self) -> dict[str, Any]:
+        """Values by dotted key in SI; None where a default is derived, of files their names."""
+
+    def values(self) -> Iterator[tuple[str, Any]]:
+        """Iterate over all values of the case.
+
+        Yields
+        ------
+        tuple of (str, object)
+            Dotted key and value in SI; None where nothing was given and a default is derived.
+        """
+        return iter(self._all_values().items())
+
+    def _with_numbers(self, changes: Mapping[str, Any]) -> Self | None:
+        """Copy with changed numbers by a fast path; None where that does not apply."""
+        return None
+
+    def replace(self, changes: Mapping[str, Any], *, by: str = "") -> Self:
+        """Return a new case with some values changed; it is checked as a whole.
+
+        Parameters
+        ----------
+        changes : mapping
+            Dotted key to value: a float in SI, text with a unit, a pint quantity, or None to go
+            back to the default. A changed value is no longer marked as assumed or documented by
+            the origin of the case.
+        by : str
+            Source of the change, for messages, for example ``"--set"``; then a bare number for
+            a dimension is refused as in a file.
+
+        Raises
+        ------
+        InputError
+            As for a case file.
+
+        Examples
+        --------
+        >>> import tribodyn
+        >>> rough = tribodyn.load_case("fzg-roughness").replace(
+        ...     {"gears.composite_roughness": "0.991 um"})
+        >>> round(rough.gears.composite_roughness * 1e6, 3)
+        0.991
+        """
+        if not by and (quick := self._with_numbers(changes)) is not None:
+            return quick
+        source = self._source.with_replaced(changes, by or "replace:")
+        data = self._changed_tables(self.user_input.data, changes, self._spread, by)
+        changed: Self = type(self)(source, **data)
+        return changed
+
     def option_of(self, key: str) -> Option | None:
-        """Unit and range of a key; None where the case has no such key."""
+        """Unit and range of a dotted key; None where the case has no such key."""
+        return option_at(self.root, self.data, key)
+
+    def _named_files(self) -> dict[str, Path]:
+        """Files that the case names, by dotted key."""
+        return {key: Path(table[name]) for table, name, key in self._files if name != "value"}
+
+    @cached_property
+    def _files(self) -> tuple[tuple[dict[str, Any], str, str], ...]:
+        return tuple(file_entries(self.root, self.data))
 
     @property
     @abstractmethod
@@ -126,6 +240,10 @@ class BaseCase:
         """User input, before defaults."""
         return self._user_input
 
+    @cached_property
+    def _user_input(self) -> UserInput:
+        return UserInput({**self.data, **tables(self._stated, self._assumed)})
+
     @property
     def source(self) -> Source:
         """Source of the values."""
@@ -143,8 +261,14 @@ class BaseCase:
         return {name: str(path) for (before, _, name), path in files.items() if name and not before}
 
     def with_files(self, prefix: str) -> Self:
-        """Copy whose housing files lie beside its case file."""
-        return self
+        """Copy whose housing files lie beside its case file, with a prefix before their names."""
+        if not (files := self.housing_files):
+            return self
+        names = {k: prefix + Path(path).name.removeprefix(prefix) for k, path in files.items()}
+        other = copy(self)
+        vars(other)["data"] = {**self.data, "housing": {**self.data["housing"], **names}}
+        vars(other).pop("_files", None)
+        return other
 
     def __getitem__(self, key: str) -> Any:
         """Value of a dotted key in SI, given or by default; of a list also by number from 1."""
@@ -216,11 +340,6 @@ class CaseData(BaseCase, CaseTables):
     faults: Faults | None = table(Faults, "faults that repeat with a shaft, by name", "none")
 
     _default_of, _derived_values, _every_value = default_of, derived_values, every_value
-
-    @property
-    def data(self) -> dict[str, Any]:  # type: ignore[override]
-        """Tables of the case file as typed, without spreads and recorded values."""
-        return without_records(self._user_input.data)
 
     @property
     def assumptions(self) -> tuple[Assumption, ...]:
@@ -356,12 +475,5 @@ class CaseData(BaseCase, CaseTables):
         """Speed [rad/s] and nominal torque [N*m] of the pinion."""
         return self.pinion_speed, self.pinion_torque
 
-    def values(self) -> Iterator[tuple[str, Any]]:
-        """Iterate over all values of the case.
-
-        Yields
-        ------
-        tuple of (str, object)
-            Dotted key and value in SI; None where nothing was given and a default is derived.
-        """
-        return iter(flat(self).items())
+    def _all_values(self) -> dict[str, Any]:
+        return flat(self)

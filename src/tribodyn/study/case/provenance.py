@@ -16,7 +16,14 @@ from tribodyn.model import Model, Option
 from tribodyn.study.case.checks import DEFAULT_MARK
 from tribodyn.study.case.gears import HELICAL_STIFFNESS, RQ_OVER_RA, is_idle
 from tribodyn.study.case.hypoid import bodies
-from tribodyn.study.case.section import Section, in_force, section_at
+from tribodyn.study.case.section import (
+    RAW_KINDS,
+    NamedTables,
+    Section,
+    Table,
+    in_force,
+    section_at,
+)
 from tribodyn.study.case.sections import PROPERTIES, SHEET
 from tribodyn.study.case.to_models import USUAL_GEARS, has_usual_backlash, mesh_law_of
 from tribodyn.study.case.user_input import Stated, UserInput, si_value
@@ -80,16 +87,6 @@ def _is_record(mark: Any) -> bool:
     return isinstance(mark, Mapping) and set(mark) <= _RECORD_KEYS
 
 
-def spec_at(inputs: UserInput, key: str) -> Option | None:
-    """Return the Option of a key; an option of the chosen model takes precedence."""
-    *path, name = key.split(".")
-    section = section_at(tuple(path))
-    if section is None:
-        return None
-    model = section.model_named(inputs.get(".".join((*path, section.selector))))
-    return (model.declared.get(name) if model else None) or section.spec(name)
-
-
 def _read(
     option_of: OptionOf, table: str, typed: Mapping[str, Any], free: Container[str]
 ) -> tuple[dict[str, Any], KeyedProblems]:
@@ -113,19 +110,23 @@ def _read(
     return values, problems
 
 
-def read_stated(
-    data: Mapping[str, Any], option_of: OptionOf, free: Container[str] = ()
-) -> tuple[Stated, KeyedProblems]:
-    """Read recorded values and their problems; in ``free`` tables those without option as typed."""
+def read_stated(case: BaseCase, data: Mapping[str, Any]) -> tuple[Stated, KeyedProblems]:
+    """Read recorded values and their problems; those of parts that are gone stay as typed."""
     table, base = data.get("assumed", {}), data.get("based_on", {})
     if not isinstance(base, Mapping):
         problem = Problem(f"based_on = {written(base)}", "", "It is a table", "Write [based_on]")
         return Stated({}, {}), [("based_on", problem)]
     records = table.items() if isinstance(table, Mapping) else ()
     typed = {k: m["value"] for k, m in records if _is_record(m) and "value" in m}
-    marks, problems = _read(option_of, "assumed", typed, free)
-    initial, base_problems = _read(option_of, "based_on", _flat(base), free)
+    tables = ((n, f.kind) for n, f in case.root.fields.items() if isinstance(f, Table))
+    free = {n for n, kind in tables if issubclass(kind, NamedTables) or _has_lists(kind)}
+    marks, problems = _read(case.option_of, "assumed", typed, free)
+    initial, base_problems = _read(case.option_of, "based_on", _flat(base), free)
     return Stated(marks, initial), [*problems, *base_problems]
+
+
+def _has_lists(kind: type[Section]) -> bool:
+    return any(option.kind in RAW_KINDS for _, option in kind.specs())
 
 
 def _flat(table: Mapping[str, Any], prefix: str = "") -> dict[str, Any]:
@@ -273,16 +274,6 @@ class Assumption:
         return f"{self.key} = {self.value} ({self.kind}): {self.reason}"
 
 
-def spec_of(case: CaseData, key: str) -> Option | None:
-    """Return the Option of a dotted key, or None if there is no such key or it is a table."""
-    *path, name = key.split(".")
-    section = section_at(tuple(path))
-    if section is None:
-        return None
-    model = _model_of(case, path)
-    return (model.declared.get(name) if model else None) or section.spec(name)
-
-
 def _model_of(case: CaseData, path: list[str]) -> Model | None:
     """Return the model that a table of the case names."""
     section = vars(case).get(path[0]) if len(path) == 1 else None
@@ -394,7 +385,7 @@ def _marked(case: BaseCase, key: str, value: Any, changed: tuple[str, ...]) -> s
 
 
 def _derived_from(case: CaseData, key: str) -> str:
-    spec = spec_of(case, key)
+    spec = case.option_of(key)
     is_usual = key == "dynamics.backlash" and has_usual_backlash(case)
     return USUAL_GEARS if is_usual else spec.basis if spec else ""
 
@@ -425,7 +416,7 @@ def assumptions(case: CaseData) -> tuple[Assumption, ...]:
     values, derived, rows = effective(case), derived_values(case), []
     for key, origin in provenance(case).items():
         kind, _, reason = origin.partition(": ")
-        spec = spec_of(case, key)
+        spec = case.option_of(key)
         if kind == "given" or spec is None:
             continue
         if key in derived or (values[key] is None and spec.basis):
@@ -440,7 +431,7 @@ def _heights(case: CaseData) -> Iterator[Assumption]:
     """Yield the rms roughness of flanks given as Ra."""
     for name, gear in (("pinion", case.gears.pinion), ("wheel", case.gears.wheel)):
         key = f"gears.{name}.roughness_rms"
-        spec = spec_of(case, key)
+        spec = case.option_of(key)
         if gear.roughness_ra is not None and gear.rms is not None and spec is not None:
             reason = f"Rq = {RQ_OVER_RA:g} Ra, as of ground flanks, whose heights are normal"
             yield Assumption(key, spec.show(gear.rms), "assumed", reason)

@@ -4,19 +4,19 @@ from __future__ import annotations
 
 import re
 import tomllib
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from functools import partial
 from pathlib import Path
-from typing import Any, Self
+from typing import TYPE_CHECKING, Any, Self
 
 from tribodyn import units
 from tribodyn.errors import InputError, Problem
-from tribodyn.study.case.case import Case
-from tribodyn.study.case.changes import changed_tables
-from tribodyn.study.case.section import file_keys
 from tribodyn.study.case.user_input import Note, Source
 from tribodyn.validated_files import read_bytes
+
+if TYPE_CHECKING:
+    from tribodyn.study.case.case_data import BaseCase
 
 _SPACE = " \t\r"
 
@@ -195,53 +195,13 @@ def read_text(path: Path) -> str:
         raise InputError(what, str(path), why, "Give the path of a case file") from None
 
 
-def read_case(text: str, name: str = "") -> Case:
-    """Check the text of a case file.
-
-    Parameters
-    ----------
-    text : str
-        TOML text.
-    name : str
-        File name, for messages.
-
-    Raises
-    ------
-    InputError
-        Listing every problem of the file.
-
-    Examples
-    --------
-    >>> try:
-    ...     read_case("title = 'x'", "my.toml")
-    ... except InputError as error:
-    ...     print(error.problems[0])
-    my.toml: gears: the table [gears] is missing. The case cannot be computed without it. \
-Add it with normal_module, normal_pressure_angle, driver, pinion, wheel.
-    """
-    return changed_file(text, name, {})
-
-
 def source_of(text: str, name: str) -> Source:
     """Where the values of the text of a case file come from."""
     return Source(name or "case", partial(key_lines, text), notes=partial(key_notes, text))
 
 
-def changed_file(text: str, name: str, changes: Mapping[str, Any], by: str = "") -> Case:
-    """Check the text of a case file with values replaced by dotted key."""
-    data = parse_toml(text, name)
-    if not data and not changes:
-        remedy = "Create a case to start from: tribodyn new my.toml"
-        raise InputError(
-            "the file has no values", name, "A case needs gears, speed and torque", remedy
-        )
-    _place_files(data, Path(name).parent)
-    source = source_of(text, name).with_replaced(changes, by)
-    return Case(source, **(changed_tables(Case, data, changes, by=by) if changes else data))
-
-
 @contextmanager
-def unchanged_files(case: Case) -> Iterator[None]:
+def unchanged_files(case: BaseCase) -> Iterator[None]:
     """Raise if a file that the case names changes while the block runs."""
     files = case._named_files()
     before = {key: _state(path) for key, path in files.items()}
@@ -261,32 +221,6 @@ def _state(path: Path) -> tuple[int, int, int] | None:
         status = path.stat()
         return status.st_mtime_ns, status.st_size, status.st_ino
     return None
-
-
-def named_files(text: str, name: str = "") -> list[tuple[str, str]]:
-    """Return the files that the text of a case names, by dotted key, without opening them."""
-    data = parse_toml(text, name)
-    places = [key.split(".") for key in file_keys(data)]
-    places += [["assumed", ".".join(place), "value"] for place in places]
-    values = [(".".join(place), _at(data, *place)) for place in places]
-    return [(key, value) for key, value in values if isinstance(value, str)]
-
-
-def _place_files(data: dict[str, Any], folder: Path) -> None:
-    """Resolve the paths of a case against its folder."""
-    files = file_keys(data)
-    marks = [("assumed", key, "value") for key in files]
-    for *tables, name in [key.split(".") for key in files] + marks:
-        table = _at(data, *tables)
-        if isinstance(table, dict) and isinstance(table.get(name), str):
-            table[name] = str((folder / table[name]).absolute())
-
-
-def _at(data: Any, *keys: str) -> Any:
-    """Return an item of nested tables, or None."""
-    for key in keys:
-        data = data.get(key) if isinstance(data, dict) else None
-    return data
 
 
 def parse_toml(text: str, name: str) -> dict[str, Any]:

@@ -253,30 +253,42 @@ def options_of(section: type[Section], prefix: str) -> list[tuple[str, Option]]:
     return options
 
 
-def file_keys(data: Mapping[str, Any] | None = None) -> list[str]:
-    """Return the dotted keys of a case that name files; of named tables those that data have."""
-    options = [key for key, option in options_of(Section.case_class, "") if option.kind == "file"]
-    files = []
-    for key in options:
-        table, name, inner = key.partition(".NAME.")
-        tables = (data or {}).get(table) if name else None
-        named = tables if isinstance(tables, Mapping) else ()
-        files += [f"{table}.{each}.{inner}" for each in named] or [key]
-    for table, field in Section.case_class.fields.items():
-        keys = field.kind.section_keys().keys if isinstance(field, Table) else {}
-        files += [
-            f"{table}.{name}"
-            for name, option in keys.items()
-            if isinstance(option, Option) and option.kind == "file"
-        ]
-    return files
+def entries(
+    table: dict[str, Any], place: tuple[str, ...] = ()
+) -> Iterator[tuple[dict[str, Any], str, tuple[str, ...]]]:
+    """Iterate over the values of nested tables: the table, the name in it, and the place."""
+    for name, value in table.items():
+        if isinstance(value, dict):
+            yield from entries(value, (*place, name))
+        elif rows := named_rows(value):
+            for row, body in rows:
+                yield from entries(dict(body), (*place, name, row))
+        else:
+            yield table, name, (*place, name)
+
+
+def file_entries(
+    root: type[Section], data: dict[str, Any]
+) -> Iterator[tuple[dict[str, Any], str, str]]:
+    """Iterate over the values of tables, and of reasons, that name files, with their keys."""
+    for table, name, place in entries(data):
+        if place[0] == "assumed" and place[-1] == "value":
+            place = tuple(place[1].split("."))
+        option = option_at(root, data, place)
+        if option is not None and option.kind == "file" and isinstance(table[name], str):
+            yield table, name, ".".join(place)
+
+
+def place_files(root: type[Section], data: dict[str, Any], folder: Path) -> None:
+    """Resolve the paths of tables against a folder."""
+    for table, name, _ in file_entries(root, data):
+        table[name] = str((folder / table[name]).absolute())
 
 
 class CaseTables(Section):
     """The table of all tables, with a cache of values derived from some of them."""
 
-    #: Cached by :meth:`_named_files`; a copy with other numbers names the same files.
-    _files: dict[str, Path] | None = None
+    _named_files: Callable[[], Mapping[str, Path]]
 
     def _once(self, name: str, tables: tuple[str, ...], compute: Callable[[], Value]) -> Value:
         """Return a value derived from some tables, cached for all cases that share these tables.
@@ -294,16 +306,6 @@ class CaseTables(Section):
             cached = shared[name] = sources, compute()
         value: Value = cached[1]
         return value
-
-    def _named_files(self) -> dict[str, Path]:
-        """Files that the case names, by dotted key."""
-        if self._files is None:
-            values = flat(self)
-            keys = file_keys(
-                {"faults": vars(faults) if (faults := vars(self).get("faults")) else {}}
-            )
-            self._files = {key: Path(values[key]) for key in keys if values.get(key)}
-        return self._files
 
 
 class Choice(NamedTuple):

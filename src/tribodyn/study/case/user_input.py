@@ -8,6 +8,7 @@ from __future__ import annotations
 import math
 import re
 from collections.abc import Callable, Iterable, Iterator, Mapping
+from contextlib import suppress
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from itertools import islice
@@ -18,8 +19,8 @@ import numpy as np
 from tribodyn.errors import InputError, Problem
 from tribodyn.model import Option
 from tribodyn.nomenclature import QUANTITIES
-from tribodyn.study.case.section import named_rows
-from tribodyn.study.case.values import Plain, read_value, unmarked, written
+from tribodyn.study.case.section import Section, entries, named_rows, option_at
+from tribodyn.study.case.values import FaultError, Plain, read_value, unmarked, written
 from tribodyn.uncertainty import distribution
 from tribodyn.units import UnitProblemError, convert, split
 
@@ -89,6 +90,20 @@ def si_value(option: Option, name: str, value: Any) -> Any:
     if isinstance(value, list | tuple | np.ndarray):
         return tuple(si_value(option, name, item) for item in value)
     return read_value(replace(option, kind="number"), name, Plain(value))
+
+
+def values_in_si(root: type[Section], data: dict[str, Any]) -> dict[str, Any]:
+    """Values of tables in SI by dotted key, without files; a wrong one as typed."""
+    values = {}
+    for table, name, place in entries(data):
+        option = option_at(root, data, place)
+        if place[0] == "assumed" or (option is not None and option.kind == "file"):
+            continue
+        value = unmarked(table[name])
+        with suppress(FaultError):
+            value = value if option is None else si_value(option, name, table[name])
+        values[".".join(place)] = value
+    return values
 
 
 class UserInput(dict[str, Any]):

@@ -401,9 +401,8 @@ def _tables_with(name: str, path: tuple[str, ...] = ()) -> list[str]:
     return tables
 
 
-def _intended_key(name: str, section: type[Section]) -> str:
+def _intended_key(name: str, keys: Mapping[str, Any]) -> str:
     """Guess the key intended by a misspelt one; empty if there is no close match."""
-    keys = section.section_keys().keys
     if term := find_term(name):
         return term.key if term.key in keys else ""
     for gear in GEARS:
@@ -414,31 +413,30 @@ def _intended_key(name: str, section: type[Section]) -> str:
 
 
 def correct_keys(
-    data: Mapping[str, Any], path: tuple[str, ...] = ()
+    data: Mapping[str, Any], root: type[Section], path: tuple[str, ...] = ()
 ) -> tuple[dict[str, Any], KeyedProblems, dict[str, str]]:
-    """Report misspelt keys and rename them, so that no further key is reported as missing.
-
-    Returns the corrected data, the problems, and the typed key of each corrected key.
-    """
-    section = section_at(path)
-    keys = section.section_keys().keys if section else {}
+    """Tables without misspelt keys, the problems, and the typed key of each corrected key."""
+    section = section_at(path, root)
+    keys = {**section.keys_for(data), **section.section_keys().keys} if section else {}
     result: dict[str, Any] = {}
     problems: KeyedProblems = []
     typed_keys: dict[str, str] = {}
     # Keys of a case from Python may be of any type.
     for name, value in ((str(key), value) for key, value in data.items()):
         misspelt = section is not None and name not in keys and (path or name != "assumed")
-        intended = _intended_key(name, section) if misspelt and section else ""
+        intended = _intended_key(name, keys) if misspelt else ""
         inner, table = keys.get(intended or name), isinstance(value, Mapping)
         # A correctly spelt key takes precedence over a misspelt one; tables are merged.
         if (intended in data or intended in result) and not (table and isinstance(inner, Table)):
             intended = ""
         if intended:
-            problems.append((".".join((*path, name)), unknown_key((*path, name), value)))
+            problems.append(
+                (".".join((*path, name)), unknown_key((*path, name), value, section, [*keys]))
+            )
             typed_keys[".".join((*path, intended))] = problems[-1][0]
         key = intended or name
         if table and isinstance(inner, Table):
-            value, inner_problems, inner_typed = correct_keys(value, (*path, key))
+            value, inner_problems, inner_typed = correct_keys(value, root, (*path, key))
             problems, typed_keys = [*problems, *inner_problems], typed_keys | inner_typed
             value = {**value, **result.get(key, {})} if key in result else value
         result[key] = value

@@ -3,10 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from copy import copy
+from copy import deepcopy
 from functools import cached_property, partial
-from pathlib import Path
-from typing import Any, ClassVar, Literal
+from typing import TYPE_CHECKING, Any, ClassVar, Literal
 
 import numpy as np
 
@@ -25,12 +24,14 @@ from tribodyn.machine import (
 )
 from tribodyn.machine.plane_law import with_exchanged_gears
 from tribodyn.study.case.case import Case
+from tribodyn.study.case.case_data import BaseCase
 from tribodyn.study.case.provenance import Assumption, reason_faults
 from tribodyn.study.case.section import Section, choices, table_in
 from tribodyn.study.case.sections import LubricantData, heat_problems
-from tribodyn.study.case.user_input import Source, UserInput
-from tribodyn.study.case.values import KeyedProblems, read_table
+from tribodyn.study.case.user_input import Source, UserInput, unsound, values_in_si
+from tribodyn.study.case.values import KeyedProblems, correct_keys, read_table, with_typed_keys
 from tribodyn.study.faults.machine_section import impossible_faults, machine_fault_problems
+from tribodyn.study.machine.assumptions import default_assumptions, stated_assumptions
 from tribodyn.study.machine.housing_files import read_housing
 from tribodyn.study.machine.load_cases import LoadCase, read_loads
 from tribodyn.study.machine.pair_cases import (
@@ -48,6 +49,7 @@ from tribodyn.study.machine.read_parts import (
     add_shafts,
     completed,
     each_part,
+    for_each_planet,
     is_faulty,
     parts_of,
     read_bearing,
@@ -58,8 +60,7 @@ from tribodyn.study.machine.read_parts import (
     solver_problems,
 )
 from tribodyn.study.machine.tables import GROUPS, MeshDynamics
-from tribodyn.study.machine.unused_keys import unused_keys
-from tribodyn.study.machine.user_tables import PartsBase, default_assumptions, stated_assumptions
+from tribodyn.study.machine.unused_keys import changed_machine, unknown_part_key, unused_keys
 from tribodyn.study.machine_tables import MachineTables
 from tribodyn.study.mesh_inputs import MeshInputs
 from tribodyn.study.part_losses import loss_problems
@@ -72,6 +73,9 @@ from tribodyn.study.planetary.machine_stages import (
     stage_mesh,
 )
 
+if TYPE_CHECKING:
+    pass
+
 #: Tables in which problems of parts are placed.
 _PLACED = (*GROUPS, "planets", "operation", "housing", "lubricant")
 #: Keys of a mesh that its object takes as they are.
@@ -81,7 +85,7 @@ _OF_MESH = (
 
 
 @with_old_names
-class MachineCase(PartsBase):
+class MachineCase(BaseCase):
     """A machine under its load cases: frozen, checked, in SI.
 
     Created by :func:`tribodyn.load_case` from a file with ``[meshes.NAME]`` and ``[gears.NAME]``,
@@ -114,12 +118,17 @@ class MachineCase(PartsBase):
     lumped: ClassVar[Literal[False]] = False  #: its parts vibrate
     root = MachineTables
     gears: dict[str, Gear]
+    couplings: dict[str, Coupling]
     operating_point: LoadCase
     load_cases: tuple[LoadCase, ...]  #: of ``[[load_cases]]``
 
     def __init__(self, source: Source | None = None, /, **data: Any) -> None:
         origin = source or Source()
-        problems = self._take(source, data)
+        if problems := list(unsound(data)):
+            raise InputError(origin.place(problems))
+        data, misspelt, typed_keys = correct_keys(data, MachineTables)
+        stated, faults, problems = self._take(source, for_each_planet(deepcopy(data)))
+        problems += misspelt
         ready = completed(self.data)
         tables: Any = self._read_tables(ready, problems)
         self.title: str = tables.title or self.kind
@@ -142,9 +151,7 @@ class MachineCase(PartsBase):
         if not groups["meshes"] and "planets" not in self.data:
             remedy = 'Add [meshes.NAME] with gears = ["z1", "z2"] and normal_module'
             problems.append(("meshes", Problem("there is no mesh", "", "", remedy)))
-        self.couplings: dict[str, Coupling] = each_part(
-            groups["couplings"], read_coupling, problems
-        )
+        self.couplings = each_part(groups["couplings"], read_coupling, problems)
         self.housing: Housing | None = read_housing(tables.housing, problems)
         self.losses, self.oil = tables.losses, tables.lubricant
         heated = getattr(self.oil, "heat_transfer", None)
@@ -152,12 +159,11 @@ class MachineCase(PartsBase):
         self.rated_parts = read_rated_parts(tables.rating, groups, self.shafts, problems)
         self.motion, self.solver = tables.dynamics, tables.solver
         self.faults: dict[str, Any] = groups["faults"]
-        if (
-            loads := read_loads(self.data, tables.operation, groups["load_cases"], problems)
-        ) is not None:
+        loads = read_loads(self.data, tables.operation, groups["load_cases"], problems)
+        if loads is not None:
             self.ends, self.operating_point, self.load_cases = loads
         if problems:
-            raise InputError(origin.place(problems))
+            raise InputError(origin.place(with_typed_keys(problems, typed_keys)))
         self.implied_shafts = add_shafts(self.shafts, self.gears, stages, tables.material)
         if problems := machine_fault_problems(self):
             raise InputError(origin.place(problems))
@@ -171,9 +177,26 @@ class MachineCase(PartsBase):
                 inputs_under(self, name, self.operating_point)
         except InputError as error:
             raise InputError(self._located(error)) from None
-        if problems := [*impossible_faults(self), *loss_problems(self), *self._spread_faults()]:
+        if problems := [*self._impossible(), *faults]:
             raise InputError(origin.place(problems))
-        self._read_records(data)
+        self._settle(stated)
+
+    def _impossible(self) -> KeyedProblems:
+        """Problems of faults, losses and spreads that the parts do not allow."""
+        return [*impossible_faults(self), *loss_problems(self), *self._spread_faults()]
+
+    _changed_tables = staticmethod(changed_machine)
+
+    @cached_property
+    def _effective(self) -> dict[str, Any]:  # type: ignore[override]
+        return values_in_si(MachineTables, self.data)
+
+    def _all_values(self) -> dict[str, Any]:
+        files = {key: path.name for key, path in self._named_files().items()}
+        return {**self._effective, **files}
+
+    def _unknown_key(self, key: str) -> Problem:
+        return unknown_part_key(self.data, key)
 
     def _read_tables(self, data: Mapping[str, Any], problems: KeyedProblems) -> Any:
         """Values of all tables; problems of what cannot be read, or has no effect."""
@@ -471,28 +494,6 @@ class MachineCase(PartsBase):
         """
         stage, role = self._stage_of.get(mesh, (None, ""))
         return mesh if stage is None else f"{stage.key}.{role}"
-
-    def with_files(self, prefix: str) -> MachineCase:
-        """Copy whose housing files lie beside its case file.
-
-        Parameters
-        ----------
-        prefix : str
-            Before the name of each file that does not begin with it.
-
-        Returns
-        -------
-        MachineCase
-        """
-        other = copy(self)
-        names = {
-            key: prefix + Path(path).name.removeprefix(prefix)
-            for key, path in self.housing_files.items()
-        }
-        housing = {**self.data["housing"], **names} if names else None
-        other.data = {**self.data, "housing": housing} if housing else self.data
-        vars(other).pop("_typed", None)
-        return other
 
 
 #: Names of an earlier version: a planetary stage is a machine, the one case of named parts.

@@ -5,79 +5,86 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from tribodyn.errors import InputError
 from tribodyn.model import NO_OPTIONS
-from tribodyn.study.case.read import changed_file, parse_toml, source_of
-from tribodyn.study.case.section import file_keys, flat_keys
+from tribodyn.study.case.case import Case
+from tribodyn.study.case.read import parse_toml, source_of
+from tribodyn.study.case.section import file_entries, place_files
 from tribodyn.study.machine.case import MachineCase
-from tribodyn.study.machine.tables import HousingTable
-from tribodyn.study.machine.unused_keys import changed_machine
 
-if TYPE_CHECKING:
-    from tribodyn.study.case.case import Case
+_OF_MACHINES = ("shafts", "meshes", "bearings", "planets")
 
 
-_OF_HOUSING = tuple(name for name, option in HousingTable.specs() if option.kind == "file")
+def kind_of_tables(data: Mapping[str, Any]) -> type[Case] | type[MachineCase]:
+    """Class of the case that tables describe."""
+    return MachineCase if any(group in data for group in _OF_MACHINES) else Case
 
 
-def is_machine(data: Mapping[str, Any]) -> bool:
-    """Whether tables of a case file describe a machine rather than a pair."""
-    return any(group in data for group in ("shafts", "meshes", "bearings", "planets"))
+def files_of(data: dict[str, Any]) -> list[str]:
+    """Files that the tables of a case name, without opening them."""
+    return [table[name] for table, name, _ in file_entries(kind_of_tables(data).root, data)]
 
 
-def machine_files(data: Mapping[str, Any]) -> list[str]:
-    """Files that the tables of a machine name, without opening them."""
-    names = {*_OF_HOUSING, *(key.rpartition(".")[2] for key in file_keys())}
-    return [
-        value
-        for key, value in flat_keys(data)
-        if key.rpartition(".")[2] in names and isinstance(value, str)
-    ]
-
-
-def read_any_case(
+def read_case(
     text: str,
     name: str = "",
     folder: Path | None = None,
     changes: Mapping[str, Any] = NO_OPTIONS,
     by: str = "",
-) -> Case | MachineCase:
-    """Check the text of a case file of any kind, with values replaced by dotted key."""
+) -> Any:
+    """Check the text of a case file of any kind.
+
+    Parameters
+    ----------
+    text : str
+        TOML text.
+    name : str
+        File name, for messages.
+    folder : Path, optional
+        Where the files lie that the case names; the folder of ``name`` by default.
+    changes : mapping
+        Values that replace those of the text, by dotted key.
+    by : str
+        Source of the changes, for messages.
+
+    Returns
+    -------
+    Case or MachineCase
+
+    Raises
+    ------
+    InputError
+        Listing every problem of the file.
+
+    Examples
+    --------
+    >>> try:
+    ...     read_case("title = 'x'", "my.toml")
+    ... except InputError as error:
+    ...     print(error.problems[0])
+    my.toml: gears: the table [gears] is missing. The case cannot be computed without it. \
+Add it with normal_module, normal_pressure_angle, driver, pinion, wheel.
+    """
+    data = parse_toml(text, name)
+    if not data and not changes:
+        why, remedy = "A case needs gears, speed and torque", "tribodyn new my.toml"
+        remedy = f"Create a case to start from: {remedy}"
+        raise InputError("the file has no values", name, why, remedy)
+    kind, place = kind_of_tables(data), Path(name).parent if folder is None else folder
+    place_files(kind.root, data, place)
+    source = source_of(text, name).with_replaced(changes, by)
     try:
-        return _read(parse_toml(text, name), text, name, folder, changes, by)
+        return kind(source, **(kind._changed_tables(data, changes, by=by) if changes else data))
     except InputError as error:
         # Some checks of parts know neither the file nor its lines.
+        known = (name, by or name, "--")
         raise InputError(
             [
                 problem
-                if str(problem.where).startswith((name, by or name, "--"))
+                if str(problem.where).startswith(known)
                 else replace(problem, where=f"{name}: {problem.where}".removesuffix(": "))
                 for problem in error.problems
             ]
         ) from error
-
-
-def _read(
-    data: dict[str, Any],
-    text: str,
-    name: str,
-    folder: Path | None,
-    changes: Mapping[str, Any],
-    by: str,
-) -> Case | MachineCase:
-    if not is_machine(data):
-        return changed_file(text, name, changes, by)
-    place = Path(name).parent if folder is None else folder
-    faults = data.get("faults")
-    tables: list[tuple[Any, tuple[str, ...]]] = [(data.get("housing"), _OF_HOUSING)]
-    tables += [
-        (table, ("file",)) for table in (faults.values() if isinstance(faults, dict) else ())
-    ]
-    for table, keys in tables:
-        for key in keys if isinstance(table, dict) else ():
-            if isinstance(table.get(key), str):
-                table[key] = str((place / table[key]).absolute())
-    source = source_of(text, name).with_replaced(changes, by)
-    return MachineCase(source, **changed_machine(data, changes, by=by))

@@ -278,6 +278,18 @@ def completed(data: Mapping[str, Any]) -> dict[str, Any]:
     return {k: {**table_in(data, k), **parts[k]} if k in parts else v for k, v in data.items()}
 
 
+def for_each_planet(tables: dict[str, Any]) -> dict[str, Any]:
+    """Tables in which one text for the errors of all planets is a list with one for each."""
+    stages = tables.get("planets")
+    for body in stages.values() if isinstance(stages, dict) else ():
+        for name in ("pin_errors", "thickness_errors"):
+            count = body.get("count") if isinstance(body, dict) else None
+            count = count.value if isinstance(count, Plain) else count
+            if isinstance(count, int) and isinstance(body.get(name), str):
+                body[name] = [body[name]] * min(max(count, 1), 99)
+    return tables
+
+
 def _as_table(value: Any) -> Mapping[str, Any]:
     return value if isinstance(value, Mapping) else {}
 

@@ -5,18 +5,21 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Mapping
 from typing import Any
 
-from tribodyn.errors import Problem
+from tribodyn.errors import Problem, did_you_mean
 from tribodyn.model import NO_OPTIONS
 from tribodyn.study.case.changes import changed_tables, with_values
 from tribodyn.study.case.rating_tables import BearingCatalogue, PartRating, ShaftStrength
+from tribodyn.study.case.section import entries, section_at, table_in
 from tribodyn.study.case.values import written
 from tribodyn.study.machine.tables import (
+    GROUPS,
     HEAT,
     MESH_KEYS,
     SHARED,
     SOLVER_OF_PAIRS,
     HypoidMeshTable,
     MeshDynamics,
+    OperationTable,
     mesh_table_kind,
 )
 from tribodyn.study.machine_tables import MachineTables
@@ -214,18 +217,35 @@ def _constant_meshes(data: Mapping[str, Any]) -> KeyedProblems:
 
 
 def changed_machine(
-    tables: Mapping[str, Any],
+    data: Mapping[str, Any],
     changes: Mapping[str, Any],
     spread: Mapping[str, str] = NO_OPTIONS,
     by: str = "",
 ) -> dict[str, Any]:
     """Tables of a machine with values changed, without what the changes leave without effect."""
-    before = {key for key, _ in unused_keys(tables)}
-    data = changed_tables(MachineTables, tables, changes, spread, by)
+    before = {key for key, _ in unused_keys(data)}
+    changed_data = changed_tables(MachineTables, data, changes, spread, by)
     parts = [key.split(".") for key in changes]
     changed = {".".join(each[:depth]) for each in parts for depth in range(1, len(each) + 1)}
-    unused = [key for key, _ in unused_keys(data) if key not in before and key not in changed]
-    data = with_values(data, dict.fromkeys(unused))
+    unused = [k for k, _ in unused_keys(changed_data) if k not in before and k not in changed]
+    data = with_values(changed_data, dict.fromkeys(unused))
     if isinstance(reasons := data.get("assumed"), Mapping):
         data["assumed"] = {key: why for key, why in reasons.items() if key not in unused}
     return data
+
+
+def unknown_part_key(data: dict[str, Any], key: str) -> Problem:
+    """Problem of a key that the tables of a machine do not have, with the closest one."""
+    keys = [
+        f"{group}.{part}.{name}"
+        for group in (*GROUPS, "planets")
+        for part, body in table_in(data, group).items()
+        for name in section_at((group, part), MachineTables).keys_for(body)  # type: ignore[union-attr]
+    ]
+    keys += [f"operation.{name}" for name in OperationTable.fields]
+    keys += [".".join(place) for _, _, place in entries(data)]
+    what, why = f'there is no key "{key}"', "Keys name the part and its value"
+    part = next((name for name in keys if name.startswith("planets.")), "")
+    example = f"{part.rpartition('.')[0]}.pin_stiffness" if part else "bearings.A.radial_stiffness"
+    remedy = f'Write, for example, "{example}" or "operation.speed"'
+    return Problem(what, "", why, did_you_mean(key, list(dict.fromkeys(keys)), remedy))
