@@ -48,6 +48,7 @@ from tribodyn.study.machine.result import (
 from tribodyn.study.mesh_inputs import MeshInputs, named_mesh
 from tribodyn.study.part_losses import part_losses
 from tribodyn.study.pipeline.assembly import mesh_contacts, mesh_damping
+from tribodyn.study.pipeline.cautions import mesh_cautions
 from tribodyn.study.pipeline.store import Stored, StoredLoad, figures_of_load
 from tribodyn.study.pipeline.stored_motion import read_passes
 from tribodyn.study.pipeline.tooth_contact import load_friction_of, mesh_table
@@ -163,7 +164,9 @@ def balanced_machine(
         raise ComputationError(case._located(error)) from None
     point, tables = settled.point, dict(settled.tables)
     warm = load if settled.temperatures is None else warmed(load, settled.temperatures)
-    parts = point.balance(tables), tables, point.misalignment, point.warnings
+    cautions = [] if rehearsal else [(n, each) for n in tables for each in mesh_cautions(tables[n])]
+    of_meshes = [*point.warnings, *(MeshWarning(n, load.name, each) for n, each in cautions)]
+    parts = point.balance(tables), tables, point.misalignment, of_meshes
     return Balanced(warm, *parts, settled.heat)
 
 
