@@ -9,7 +9,7 @@ import pytest
 
 import tribodyn as td
 from tribodyn.errors import InputError
-from tribodyn.plot.machine.orders import gains
+from tribodyn.plot.machine.orders import gains as gains_of
 from tribodyn.study.machine.case import MachineCase
 
 TEXT = """
@@ -77,7 +77,7 @@ def test_a_stage_with_further_shafts_is_a_machine(tmp_path: Path) -> None:
 
 def test_power_of_a_stage_enters_by_the_carrier(tmp_path: Path) -> None:
     machine = read(tmp_path).machine()
-    gains = [gains(machine, machine.kinematics, mesh) for mesh in machine.meshes]
+    gains = [gains_of(machine, machine.kinematics, mesh) for mesh in machine.meshes]
     for gain in gains:
         assert sum(gain.values()) == pytest.approx(0.0, abs=1e-6)
     power = sum(gain.get("rotor", 0.0) for gain in gains)

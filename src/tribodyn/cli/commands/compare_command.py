@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal
 from cyclopts import Parameter
 
 from tribodyn.cli.console import say, say_json, table
-from tribodyn.cli.settings import Flag, check_place
+from tribodyn.cli.settings import Flag, Place, check_place
 from tribodyn.errors import InputError
 from tribodyn.validated_files import plain_number
 
@@ -104,7 +104,7 @@ def compare(
     """
     if not second.is_dir() and second.exists():
         options.check()
-        _with_recording(first, second, _pairs(channel), options, (out, force, json))
+        _with_recording(first, second, _pairs(channel), options, Place(out, None, force, json))
         return
     from tribodyn.cases.load import load_case
     from tribodyn.study.pipeline.store import read_summary
@@ -143,7 +143,7 @@ def _with_recording(
     second: Path,
     pairs: tuple[dict[str, str], ...],
     options: RecordingOptions,
-    output: Any,
+    at: Place,
 ) -> None:
     from tribodyn.cases.load import load_result
     from tribodyn.cli.commands.study_commands import finish
@@ -152,15 +152,14 @@ def _with_recording(
     from tribodyn.report.study_report_data import StudyReportData
 
     channels, sensitivity = pairs
-    out, force, json = output
     if not channels:
         remedy = 'Write --channel "acc=acceleration_loa_pinion, 100 mV/g", one for each channel'
         raise InputError("no channel of the recording is named", "--channel", "", remedy)
     number = plain_number(options.gain)
     if number is None and options.gain != "fit":
         raise InputError(f'gain = "{options.gain}"', "--gain", "", 'Give a number, or "fit"')
-    if out is not None:
-        check_place(out, force)
+    if at.out is not None:
+        check_place(at.out, at.force)
     result = load_result(first)
     comparison = compared(
         result,
@@ -178,13 +177,13 @@ def _with_recording(
         f"Gain of {name}, {how}: {value:.6g}" for name, value in comparison.gains.items()
     ]
     facts = _facts(comparison)
-    if out is None:
-        say("\n".join([*statements, table([head, *rows])])) if not json else say_json(facts)
+    if at.out is None:
+        say("\n".join([*statements, table([head, *rows])])) if not at.json else say_json(facts)
         return
     caption = "Spectra of the measured channels with the computed mesh harmonics on them."
     figures = [("Computed and measured", comparison.plot(), caption)]
     answer = StudyReportData(comparison, figures, statements, head, rows, facts)
-    finish("comparison", result.case, out, answer, force, json)
+    finish("comparison", result.case, at.out, answer, at)
 
 
 #: Channel, figure, unit, computed and measured value, error and noise.
