@@ -46,6 +46,22 @@ def test_channels_are_listed_with_units_rate_and_duration(
     assert facts["channels"][1]["alternating_rms"] == pytest.approx(np.sqrt(0.5), rel=1e-4)
 
 
+def test_a_verdict_has_the_zone_and_the_gear_whose_lines_stand_out(
+    file: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """2 m/s^2 at 240 Hz and 0.3 m/s^2 at 45 Hz have 1.2 mm/s rms, most of it at the mesh."""
+    expected = np.hypot(2.0 / (16.0 * SPEED), 0.3 / (3.0 * SPEED)) / np.sqrt(2.0)
+    rate = ("--channel", "acc", "--case", "fzg-roughness", "--limits")
+    for limits, zone in (("II", "zone B"), ("0.5/1/2 mm/s", "zone C")):
+        facts = run_json(capsys, file, *rate, limits)
+        written = float(facts["verdict"][0].partition(" mm/s rms")[0].rpartition(" ")[2])
+        assert written == pytest.approx(1e3 * expected, rel=0.03)  # with some of the noise
+        assert zone in facts["verdict"][0]
+        assert facts["verdict"][-1].startswith("Mesh ")
+    assert call(["signal", str(file), *rate, "V"]) == 2
+    assert "--limits" in capsys.readouterr().err
+
+
 @pytest.mark.slow
 def test_figures_are_in_si_and_the_report_is_self_contained(
     file: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
@@ -59,7 +75,8 @@ def test_figures_are_in_si_and_the_report_is_self_contained(
     assert facts["average_revolutions_mate"] in (39, 40)
     assert facts["notes"] == []
     assert facts["na4_star"] == pytest.approx(facts["na4"])  # as strong as the earlier record
-    assert all(np.isscalar(value) for key, value in facts.items() if key != "notes")
+    assert [key for key in facts if not np.isscalar(facts[key])] == ["notes", "verdict"]
+    assert "alternating rms x1," in facts["verdict"][0]
     assert {each.name for each in (tmp_path / "r").iterdir()} == {"report.html", "study.nc"}
     page = (tmp_path / "r" / "report.html").read_text("utf-8")
     assert "acc of rig.csv" in page

@@ -195,4 +195,95 @@ answer = td.run(case).summary()["mean_friction_coefficient"]
 """,
         0.06,
     ),
+    Task(
+        "What torque leaves a two-stage reducer with 22/65 and 20/61 teeth for 150 N*m?",
+        """
+case = td.load_case("two-stage-helical")
+answer = case.machine().kinematics.shafts["output"].torque
+""",
+        150.0 * 65 / 22 * 61 / 20,
+    ),
+    Task(
+        "How fast does the generator shaft of the wind turbine turn at 12 rpm of the rotor?",
+        """
+case = td.load_case("wind-turbine-gearbox").replace({"operation.speed": "12 rpm"})
+answer = abs(case.machine().kinematics.shafts["high"].speed)
+""",
+        12.0 * math.pi / 30.0 * (1.0 + 80 / 22) * 88 / 23,
+    ),
+    Task(
+        "At which frequency do the teeth of a planetary stage mesh at 900 rpm of its sun?",
+        """
+case = td.load_case("planetary-stage").replace({"operation.speed": "900 rpm"})
+lines = td.kinematic_frequencies(case)
+answer = lines.frequency[lines.symbol.index("GMF")]
+""",
+        15.0 * 17 * 61 / (17 + 61),
+    ),
+    Task(
+        "How often do planets pass a sensor on the ring of that stage?",
+        """
+lines = td.kinematic_frequencies(td.load_case("planetary-stage"))
+answer = lines.order[lines.symbol.index("PPF")]
+""",
+        3.0 * 17 / (17 + 61),
+    ),
+    Task(
+        "Which phases have the sun meshes of three planets with 17 and 61 teeth?",
+        """
+phases = td.machine.mesh_phases(sun_teeth=17, ring_teeth=61, planets=3)
+answer = sorted(phases.sun.tolist())
+""",
+        [0.0, 1 / 3, 2 / 3],
+    ),
+    Task(
+        "How much torque has the pinion of the second stage under the load case slow?",
+        """
+case = td.load_case("two-stage-spur")
+load = next(each for each in case.load_cases if each.name == "slow")
+answer = case.pair("second", load)["operation.torque"]
+""",
+        180.0 * 57 / 23,
+    ),
+    Task(
+        "How long do two bearings of 10000 and 20000 hours last together?",
+        """
+from tribodyn.rating import system_life
+answer = system_life([10000.0, 20000.0], weibull_exponent=1.5)
+""",
+        (10000.0**-1.5 + 20000.0**-1.5) ** (-1 / 1.5),
+    ),
+    Task(
+        "Do crowning and lead slope lower the face load factor of a pair that is 10 um askew?",
+        """
+case = td.load_case("fzg-roughness").replace({"stiffness.model": "iso6336"})
+best = td.optimize_lead(case, misalignment="10 um", slices=8)
+answer = bool(best.face_load_factor_after.max() < best.face_load_factor_before.max())
+""",
+        True,
+    ),
+    Task(
+        "In which severity zone is a class III machine that shakes with 4.6 mm/s rms at 60 Hz?",
+        """
+import numpy as np
+from tribodyn.measurement import Recording, analyse_signal
+from tribodyn.study import judge_recordings
+turns = 2 * np.pi * 60.0
+time = np.arange(20000) / 10000.0
+wave = 4.6e-3 * np.sqrt(2.0) * turns * np.cos(turns * time)
+rig = Recording({"acc": wave}, 10000.0, {"acc": "m/s^2"})
+answer = judge_recordings([analyse_signal(rig, "acc")], limits="III").zone
+""",
+        "C",
+    ),
+    Task(
+        "Does a gearbox with a planetary stage come back from a REXS file as it was?",
+        """
+from tribodyn.exchange import machine_from_rexs, read_rexs, write_rexs
+case = td.load_case("wind-turbine-gearbox")
+write_rexs(case, "turbine.rexsj")
+answer = machine_from_rexs(read_rexs("turbine.rexsj")) == case
+""",
+        True,
+    ),
 ]

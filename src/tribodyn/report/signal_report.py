@@ -85,8 +85,8 @@ _SMEARED = (
 _NAMES = {SHAFT: "Shaft", MATE: "Mate"}
 
 
-def signal_report_data(analysis: SignalAnalysis) -> StudyReportData:
-    """Figures, sentences, table and numbers in SI of an analysed channel."""
+def signal_report_data(analysis: SignalAnalysis, verdict: Sequence[str] = ()) -> StudyReportData:
+    """Figures, sentences, table and numbers in SI of an analysed channel, and a verdict on it."""
     numbers = analysis.figures()
     facts: dict[str, Any] = {"channel": analysis.channel, "unit": analysis.unit, **numbers}
     if analysis.speed is not None:
@@ -100,10 +100,12 @@ def signal_report_data(analysis: SignalAnalysis) -> StudyReportData:
         if (picture := attempt(f'figure "{heading}"', draw, notes)) is not None
     ]
     facts["notes"] = [sentence(each) for each in notes]
+    if verdict:
+        facts["verdict"] = list(verdict)
     return StudyReportData(
         analysis,
         pictures,
-        [_lead(analysis), *verdicts, *facts["notes"]],
+        [_lead(analysis), *verdict, *verdicts, *facts["notes"]],
         HEAD,
         _rows(analysis, numbers),
         facts,
@@ -112,7 +114,11 @@ def signal_report_data(analysis: SignalAnalysis) -> StudyReportData:
 
 @report_of("SignalAnalysis")
 def write_signal_report(
-    analysis: SignalAnalysis, path: str | os.PathLike[str], *, title: str = ""
+    analysis: SignalAnalysis,
+    path: str | os.PathLike[str],
+    *,
+    title: str = "",
+    verdict: Sequence[str] = (),
 ) -> Path:
     """Write the analysis of a recorded channel to a file.
 
@@ -124,13 +130,15 @@ def write_signal_report(
         As :func:`write_report` takes it.
     title : str
         Title of the report; that of the channel by default.
+    verdict : sequence of str
+        Sentences such as :attr:`tribodyn.study.RecordingVerdict.statements`.
 
     Raises
     ------
     InputError
         If the place cannot be written to.
     """
-    answer = signal_report_data(analysis)
+    answer = signal_report_data(analysis, verdict)
     return write_study_report(
         None,
         path,

@@ -12,6 +12,7 @@ if TYPE_CHECKING:
     from tribodyn.study.case.case import Case
     from tribodyn.study.faults.clock import TurningClock, turning_clock
     from tribodyn.study.faults.recording_set import RecordingSet, record_set
+    from tribodyn.study.faults.recording_verdict import Finding, RecordingVerdict, judge_recordings
     from tribodyn.study.faults.wear import Wear, wear
     from tribodyn.study.frequencies import KinematicFrequencies, kinematic_frequencies
     from tribodyn.study.machine.case import MachineCase, PartsCase, PlanetaryCase
@@ -70,6 +71,7 @@ __all__ = [
     "CaseSensitivity",
     "DataSet",
     "FailureProbability",
+    "Finding",
     "KinematicFrequencies",
     "LoadCase",
     "LoadResult",
@@ -90,6 +92,7 @@ __all__ = [
     "PlanetaryMotion",
     "PlanetaryResult",
     "RecordingSet",
+    "RecordingVerdict",
     "Result",
     "ResultComparison",
     "ResultOfCase",
@@ -110,6 +113,7 @@ __all__ = [
     "film_over_operation",
     "friction_experiment",
     "harris_map",
+    "judge_recordings",
     "kinematic_frequencies",
     "load_data",
     "load_share_statistics",
@@ -157,6 +161,7 @@ _NAMES = {
     "pipeline.tooth_contact": "loaded_contact",
     "planetary.stage_result": "PlanetaryMotion StageResult",
     "planetary.tolerances": "LoadShareStatistics load_share_statistics",
+    "faults.recording_verdict": "Finding RecordingVerdict judge_recordings",
     "result_comparison": "ResultComparison compare_results",
     "studies.bifurcation": "bifurcation",
     ".cases.papers.friction_experiment": "friction_experiment",

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
@@ -38,6 +38,7 @@ _OPTIONS = {
     "line": "--line",
     "mesh_frequency": "--line",
     "earlier": "--earlier",
+    "limits": "--limits",
 }
 _PER_SAMPLE = Problem(
     "seconds and hertz are samples and cycles per sample",
@@ -52,6 +53,7 @@ _EXAMPLES = {
     "--sample-rate": ("Hz", "25600 Hz"),
     "--band": ("Hz", "2000..6000 Hz"),
     "--between": ("s", "1..8 s"),
+    "--limits": ("m/s", "2.8/4.5/7.1 mm/s"),
 }
 
 
@@ -111,7 +113,10 @@ class Channel:
         Highest order of the shaft.
     earlier : str
         Earlier recordings of the same channel in their order, "may.mat,june.mat": NA4, NA4* and NB4
-        compare with them.
+        compare with them, and the verdict has their trend.
+    limits : str
+        Class of the machine in ISO 10816-1, I to IV, or ends of the zones A, B and C of the
+        velocity, "2.8/4.5/7.1 mm/s", for its severity.
     """
 
     channel: Text = None
@@ -121,6 +126,7 @@ class Channel:
     band: Text = None
     max_order: float | None = None
     earlier: Text = None
+    limits: Text = None
 
 
 def signal(
@@ -156,14 +162,16 @@ def signal(
     with collected() as warnings:
         recording = _recording(file, options, turning.line)
         name = options.channel or _only_channel(recording, options, turning, out)
-        analysis = name and _analysis(recording, name, options, turning)
+        earlier = _earlier(options, turning) if name else []
+        analysis = name and _analysis(recording, name, options, turning, earlier)
+        verdict = analysis and _verdict(analysis, earlier, options, turning)
     show_warnings(warnings)
     if analysis and turning.line is not None and recording.sample_rate == 1.0:
         analysis = replace(analysis, notes=(_PER_SAMPLE, *analysis.notes))
     if not analysis:
         _list(file, recording, json)
         return
-    _show(file, analysis, out, force, json)
+    _show(file, analysis, verdict or [], (out, force, json))
 
 
 def _recording(file: Path, options: Channel, line: Text) -> Recording:
@@ -300,7 +308,13 @@ def _list(file: Path, recording: Recording, json: bool) -> None:
     tell(f'Analyse one: tribodyn signal {file} --channel "{rows[0][0]}" --out report')
 
 
-def _analysis(recording: Recording, name: str, options: Channel, turning: Shaft) -> SignalAnalysis:
+def _analysis(
+    recording: Recording,
+    name: str,
+    options: Channel,
+    turning: Shaft,
+    earlier: Sequence[Recording] = (),
+) -> SignalAnalysis:
     from tribodyn.measurement import analyse_signal
 
     _check_channel(recording, name, "--channel")
@@ -317,9 +331,6 @@ def _analysis(recording: Recording, name: str, options: Channel, turning: Shaft)
         what = f'--tacho {turning.tacho} and --speed "{turning.speed}" are both given'
         raise InputError(what, "", "The tachometer measures the speed", "Keep one of them")
     band = None if options.band is None else _ends("--band", options.band)
-    files = [text.strip() for text in (options.earlier or "").split(",") if text.strip()]
-    uncut = replace(options, between=None)
-    earlier = [_recording(Path(text), uncut, turning.line) for text in files]
     with with_options(_OPTIONS):
         return analyse_signal(
             recording,
@@ -334,6 +345,29 @@ def _analysis(recording: Recording, name: str, options: Channel, turning: Shaft)
             line=_line(turning.line, recording.sample_rate),
             earlier=earlier,
         )
+
+
+def _earlier(options: Channel, turning: Shaft) -> list[Recording]:
+    files = [text.strip() for text in (options.earlier or "").split(",") if text.strip()]
+    uncut = replace(options, between=None)
+    return [_recording(Path(text), uncut, turning.line) for text in files]
+
+
+def _verdict(
+    analysis: SignalAnalysis, earlier: Sequence[Recording], options: Channel, turning: Shaft
+) -> list[str]:
+    """Severity, trend and suspected parts in sentences, as far as something is known for them."""
+    from tribodyn.cases.load import load_case
+    from tribodyn.study import judge_recordings, kinematic_frequencies
+
+    lines = None if turning.case is None else kinematic_frequencies(load_case(turning.case))
+    before = [_analysis(each, analysis.channel, options, turning) for each in earlier]
+    limits: Any = options.limits
+    if limits is not None and "/" in limits:
+        ends, _, unit = limits.strip().rpartition(" ")
+        limits = [_quantity("--limits", f"{end} {unit}") for end in ends.split("/")]
+    with with_options(_OPTIONS):
+        return judge_recordings([*before, analysis], lines, limits=limits).statements
 
 
 def _check_channel(recording: Recording, name: str, option: str) -> None:
@@ -411,10 +445,13 @@ def _written_teeth(text: Text) -> tuple[int | None, int | None]:
     return int(first), int(second) if stroke else None
 
 
-def _show(file: Path, analysis: SignalAnalysis, out: Output, force: bool, json: bool) -> None:
+def _show(
+    file: Path, analysis: SignalAnalysis, verdict: list[str], output: tuple[Output, bool, bool]
+) -> None:
     from tribodyn.report.signal_report import signal_report_data, write_signal_report
 
-    answer = signal_report_data(analysis)
+    out, force, json = output
+    answer = signal_report_data(analysis, verdict)
     if out is not None:
         from tribodyn.study.pipeline.save import new_directory
         from tribodyn.validated_files import write_dataset
@@ -422,12 +459,12 @@ def _show(file: Path, analysis: SignalAnalysis, out: Output, force: bool, json: 
         with new_directory(out, force=force) as place:
             write_dataset(analysis.to_xarray(), place / "study.nc")
             title = f"{analysis.channel} of {file.name}"
-            write_signal_report(analysis, place / "report.html", title=title)
+            write_signal_report(analysis, place / "report.html", title=title, verdict=verdict)
     if json:
         say_json({"file": str(file), **answer.facts})
     else:
         say("\n".join([answer.statements[0], table([answer.head, *answer.rows])]))
         for note in answer.statements[1:]:
-            tell(f"note: {note}")
+            tell(note if note in verdict else f"note: {note}")
     if out is not None:
         tell(f"Report: {out / 'report.html'}")

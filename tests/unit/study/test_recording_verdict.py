@@ -1,0 +1,139 @@
+"""Verdicts on recordings: closed forms of the severity, and parts that are named or not."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+
+import tribodyn as td
+from tribodyn.errors import InputError
+from tribodyn.measurement import Recording, analyse_signal
+from tribodyn.study import judge_recordings, kinematic_frequencies
+
+RATE = 12_800.0
+TIME = np.arange(round(4.0 * RATE)) / RATE
+
+
+@pytest.fixture(scope="module")
+def lines():
+    return kinematic_frequencies(td.load_case("two-stage-spur"))
+
+
+def frequency(lines, part: str, symbol: str) -> float:
+    rows = zip(lines.part, lines.symbol, lines.frequency, strict=True)
+    return float(next(f for p, s, f in rows if (p, s) == (part, symbol)))
+
+
+def recorded(signal, unit: str = "m/s^2"):
+    return analyse_signal(Recording({"acc": signal}, RATE, {"acc": unit}), "acc")
+
+
+def sound(lines, seed: int = 1) -> np.ndarray:
+    """Both meshes with three harmonics and noise."""
+    signal = np.random.default_rng(seed).normal(0.0, 0.3, TIME.size)
+    for part in ("mesh first", "mesh second"):
+        mesh = frequency(lines, part, "GMF")
+        for k in (1, 2, 3):
+            signal += 3.0 / k * np.cos(2.0 * np.pi * k * mesh * TIME + k)
+    return signal
+
+
+def struck(rate: float, size: float = 2.0, seed: int = 3) -> np.ndarray:
+    """Ringing at 4.3 kHz after impacts that slip."""
+    rng, signal = np.random.default_rng(seed), np.zeros(TIME.size)
+    ringing = size * np.exp(-900.0 * TIME[:250]) * np.sin(2.0 * np.pi * 4300.0 * TIME[:250])
+    for strike in np.arange(0.01, TIME[-1] - 0.05, 1.0 / rate):
+        first = round((strike + rng.normal(0.0, 5e-5)) * RATE)
+        signal[first : first + 250] += ringing
+    return signal
+
+
+@pytest.mark.parametrize(
+    ("millimetres", "zone"), [(1.1, "A"), (1.13, "B"), (2.79, "B"), (2.81, "C"), (7.2, "D")]
+)
+def test_the_zone_is_that_of_the_velocity_of_a_sine(millimetres: float, zone: str) -> None:
+    """A sine of 80 Hz with this rms velocity, measured as acceleration and as velocity."""
+    turns = 2.0 * np.pi * 80.0
+    wave = 1e-3 * millimetres * math.sqrt(2.0) * np.cos(turns * TIME)
+    slow = 0.5 * np.cos(2.0 * np.pi * 3.0 * TIME)  # below the band
+    for signal, unit in ((turns * wave + slow, "m/s^2"), (wave, "m/s")):
+        verdict = judge_recordings([recorded(signal, unit)], limits="II")
+        assert verdict.velocity[0] == pytest.approx(1e-3 * millimetres, rel=2e-3)
+        assert verdict.zone == zone
+    own = judge_recordings([recorded(turns * wave)], limits=[1e-3, 2e-3, 3e-3])
+    assert own.zone == "ABCD"[sum(millimetres > end for end in (1.0, 2.0, 3.0))]
+
+
+def test_a_severity_needs_an_acceleration_and_limits_that_rise() -> None:
+    verdict = judge_recordings([recorded(np.cos(500.0 * TIME), "N")], limits="I")
+    assert verdict.zone == ""
+    assert "needs an acceleration or velocity" in verdict.statements[0]
+    for limits in ("V", [1e-3, 1e-3, 2e-3], [1e-3]):
+        with pytest.raises(InputError, match="a class of ISO 10816-1, or three velocities"):
+            judge_recordings([recorded(np.cos(500.0 * TIME))], limits=limits)
+    with pytest.raises(InputError, match="there is no analysis"):
+        judge_recordings([])
+
+
+@pytest.mark.parametrize(
+    ("part", "symbol", "name"),
+    [
+        ("bearing C", "BPFO", "bearing C, outer ring"),
+        ("bearing D", "BPFI", "bearing D, inner ring"),
+        ("bearing C", "BSF", "bearing C, rolling elements"),
+    ],
+)
+def test_a_damaged_bearing_is_named_with_its_evidence_and_trend(lines, part, symbol, name) -> None:
+    """Impacts 1 % slower than the line, twice as strong as in the first recording."""
+    rate = 0.99 * frequency(lines, part, symbol) * (2.0 if symbol == "BSF" else 1.0)
+    records = [recorded(sound(lines, n) + struck(rate, size)) for n, size in ((1, 1.0), (2, 2.0))]
+    verdict = judge_recordings(records, lines)
+    (finding,) = (each for each in verdict.findings if "bearing" in each.part)
+    assert finding.part.startswith(name)
+    assert finding.frequency == pytest.approx(rate, rel=3e-3)
+    assert finding.amplitudes[1] > 1.5 * finding.amplitudes[0]
+    text = " ".join(verdict.statements)
+    assert "since the first recording. Next: look at" in text
+
+
+def test_bearings_whose_lines_are_as_near_are_all_named(lines) -> None:
+    """BPFO of A at 158.3 Hz and BPFI of D at 156.4 Hz are 1.2 % apart, which slip may be."""
+    verdict = judge_recordings([recorded(sound(lines) + struck(157.0))], lines)
+    (finding,) = (each for each in verdict.findings if "bearing" in each.part)
+    assert finding.part == "bearing D, inner ring, or bearing A, outer ring"
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_sound_machines_and_noise_name_no_bearing_and_no_gear(lines, seed: int) -> None:
+    noise = np.random.default_rng(seed).normal(0.0, 1.0, TIME.size)
+    for signal in (noise, sound(lines, seed)):
+        findings = judge_recordings([recorded(signal)], lines).findings
+        assert [f.part for f in findings if not f.part.startswith("mesh")] == []
+
+
+def test_sidebands_name_the_gear_and_a_strong_turn_its_shaft(lines) -> None:
+    mesh = 2.0 * np.pi * frequency(lines, "mesh first", "GMF") * TIME
+    middle = 2.0 * np.pi * frequency(lines, "shaft middle", "f(middle)") * TIME
+    signal = sound(lines) + 3.0 * 0.5 * np.cos(middle) * np.cos(mesh + 1.0)
+    parts = [each.part for each in judge_recordings([recorded(signal)], lines).findings]
+    assert "mesh first, gear z2" in parts
+    assert "mesh first, gear z1" not in parts
+    unbalance = sound(lines) + 3.0 * np.cos(middle)
+    (finding,) = judge_recordings([recorded(unbalance)], lines).findings
+    assert finding.part == "shaft middle"
+    assert "check the balance" in judge_recordings([recorded(unbalance)], lines).statements[-1]
+
+
+def test_the_lines_follow_the_speed_of_the_recording(lines) -> None:
+    """The machine runs 3 % slower than its case; the mesh of 23 teeth says so."""
+    slower = 0.97
+    signal = np.random.default_rng(1).normal(0.0, 0.3, TIME.size)
+    mesh = 2.0 * np.pi * slower * frequency(lines, "mesh first", "GMF")
+    signal += sum(3.0 / k * np.cos(k * mesh * TIME + k) for k in (1, 2, 3))
+    rate = slower * 0.995 * frequency(lines, "bearing B", "BPFO")
+    rig = Recording({"acc": signal + struck(rate)}, RATE, {"acc": "m/s^2"})
+    analysis = analyse_signal(rig, "acc", speed=2.0 * np.pi * 50.0, teeth=23, mate_teeth=57)
+    parts = [each.part for each in judge_recordings([analysis], lines).findings]
+    assert any(part.startswith("bearing B, outer ring") for part in parts)
