@@ -304,6 +304,18 @@ def test_what_needs_one_clock_refuses_phases():
         replace(system.contacts[0], turning_error=np.cos)
 
 
+def test_wrong_input_over_phases_is_named():
+    system = two_meshes(((1, 0), (0, 1)))
+    with pytest.raises(InputError, match=r"1000000 x 1000000 points .* GB; this machine has"):
+        harmonic_balance(system, (0.25, 0.15), steps=10**6)
+    with pytest.raises(InputError, match="function of the phase of a shaft"):
+        replace(system.contacts[0], turning_error=3e-6, turning_cycles=(0, 1))
+    motion = harmonic_balance(system, (0.25, 0.15), steps=24)
+    assert motion.at([]).position.shape == (0, 3)
+    with pytest.raises(InputError, match="time = nan"):
+        motion.at([0.0, np.nan])
+
+
 def test_a_tuple_of_one_number_is_the_clock():
     contact = two_meshes((5, 3)).contacts[0]
     assert replace(contact, cycles=(5,)).cycles == 5

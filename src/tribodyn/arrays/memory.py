@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import os
 import threading
 from collections.abc import Callable
 from typing import Any, Generic, TypeVar
@@ -64,3 +65,11 @@ reused_memory: Memory = _Workspace().array
 def new_memory(name: str, shape: tuple[int, ...]) -> Array:
     """A new array, where :data:`reused_memory` would return one that is overwritten later."""
     return np.empty(shape)
+
+
+def machine_memory() -> float:
+    """Memory of this machine [byte]; infinite where the system does not report it."""
+    try:
+        return float(os.sysconf("SC_PAGE_SIZE") * os.sysconf("SC_PHYS_PAGES"))
+    except (AttributeError, OSError, ValueError):
+        return math.inf

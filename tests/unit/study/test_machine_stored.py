@@ -149,7 +149,7 @@ def test_a_long_period_names_its_teeth_and_its_cost(monkeypatch):
     assert "GB" in message
     assert 'solver.phases = "auto"' in message
     with monkeypatch.context() as small:
-        small.setattr("tribodyn.study.machine.first_look._memory", lambda: 0.1)
+        small.setattr("tribodyn.study.machine.first_look.machine_memory", lambda: 1e8)
         with pytest.raises(td.ComputationError, match=r"at least 0\.\d+ GB.* has 0\.1 GB"):
             td.run(case)
     gears["z3"]["teeth"], gears["z5"]["teeth"] = 19, 61

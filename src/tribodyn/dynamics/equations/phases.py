@@ -45,9 +45,12 @@ def read_cycles(name: str, value: object) -> Cycles:
 
 def read_turning(error: Any, cycles: Any) -> tuple[Turning, ...]:
     """Turning errors of a contact: one function with its cycles, or as many of both."""
-    functions = [error] if callable(error) else list(error)
+    functions = list(error) if isinstance(error, list | tuple) else [error]
+    if not all(map(callable, functions)):
+        what, why = f"turning_error = {error}", "It is a function of the phase of a shaft"
+        raise InputError(what, "Contact.turning_error", why, "Give a function, or one a shaft")
     counts = [cycles] if callable(error) and cycles else list(cycles)
-    if len(functions) != len(counts) or not all(map(callable, functions)):
+    if len(functions) != len(counts):
         what = f"{len(functions)} turning errors and {len(counts)} turning cycles"
         why = "Each is a function of the phase of one shaft, with the turns of it over each phase"
         raise InputError(what, "Contact.turning_cycles", why, "Give as many of both")

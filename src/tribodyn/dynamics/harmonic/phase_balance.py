@@ -9,6 +9,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from tribodyn.arrays.memory import machine_memory
 from tribodyn.checks import require_whole
 from tribodyn.dynamics.equations.orbit_coordinates import (
     orbit_coordinates,
@@ -42,6 +43,8 @@ _MANY, _MOST = 2**17, 3 * 2**14
 #: Changes of the motion with twice the points at which it stops, each with the most unknowns for
 #: it: while they fall to less than a part from grid to grid, and where forces bend or jump.
 _SMOOTH, _FALLING, _BROKEN = ((2e-7, _MANY),), 0.1, ((1e-5, 2**13), (2e-3, _MOST))
+#: Memory of a motion per unknown [byte].
+_BYTES = 1.5e3
 #: Step error that causes a warning; part of the largest change with which a phase is refined too.
 _LIMIT, _WORST = 1e-2, 0.2
 #: Damping added at first where Newton's method does not converge, over the critical damping at
@@ -70,7 +73,7 @@ def phase_cost(
         for each in followers
     )
     unknowns = max(unknowns, min(2 * unknowns, _MOST)) if mesh is None else unknowns
-    memory = 2e8 + 1.4e8 * frequencies + 1.5e3 * unknowns
+    memory = 2e8 + 1.4e8 * frequencies + _BYTES * unknowns
     return unknowns, memory, 0.3 + 2e-4 * unknowns if mesh is None else 0.1 + 6e-5 * unknowns
 
 
@@ -220,6 +223,7 @@ def phase_balance(
         raise InputError(what, "start", why, remedy)
     search = _Search.of(system, frequency)
     points = _first_points(search) if steps is None else _read_steps(steps, search)
+    _refuse_large(search, points)
     points, residual, solution = search.first(points, start, tolerance, steps is None)
     step_error = float("nan")
     smooth = all(part.cell is None for part in solution.state.each)
@@ -247,6 +251,20 @@ def phase_balance(
     if step_error > _LIMIT:
         warn("step-size", _coarse(_most(points), step_error, steps is None), stacklevel=3)
     return motion
+
+
+def _refuse_large(search: _Search, points: Points) -> None:
+    """Refuse grids that do not fit in the memory of this machine."""
+    limit = machine_memory()
+    size = search.size(points)
+    if size * _BYTES > limit:
+        counts = " x ".join(map(str, _most(points)))
+        what = f"{counts} points over the phases are {size:.3g} unknowns"
+        why = (
+            f"They need about {1e-9 * _BYTES * size:.3g} GB; this machine has {1e-9 * limit:.3g} GB"
+        )
+        remedy = "Give fewer steps, or merge phases whose frequencies have a small whole ratio"
+        raise InputError(what, "steps", why, remedy)
 
 
 def _integrated(

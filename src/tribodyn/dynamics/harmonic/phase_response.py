@@ -90,12 +90,13 @@ class PhaseResponse(Response):
             If a time is not a number, or negative where the motion is a time integration.
         """
         times = real_numbers("time", time).reshape(-1)
+        if times.size:
+            require_between("time", times, 0.0 if self._march else -np.inf, np.inf, "s")
         points = times[:, None] * self.frequencies % 1.0
         if self._march is None:
             numbers, values = self._all_lines
             motion = sum_lines(points, numbers, values[:, : 2 * len(self.names)])
         else:
-            require_between("time", times, 0.0, np.inf, "s")
             motion = self._march.states(times)
         samples = self._samples(points, motion)
         weight = np.full(times.size, 1.0 / max(times.size, 1))

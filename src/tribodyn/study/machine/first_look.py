@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 import math
-import os
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any, NamedTuple
 
+from tribodyn.arrays.memory import machine_memory
 from tribodyn.errors import ComputationError, Problem, warn
 from tribodyn.machine import machine_structure
 from tribodyn.study.machine.motion import phase_names
@@ -171,22 +171,14 @@ def warn_of_steps(
     steps, least = _STEPS * cycles, min(coordinates, _FEWEST)
     gigabytes = 1e-9 * _BYTES * steps
     cost = f"{steps} steps and about {gigabytes * coordinates:.2g} GB for {coordinates} coordinates"
-    if gigabytes * least > min(_memory(), 1e-9 * memory):
+    if gigabytes * least > 1e-9 * min(machine_memory(), memory):
         what = f"the motion takes {steps} steps and at least {gigabytes * least:.2g} GB"
         allowed = f"solver.memory allows {1e-9 * memory:.3g} GB"
-        where = f"This computer has {_memory():.3g} GB, and {period}"
-        if 1e-9 * memory < _memory():
+        where = f"This computer has {1e-9 * machine_memory():.3g} GB, and {period}"
+        if memory < machine_memory():
             where = f"{allowed}, and {period}"
         raise ComputationError(Problem(what, "meshes", where, remedy))
     warn("long-period", f"{period}. Each motion takes {cost}. {remedy}")
-
-
-def _memory() -> float:
-    """Memory of this computer [GB]; endless where the system does not tell."""
-    try:
-        return 1e-9 * os.sysconf("SC_PAGE_SIZE") * os.sysconf("SC_PHYS_PAGES")
-    except (AttributeError, OSError, ValueError):
-        return math.inf
 
 
 def kinematic_figures(case: MachineCase) -> dict[str, float]:
