@@ -75,7 +75,7 @@ def settle(
     coupling: str,
     tolerance: float,
     heat: LubricantData | None = None,
-    oils: Sequence[LubricantData] = (),
+    oils: Sequence[LubricantData | None] = (),
 ) -> Settled[Point]:
     """Teeth that agree with misalignment, load and temperature, as far as a case asks for it."""
     # coupling: load that they follow; heat: of the balance; oils: their data limit its temperature
@@ -91,7 +91,7 @@ def settle(
     def loss(settled: Settled[Point], to: Temperatures) -> float:
         return settled.point.lost(settled.tables, to)
 
-    settled, temperatures, balance = balanced(heat, oils, solve, loss)
+    settled, temperatures, balance = balanced(heat, [*filter(None, oils)], solve, loss)
     return settled._replace(temperatures=temperatures, heat=balance)
 
 

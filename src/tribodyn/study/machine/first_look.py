@@ -193,10 +193,9 @@ def kinematic_figures(case: MachineCase) -> dict[str, float]:
     for name, mesh in flow.meshes.items():
         values[f"meshes.{name}.mesh_frequency"] = mesh.mesh_frequency
         values[f"meshes.{name}.static_mesh_force"] = mesh.force
-        ratio = None
-        if name in case.meshes_with_teeth:
-            pair = inputs_under(case, name, case.operating_point).cylindrical
-            ratio = None if pair is None else pair.transverse_contact_ratio
+        computed = name in case.meshes_with_teeth
+        pair = inputs_under(case, name, case.operating_point).cylindrical if computed else None
+        ratio = None if pair is None else pair.transverse_contact_ratio
         for key, value in geometry_figures(machine, name, mesh.force, ratio).items():
             values[f"meshes.{name}.{key}"] = value
     for name, shaft in flow.shafts.items():

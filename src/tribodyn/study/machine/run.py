@@ -156,9 +156,8 @@ def balanced_machine(
     start, heat = MachineTeeth(case, load, progress, rehearsal), None if rehearsal else case.heat
     coupling = "none" if rehearsal else case.solver.coupling
     names = case.meshes_with_teeth if heat is not None else ()
-    pairs = [read_teeth(case, n, teeth_under(case, n, load))[0] for n in names]
+    oils = [read_teeth(case, n, teeth_under(case, n, load))[0].lubricant for n in names]
     try:
-        oils = [pair.lubricant for pair in pairs if pair.lubricant is not None]
         settled = settle(start, coupling, case.solver.coupling_tolerance, heat, oils)
     except ComputationError as error:
         raise ComputationError(case._located(error)) from None
@@ -268,8 +267,8 @@ class MachineTeeth:
         first = {key: name for name, key in reversed(keys.items())}
 
         def compute(name: str) -> MeshTable:
-            parts = self.inputs[name], nominal[name], loading[name]
-            return mesh_under_load(*parts, about_load=True)
+            loads = nominal[name], loading[name]
+            return mesh_under_load(self.inputs[name], *loads, about_load=True)
 
         listed = in_threads(compute, [*first.values()], processors())
         tables = dict(zip(first, listed, strict=True))

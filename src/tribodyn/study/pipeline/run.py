@@ -178,10 +178,9 @@ def prepare_run(
     """Compute mesh and structure of a case; the motion follows in :meth:`PreparedRun.result`."""
     with unchanged_files(case), locate_errors(case), collected() as model_warnings:
         progress.start("Tooth contact")
-        oils = [] if case.lubricant is None else [case.lubricant]
         start = PairTeeth(case, progress, follow, mesh_source)
         coupling = case.solver.coupling, case.solver.coupling_tolerance
-        settled = settle(start, *coupling, case.lubricant, oils)
+        settled = settle(start, *coupling, case.lubricant, [case.lubricant])
         point, mesh = settled.point, settled.tables[PAIR_MESH]
         if settled.temperatures is not None:
             point = point.at(settled.temperatures)
