@@ -154,10 +154,9 @@ class MeshRating:
         ):
             if (safety := getattr(self.standard, key)) is not None:
                 points = (self.pointwise.get(name) for name in (key, f"{key}_method_a"))
-                point = next(filter(None, points), {"safety": getattr(self.computed, key)})
+                least = next(filter(None, points), {"safety": getattr(self.computed, key)})
                 where = self.standard.factors[factor].branch if factor else "mean of the path"
-                values = safety, required, point["safety"], where
-                yield Verdict(mode, self.mesh, self.load, *values)
+                yield Verdict(mode, self.mesh, self.load, safety, required, least["safety"], where)
 
     def to_dict(self) -> dict[str, Any]:
         """Ratings of the mesh, as JSON has them.
