@@ -140,19 +140,17 @@ class RatedGear:
         if self.accuracy_grade is not None:
             memory = " from memory" if self.tolerance_edition == 2013 else ""
             return f"grade {self.accuracy_grade} of ISO 1328-1:{self.tolerance_edition}{memory}"
-        return "stated" if self._stated else f"grade {ASSUMED_GRADE} assumed"
+        return f"grade {ASSUMED_GRADE} assumed" if None in self._stated else "stated"
 
     @property
-    def _stated(self) -> bool:
-        stated = (self.pitch_deviation, self.profile_deviation, self.helix_deviation)
-        return all(deviation is not None for deviation in stated)
+    def _stated(self) -> tuple[float | None, float | None, float | None]:
+        return self.pitch_deviation, self.profile_deviation, self.helix_deviation
 
     @property
     def grade(self) -> int | None:
         """Accuracy grade; None where only deviations are stated."""
-        if self.accuracy_grade is None and not self._stated:
-            return ASSUMED_GRADE
-        return self.accuracy_grade
+        assumed = ASSUMED_GRADE if None in self._stated else None
+        return assumed if self.accuracy_grade is None else self.accuracy_grade
 
     def deviations(self, gear: CylindricalGear) -> Deviations:
         """Return the deviations of a gear: those stated, else the tolerances of its grade.
@@ -162,17 +160,11 @@ class RatedGear:
         gear : CylindricalGear
             The gear.
         """
-        stated = (self.pitch_deviation, self.profile_deviation, self.helix_deviation)
-        if self._stated:
-            return Deviations(*(deviation or 0.0 for deviation in stated))
-        grade = ASSUMED_GRADE if self.accuracy_grade is None else self.accuracy_grade
-        tolerances = gear_tolerances(gear, grade, self.tolerance_edition)
-        return Deviations(
-            *(
-                tolerance if deviation is None else deviation
-                for deviation, tolerance in zip(stated, tolerances, strict=True)
-            )
-        )
+        tolerances: Deviations | tuple[float, ...] = (0.0, 0.0, 0.0)
+        if None in self._stated:
+            tolerances = gear_tolerances(gear, self.grade or 0, self.tolerance_edition)
+        pairs = zip(self._stated, tolerances, strict=True)
+        return Deviations(*(limit if stated is None else stated for stated, limit in pairs))
 
 
 @dataclass(frozen=True, kw_only=True)
