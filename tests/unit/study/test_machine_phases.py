@@ -154,3 +154,12 @@ def test_the_spectrum_names_the_largest_combination_lines() -> None:
         assert abs(expected) == pytest.approx(hertz, rel=1e-9)
     constant = td.run(base).motion  # of constant stiffness: linear, no combinations
     assert all(trace.name != "several phases" for trace in plot.machine_orders(constant).data)
+
+
+def test_phases_are_refused_where_a_bearing_has_a_clearance() -> None:
+    bearing = {"shaft": "in", "position": 0.0, "radial_stiffness": 1e8, "clearance": 20e-6}
+    changes = {f"bearings.A.{key}": value for key, value in bearing.items()}
+    held = case({"z1": 29, "z2": 71}, phases="on").replace(changes)
+    with pytest.raises(td.InputError, match=r"solver\.phases.*bearing A has a clearance"):
+        td.run(held)
+    assert td.run(held.replace({"solver.phases": "auto"})).motion.phase_turns is None

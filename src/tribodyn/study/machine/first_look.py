@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from tribodyn.arrays.memory import machine_memory
-from tribodyn.errors import ComputationError, Problem, warn
+from tribodyn.errors import ComputationError, InputError, Problem, warn
 from tribodyn.machine import machine_structure
 from tribodyn.study.machine.motion import phase_names
 from tribodyn.study.machine.pair_cases import inputs_under
@@ -29,7 +29,13 @@ _FEWEST = 60
 
 def over_phases(solver: SolverTable, machine: Machine) -> bool:
     """Whether the motion of a machine is found over independent phases of its meshes."""
-    if solver.phases == "off" or len(machine.phases.frequency) == 1 or has_clearance(machine):
+    clearance = has_clearance(machine)
+    if clearance and solver.phases == "on":
+        where = next(n for n, each in machine.bearings.items() if each.unloaded is not None)
+        what, why = f"bearing {where} has a clearance", "Its force is found over one clock"
+        remedy = 'Set solver.phases = "auto", or remove the clearance'
+        raise InputError(what, "solver.phases", why, remedy)
+    if solver.phases == "off" or len(machine.phases.frequency) == 1 or clearance:
         return False
     return solver.phases == "on" or repeats_late(max(machine.clock.cycles.values()))
 
