@@ -119,14 +119,17 @@ def read_stated(case: BaseCase, data: Mapping[str, Any]) -> tuple[Stated, KeyedP
     records = table.items() if isinstance(table, Mapping) else ()
     typed = {k: m["value"] for k, m in records if _is_record(m) and "value" in m}
     tables = ((n, f.kind) for n, f in case.root.fields.items() if isinstance(f, Table))
-    free = {n for n, kind in tables if issubclass(kind, NamedTables) or _has_lists(kind)}
+    free = {n for n, kind in tables if _is_free(kind)}
     marks, problems = _read(case.option_of, "assumed", typed, free)
     initial, base_problems = _read(case.option_of, "based_on", _flat(base), free)
     return Stated(marks, initial), [*problems, *base_problems]
 
 
-def _has_lists(kind: type[Section]) -> bool:
-    return any(option.kind in RAW_KINDS for _, option in kind.specs())
+def _is_free(kind: type[Section]) -> bool:
+    """Whether the user names tables in a table, or it has lists."""
+    inner = [kind, *(each.kind for each in kind.fields.values() if isinstance(each, Table))]
+    named = any(issubclass(each, NamedTables) for each in inner)
+    return named or any(option.kind in RAW_KINDS for _, option in kind.specs())
 
 
 def _flat(table: Mapping[str, Any], prefix: str = "") -> dict[str, Any]:
