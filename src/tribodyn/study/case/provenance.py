@@ -118,8 +118,7 @@ def read_stated(case: BaseCase, data: Mapping[str, Any]) -> tuple[Stated, KeyedP
         return Stated({}, {}), [("based_on", problem)]
     records = table.items() if isinstance(table, Mapping) else ()
     typed = {k: m["value"] for k, m in records if _is_record(m) and "value" in m}
-    tables = ((n, f.kind) for n, f in case.root.fields.items() if isinstance(f, Table))
-    free = {n for n, kind in tables if _is_free(kind)}
+    free = {n for n, f in case.root.fields.items() if isinstance(f, Table) and _is_free(f.kind)}
     marks, problems = _read(case.option_of, "assumed", typed, free)
     initial, base_problems = _read(case.option_of, "based_on", _flat(base), free)
     return Stated(marks, initial), [*problems, *base_problems]

@@ -182,9 +182,8 @@ def prepare_run(
         coupling = case.solver.coupling, case.solver.coupling_tolerance
         settled = settle(start, *coupling, case.lubricant, [case.lubricant])
         point, mesh = settled.point, settled.tables[PAIR_MESH]
-        if settled.temperatures is not None:
-            point = point.at(settled.temperatures)
-        case = point.case
+        to = settled.temperatures
+        case = (point if to is None else point.at(to)).case
         friction = load_friction_of(mesh_inputs(case), mesh)
         damping = damping_of(case, mesh)
         system = system_of(case, mesh, damping, friction)
