@@ -124,7 +124,7 @@ LINES: dict[str, int] = {
     "scope": 55,
     "signals": 1782,
     "stiffness": 5262,
-    "study": 19354,
+    "study": 19356,
     "surrogate": 767,
     "types": 8,
     "uncertainty": 289,

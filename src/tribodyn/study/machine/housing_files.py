@@ -131,8 +131,8 @@ class PunchFile:
     """DMIG entries of a Nastran file: values by name and by both points and components."""
 
     # Entries have eight fields of 8 characters, four of 16 (``DMIG*``), or fields between commas:
-    # NAME, column, component, a blank, then row, component, value, imaginary part. Source: DMIG in
-    # the references of Autodesk Nastran (2025) and Altair OptiStruct (2021).
+    # NAME, column, component, a blank, then row, component, value, imaginary part. Source: entry
+    # DMIG in the reference guides of Autodesk Nastran 2025 and Altair OptiStruct 2021.
 
     def __init__(self, text: str) -> None:
         self.matrices: dict[str, dict[tuple[tuple[int, int], tuple[int, int]], float]] = {}

@@ -121,8 +121,10 @@ def campbell(
     [(5, 3784), (4, 4730)]
     """
     if not case.lumped:
-        limits = None if between is None else ends_of(case, _SPEED, between)
-        speeds = None if limits is None else np.linspace(*limits, 8)
+        speeds = None
+        if between is not None:
+            first, last = ends_of(case, _SPEED, between)
+            speeds = np.linspace(first, last, 8)
         return campbell_of(structure_at_rest(case, progress), speeds)
     system, mesh_frequency = build_system(case, progress=progress)
     ends = None if between is None else operation_values("speed", between, case)
