@@ -316,3 +316,20 @@ def test_a_written_case_keeps_spreads_and_reasons(kind: str) -> None:
     assert again.assumed == other.assumed == {"operation.speed": "a guess"}
     assert f"operation.torque = {spread}"[10:] in other.to_toml()
     assert again.replace({"operation.speed": "900 rpm"}).assumed == {}
+
+
+@pytest.mark.parametrize("kind", TEXTS)
+def test_dotted_keys_stay_dotted(kind: str) -> None:
+    table = re.search(r"\n\[operation\][^\[]*", TEXTS[kind])
+    assert table is not None
+    dotted = re.sub(
+        r"(?m)^(\s*)(\w+)(\s*=)", r"\1operation.\2\3", table[0].replace("[operation]", "")
+    )
+    text = dotted + TEXTS[kind].replace(table[0], "\n")
+    case = read_case(text, "x.toml")
+    assert case == read_case(TEXTS[kind], "x.toml")
+    assert case.to_toml() == text
+    other = case.replace({"operation.speed": "1300 rpm"})
+    assert 'operation.speed = "1300 rpm"' in other.to_toml()
+    assert "[operation]" not in other.to_toml()
+    assert read_case(other.to_toml()) == other

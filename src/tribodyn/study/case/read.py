@@ -109,6 +109,9 @@ class _Scanner:
         self._note((*table, *names), start)
         self._value((*table, *names), ends)
         if ends == "\n":
+            for end in range(1, len(names)):
+                of_dots = ".".join((*self._table, *names[:end]))
+                self.notes.setdefault(of_dots, Note("", dotted=True))
             value = self.text[first : self.at].rstrip()
             self.at = first + len(value)
             self._finish((*self._table, *names), start, value)

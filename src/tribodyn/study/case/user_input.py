@@ -166,6 +166,7 @@ class Note:
     above: str  #: comments and empty lines before it, and what its line begins with
     behind: str = ""  #: comment behind it, with the space before
     value: str = ""  #: equals sign and value as typed; empty for the head of a table
+    dotted: bool = False  #: whether it is a table without a head, of dotted keys
 
 
 @dataclass(frozen=True)

@@ -33,7 +33,7 @@ if TYPE_CHECKING:
     from tribodyn.study.case.case_data import BaseCase, CaseData
 
 Place = tuple[str, ...]
-Rows = list[tuple[str, Any]]
+Rows = list[tuple[Place, Any]]
 
 _NUMBERS = ("number", "numbers")
 #: Line above ``[based_on]``, and what stands above ``[assumed]``.
@@ -85,31 +85,37 @@ class _Writer:
     def _inside(self, table: Mapping[str, Any], place: Place, key: Place) -> Iterator[str]:
         """Values of a table, then tables in it; in ``key`` tables of a list have their numbers."""
         values, tables = self._split(table, place, key)
-        for name, value in values:
-            yield self._entry((*place, name), self._note((*key, name)), value)
-        for name, value in tables:
-            if name == "assumed" and not place:
+        for names, value in values:
+            at = (*place, *names)
+            yield self._entry(at, self._note((*key, *names)), value, len(names))
+        for names, value in tables:
+            at, its_key = (*place, *names), (*key, *names)
+            if at == ("assumed",):
                 yield from self._reasons(value)
             elif isinstance(value, Mapping):
-                head = f"[{'.'.join(map(_quoted, (*place, name)))}]"
-                yield from self._table(head, value, (*place, name), (*key, name))
+                yield from self._table(f"[{_dotted(at)}]", value, at, its_key)
             elif value is None:
-                absent, meaning = ".".join((*place, name)), self._meaning((*place, name))
-                yield f"\n# [{absent}] is not given{meaning.replace('  #', ':')}\n"
+                meaning = self._meaning(at).replace("  #", ":")
+                yield f"\n# [{'.'.join(at)}] is not given{meaning}\n"
             for number, (row, body) in enumerate(named_rows(value), 1):
-                head = f"[[{'.'.join(map(_quoted, (*place, name)))}]]"
-                at = (*place, name, row), (*key, name, str(number))
-                yield from self._table(head, body, *at)
+                head = f"[[{_dotted(at)}]]"
+                yield from self._table(head, body, (*at, row), (*its_key, str(number)))
 
     def _split(self, table: Mapping[str, Any], place: Place, key: Place) -> tuple[Rows, Rows]:
         """Values of a table, also tables that are written in one line, and other tables."""
         values: Rows = []
         tables: Rows = []
         for name, value in table.items():
+            note = self._note((*key, name))
             is_table = isinstance(value, Mapping) or bool(named_rows(value))
-            in_line = bool(self._note((*key, name)).value)
             is_absent = value is None and bool(self._meaning((*place, name)))
-            (tables if is_absent or (is_table and not in_line) else values).append((name, value))
+            if note.dotted and isinstance(value, Mapping):
+                inside = self._split(value, (*place, name), (*key, name))
+                for rows, inner in zip((values, tables), inside, strict=True):
+                    rows += [((name, *names), each) for names, each in inner]
+            else:
+                rows = tables if is_absent or (is_table and not note.value) else values
+                rows.append(((name,), value))
         return values, tables
 
     def _table(self, head: str, body: Mapping[str, Any], place: Place, key: Place) -> Iterator[str]:
@@ -125,12 +131,13 @@ class _Writer:
         """What the file has for a key."""
         return self._notes.get(".".join(key)) or Note("")
 
-    def _entry(self, place: Place, note: Note, value: Any) -> str:
+    def _entry(self, place: Place, note: Note, value: Any, names: int) -> str:
+        """Line of a value, whose last ``names`` names are written."""
         if unmarked(value) is None:
             return ""
         text = note.value if _denotes(note.value, value) else f" = {self._value(place, value)}"
         behind = "" if ".".join(place) in self._changed else note.behind
-        return f"{note.above}{_quoted(place[-1])}{text}{behind}\n"
+        return f"{note.above}{_dotted(place[-names:])}{text}{behind}\n"
 
     def _value(self, place: Place, value: Any) -> str:
         """Text of a value, or of a table in one line."""
@@ -201,10 +208,10 @@ class _Commentator(_Writer):
         field = parent.fields.get(place[-1]) if parent else None
         return f"  # {field.meaning}" if isinstance(field, Table) else ""
 
-    def _entry(self, place: Place, note: Note, value: Any) -> str:
+    def _entry(self, place: Place, note: Note, value: Any, names: int) -> str:
         option = option_at(self._case.root, self._tables, place)
         if option is None:
-            return super()._entry(place, note, value)
+            return super()._entry(place, note, value, names)
         key, name, spread = ".".join(place), place[-1], self._case.uncertain
         if value is not None:
             default = self._origins.get(key) == DEFAULT_MARK
@@ -259,6 +266,10 @@ def _owners(case: BaseCase, place: Place) -> str:
 
 def _quoted(name: str) -> str:
     return name if name.replace("_", "").replace("-", "").isalnum() else json.dumps(name)
+
+
+def _dotted(names: Place) -> str:
+    return ".".join(map(_quoted, names))
 
 
 def _typed(text: str) -> Any:

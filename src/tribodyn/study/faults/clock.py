@@ -64,7 +64,7 @@ class TurningClock(NamedTuple):
     turns_pinion, turns_wheel : float
         Turns of both gears.
     cost : float [s]
-        Processor time of the motion, once all is compiled, within a factor of two.
+        Processor time of a motion over the period, once all is compiled, within a factor of two.
     phases : PhaseCost, optional
         What the motion over phases takes, where the period is so long that it is found over them.
     """
@@ -80,10 +80,10 @@ class TurningClock(NamedTuple):
         """One line."""
         text = (
             f"{self.cycles} mesh cycles, {self.turns_pinion:.6g} turns of the pinion and "
-            f"{self.turns_wheel:.6g} of the wheel, {self.period:.4g} s; about "
-            f"{self.cost:.1g} s of computation"
+            f"{self.turns_wheel:.6g} of the wheel, {self.period:.4g} s"
         )
-        return text if self.phases is None else f"{text}. {self.phases}"
+        cost = f"; about {self.cost:.1g} s of computation"
+        return f"{text}{cost}" if self.phases is None else f"{text}. {self.phases}"
 
 
 def varies_over_turns(case: Case) -> bool:
