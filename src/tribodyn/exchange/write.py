@@ -15,6 +15,8 @@ from tribodyn.exchange.rexs_file import model_of
 from tribodyn.exchange.to_case import oil_values, pair_values, same_value
 from tribodyn.exchange.to_machine import file_tables
 from tribodyn.files import atomic_write
+from tribodyn.study.case.checks import DEFAULT_MARK
+from tribodyn.study.case.provenance import provenance
 from tribodyn.study.case.section import flat_keys
 from tribodyn.study.machine.housing_files import copy_housing
 
@@ -78,14 +80,19 @@ def write_rexs(
 
 
 def _omitted(case: Case | MachineCase, tree: ModelTree) -> tuple[str, ...]:
-    """Keys whose values are not those of the model without the stored case, or their tables."""
+    """Keys whose stated values the model lacks without the stored case, or their tables."""
     model = GearboxModel(model_of(tree.model, "the model"))
     if not case.lumped:
         written = dict(flat_keys(file_tables(model, model.load(), {})[0]))
         written |= oil_values(model, model.load())[0]
     else:
         written = pair_values(model, model.stage(), model.load())[0]
-    stated = {k: v for k, v in case.values() if v is not None and k not in ("title", "origin")}
+    origins, unmodelled = provenance(case), ("title", "origin")
+    stated = {
+        key: value
+        for key, value in case.values()
+        if value is not None and key not in unmodelled and origins.get(key, DEFAULT_MARK) != DEFAULT_MARK
+    }
     same = {key for key, value in stated.items() if same_value(_si(key, value), written.get(key))}
     expressed = {key.partition(".")[0] for key in same}
     names = (key if (top := key.partition(".")[0]) in expressed else top for key in stated

@@ -36,6 +36,7 @@ _ANY = Need("a case")
 _TEETH = Need("a pair of gears with computed teeth", _TOOTHED, "", True)
 _PLANE = Need("a pair of cylindrical gears with computed teeth", _CYLINDRICAL, "", True)
 _PAIR = "the case of one pair of gears"
+_REXS = "Models of other programs are written of cylindrical gears with computed teeth"
 _MOTION = Need("a structure that moves", of_mesh=True)
 
 #: What the studies need, by the names of their commands.
@@ -50,7 +51,7 @@ STUDIES: dict[str, Need] = {
     "friction-from-loss": _PLANE._replace(why="Its loss factor is that of plane teeth"),
     "losses --rig": Need(_PAIR, _TOOTHED, "A rig tests the gears of one pair"),
     "surrogate": _ANY,
-    "export": Need(_PAIR, _CYLINDRICAL, "Models of other programs are written of one spur stage"),
+    "export": Need("a case of cylindrical gears", (*_CYLINDRICAL, *PARTS), _REXS),
     **dict.fromkeys(("recording", "compare"), _ANY),
 }
 
