@@ -60,6 +60,7 @@ def test_every_key_of_the_built_in_machines_is_listed_and_explained(
         assert {key.rpartition(".")[2] for key in keys} <= names
     for key, table in (
         ("bearings.A.clearance", "bearings.NAME.clearance"),
+        ("losses.shafts.input.immersion", "losses.shafts.NAME.immersion"),
         ("pin_errors", "planets.NAME.pin_errors"),
         ("sections", "shafts.NAME.sections"),
     ):

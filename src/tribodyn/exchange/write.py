@@ -91,7 +91,9 @@ def _omitted(case: Case | MachineCase, tree: ModelTree) -> tuple[str, ...]:
     stated = {
         key: value
         for key, value in case.values()
-        if value is not None and key not in unmodelled and origins.get(key, DEFAULT_MARK) != DEFAULT_MARK
+        if value is not None
+        and key not in unmodelled
+        and origins.get(key, DEFAULT_MARK) != DEFAULT_MARK
     }
     same = {key for key, value in stated.items() if same_value(_si(key, value), written.get(key))}
     expressed = {key.partition(".")[0] for key in same}

@@ -94,18 +94,19 @@ def _entries_by_name(query: str) -> Entries:
     candidates = _all_entries()
     term_entries = [_term_entry(meant)] if (meant := find_term(query)) else []
     exact = [entry for names, entry in candidates if query in names]
-    group, _, key = query.partition(".")
-    name = f".{key.rpartition('.')[2]}"  # of bearings.A.clearance
-    exact = exact or [
-        entry
-        for names, entry in candidates
-        if key and names[0].startswith(f"{group}.NAME") and names[0].endswith(name)
-    ]
+    exact = exact or [entry for names, entry in candidates if _of_part(names[0], query)]
     if not exact and (figure := split_key(query)[3]) != query:  # a key of a summary
         exact = [entry for names, entry in candidates if figure in names and "figure" in entry]
     plain_query = _plain_form(query)
     matches = exact or [e for names, e in candidates if plain_query in map(_plain_form, names)]
     return [*term_entries, *matches]
+
+
+def _of_part(key: str, query: str) -> bool:
+    """Whether a key of parts is that of a query with the name of one: bearings.A.clearance."""
+    table, of_parts, _ = key.partition(".NAME")
+    name = query.rpartition(".")[2]
+    return bool(of_parts) and query.startswith(f"{table}.") and key.endswith(f".{name}")
 
 
 def _entries_by_text(query: str) -> Entries:
@@ -154,11 +155,12 @@ def _keys() -> Iterator[tuple[tuple[str, ...], dict[str, Any]]]:
     equations = explanations()["equations"]
     pairs = list(case_keys())
     of_pairs = {id(spec) for _, spec, _ in pairs}
-    parts = [row for row in machine_keys() if id(row[1]) not in of_pairs]
-    for key, spec, default in (*pairs, *parts):
+    for number, (key, spec, default) in enumerate((*pairs, *machine_keys())):
         name = key.rpartition(".")[2]
+        # What a part shares with a pair is found by its whole key alone.
+        shared = number >= len(pairs) and id(spec) in of_pairs
         yield (
-            (key, name),
+            (key,) if shared else (key, name),
             {
                 "key": key,
                 "symbol": spec.symbol,

@@ -421,8 +421,9 @@ def warn_of_meshes(mesh_warnings: Iterable[MeshWarning]) -> None:
             f"mesh {each.mesh}, {each.load}" + (f" ({_part(each):.0%})" if _part(each) else "")
             for each in others
         ]
-        same = f" The same in {'; '.join(dict.fromkeys(places))}." if places else ""
-        warn(code, f"mesh {first.mesh}, {first.load}: {first.warning.message}{same}")
+        text = f"mesh {first.mesh}, {first.load}: {first.warning.message}"
+        same = f". The same in {'; '.join(dict.fromkeys(places))}." if places else ""
+        warn(code, text.removesuffix(".") + same if same else text)
 
 
 def _part(mesh_warning: MeshWarning) -> float:
