@@ -259,17 +259,17 @@ class _CaseTree(ModelTree):
             ]  # fmt: skip
             values.append(("radial_force_absorption", "none", bearing.radial_stiffness != 0.0))
         else:
-            kind, given = "rolling_bearing_with_catalog_geometry", dict(case.values())
+            kind, stated = "rolling_bearing_with_catalog_geometry", dict(case.values())
             names = {ours: rexs for ours, _, rexs in BEARING_TYPES.values()}
             values.append(("bearing_type", "none", names.get(type_)))
             values += [
                 (rexs, "mm", float(size) * _TO_MM)
                 for ours, rexs in _BEARING_SIZES.items()
-                if (size := given.get(f"{key}.{ours}"))
+                if (size := stated.get(f"{key}.{ours}"))
             ]
-            count = given.get(f"{key}.balls") or given.get(f"{key}.rollers")
+            count = stated.get(f"{key}.balls") or stated.get(f"{key}.rollers")
             values.append(("number_of_rolling_elements", "none", count))
-            angle = given.get(f"{key}.contact_angle")
+            angle = stated.get(f"{key}.contact_angle")
             values.append(("contact_angle", "deg", angle and angle * _TO_DEG))
         values.append(("axial_force_absorption", "none", absorbs))
         number = self.add(kind, name, values)

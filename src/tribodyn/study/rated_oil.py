@@ -31,13 +31,13 @@ def _viscosities(data: LubricantData, at_40: float | None) -> tuple[float, float
         oils = [lubricant(data, temperature) for temperature in _REFERENCE]
         return oils[0].kinematic_viscosity, oils[1].kinematic_viscosity
     oil, fall = lubricant(data), data.temperature_viscosity_coefficient
-    known = oil.kinematic_viscosity
+    viscosity = oil.kinematic_viscosity
     if at_40 is not None and data.temperature is not None:
-        points = sorted([(_REFERENCE[0], at_40), (data.temperature, known)])
+        points = sorted([(_REFERENCE[0], at_40), (data.temperature, viscosity)])
         return at_40, float(walther_viscosity(_REFERENCE[1], (points[0], points[1]), _MARGIN))
     if fall is None or data.temperature is None:  # stated at 40 degC
-        return known if at_40 is None else at_40, None
-    slope, point = fall - _DENSITY_FALL / oil.density, (data.temperature, known)
+        return viscosity if at_40 is None else at_40, None
+    slope, point = fall - _DENSITY_FALL / oil.density, (data.temperature, viscosity)
     cold, warm = (viscosity_from_slope(temperature, point, slope) for temperature in _REFERENCE)
     return cold, warm
 
@@ -48,17 +48,19 @@ def _at_its_temperature(oil: GearOil, data: LubricantData) -> GearOil:
 
     if data.temperature is not None:
         return replace(oil, temperature=data.temperature)
-    known = lubricant(data).kinematic_viscosity
-    if not oil.kinematic_viscosity(_OILS[1]) <= known <= oil.kinematic_viscosity(_OILS[0]):
+    viscosity = lubricant(data).kinematic_viscosity
+    if not oil.kinematic_viscosity(_OILS[1]) <= viscosity <= oil.kinematic_viscosity(_OILS[0]):
         low, high = (temperature - ZERO_CELSIUS for temperature in _OILS)
         raise InputError(
             f"kinematic_viscosity_at_40 = {1e6 * oil.kinematic_viscosity_at_40:g} mm2/s",
             where="rating.kinematic_viscosity_at_40",
-            why=f"This oil has the {1e6 * known:.4g} mm2/s of the case nowhere from {low:g} to "
+            why=f"This oil has the {1e6 * viscosity:.4g} mm2/s of the case nowhere from {low:g} to "
             f"{high:g} degC",
             remedy="Correct one of them, or state lubricant.temperature",
         )
-    return replace(oil, temperature=brentq(lambda t: oil.kinematic_viscosity(t) - known, *_OILS))
+    return replace(
+        oil, temperature=brentq(lambda t: oil.kinematic_viscosity(t) - viscosity, *_OILS)
+    )
 
 
 def gear_oil(case: Case) -> GearOil:

@@ -73,8 +73,8 @@ def _report_data(case: Any, result: Any, seed: int) -> StudyReportData:
             rows.append([name, *(figure_of(name).show(float(end)) for end in ends)])
     statements = [f"{len(result.value)} variants over {', '.join(map(str, result.input))}"]
     statements += [f"{key} = {text}" for key, text in case.uncertain.items()]
-    drawn = (plot.ensemble, plot.machine_ensemble, plot.load_share_statistics)
-    figures = [figure_with_caption(each, result) for each in drawn if not each.missing(result)]
+    drawings = (plot.ensemble, plot.machine_ensemble, plot.load_share_statistics)
+    figures = [figure_with_caption(each, result) for each in drawings if not each.missing(result)]
     figures += banded(result, sections_of(case)) if case.lumped else []
     share = f"{_SHARE:.0%} of the variants"
     head = ("figure", "middle", f"{share}: from", "to", "mean, 95%: from", "to")

@@ -174,8 +174,8 @@ def pair_system(
         each if each.ndim == 2 else np.diag(each) for each in (mass, damping, stiffness)
     )
     force, balance = torques(pair, driver), balance_direction(torque_balance, driver)
-    held = None if balance is None else spread(balance)
-    return System(mass, damping, stiffness, spread(force), contacts, names, held)
+    balancing = None if balance is None else spread(balance)
+    return System(mass, damping, stiffness, spread(force), contacts, names, balancing)
 
 
 #: Coordinates of a gear pair with 6 degrees of freedom, in their order.

@@ -152,37 +152,37 @@ def _power(space: _Space) -> Iterator[Trace]:
     exchanged: dict[str, list[tuple[float, float]]] = {name: [] for name in machine.shafts}
     arms: dict[tuple[str, str], float] = {}
     for name, mesh in machine.meshes.items():
-        given = gains(machine, flow, name)
+        powers = gains(machine, flow, name)
         middles = []
         for gear in (machine.gears[each] for each in mesh.gears):
             middles.append(space.on_axis(gear.shaft, gear.node_position))
-            exchanged[gear.shaft].append((gear.node_position, given[gear.shaft]))
-        power = max(abs(given[machine.gears[each].shaft]) for each in mesh.gears)
+            exchanged[gear.shaft].append((gear.node_position, powers[gear.shaft]))
+        power = max(abs(powers[machine.gears[each].shaft]) for each in mesh.gears)
         yield _flow(f"mesh {name}", middles, PAIR_COLORS[0], power, total)
         if carrier := mesh.carrier:
             distance = {each: space.from_axis(carrier, each)[1] for each in mesh.gears}
             planet = max(mesh.gears, key=distance.__getitem__)
-            arms[carrier, planet] = arms.get((carrier, planet), 0.0) + given[carrier]
+            arms[carrier, planet] = arms.get((carrier, planet), 0.0) + powers[carrier]
     for (carrier, planet), power in arms.items():
-        gear, beside = machine.gears[planet], 0.5 * machine.gears[planet].face_width
-        along = space.from_axis(carrier, planet)[0] + beside
+        gear, half_width = machine.gears[planet], 0.5 * machine.gears[planet].face_width
+        along = space.from_axis(carrier, planet)[0] + half_width
         exchanged[carrier].append((along, power))
         ends = [
             space.on_axis(carrier, along),
-            space.on_axis(gear.shaft, gear.node_position + beside),
+            space.on_axis(gear.shaft, gear.node_position + half_width),
         ]
         yield _flow(f"carrier {carrier}", ends, INK, abs(power), total)
     for name, torque in flow.couplings.items():
         first, second = machine.couplings[name].shafts
         power = torque * flow.shafts[first].speed
-        near = min(
+        nearest = min(
             ((a, b) for a in view.outline(first)[0] for b in view.outline(second)[0]),
             key=lambda ends: float(np.ptp(
                 [space.on_axis(first, ends[0]), space.on_axis(second, ends[1])], axis=0
             ).max()),
         )  # fmt: skip
-        exchanged[first].append((near[0], -power))
-        exchanged[second].append((near[1], power))
+        exchanged[first].append((nearest[0], -power))
+        exchanged[second].append((nearest[1], power))
     for shaft, power in ((run.input, total), (run.output, -total)):
         # The end of the shaft that is farther from its other parts.
         places = [at for at, _ in exchanged[shaft]] or [0.0]
@@ -250,21 +250,21 @@ def machine_space(machine: Machine | MachineModes) -> Sketch:
     structure = getattr(machine, "structure", None)
     modes = None if structure is None else cast("MachineModes", machine)
     space = _Space(cast("Machine", machine) if structure is None else structure.machine)
-    parts, shown = list(_parts(space)), [("The machine", "The machine, to scale", list[Trace]())]
+    parts, choices = list(_parts(space)), [("The machine", "The machine, to scale", list[Trace]())]
     power = list(_power(space))
     run = space.machine.operation
     text = f"Flow of power: {rounded('power', abs(run.torque * run.speed))} in"
-    shown += [("Flow of power", text, power)] if run.speed and run.torque else []
+    choices += [("Flow of power", text, power)] if run.speed and run.torque else []
     if modes is not None:
         for number in range(min(modes_in_reach(modes), _MOST, len(modes.frequency))):
             label = f"{number + 1}: {significant(modes.frequency[number], 4)} Hz"
             title = f"Mode {label}: {', '.join(energy_shares(modes, number).split(', ')[:_SHARES])}"
-            shown.append((label, title, list(_mode(space, modes, number))))
+            choices.append((label, title, list(_mode(space, modes, number))))
     faint = [{**part, "opacity": _FAINT, "hoverinfo": "skip"} for part in parts]
     traces = [*parts, *({**part, "visible": False} for part in faint)]
-    counts = [len(more) for *_, more in shown]
+    counts = [len(more) for *_, more in choices]
     visible = []
-    for place, (*_, more) in enumerate(shown):
+    for place, (*_, more) in enumerate(choices):
         flags = [not more] * len(parts) + [bool(more)] * len(parts)
         for other, count in enumerate(counts):
             flags += [other == place] * count
@@ -273,7 +273,7 @@ def machine_space(machine: Machine | MachineModes) -> Sketch:
     ends = {"showbackground": False, "gridcolor": GRID, "zeroline": False}
     scene: Trace = {f"{name}axis": {"title": {"text": f"{name} [mm]"}, **ends} for name in "xyz"}
     scene |= {"aspectmode": "data", "camera": {"eye": {"x": -1.5, "y": -1.3, "z": 0.9}}}
-    menu = choice([label for label, *_ in shown], [title for _, title, _ in shown], visible, 0)
+    menu = choice([label for label, *_ in choices], [title for _, title, _ in choices], visible, 0)
     layout: Trace = {"height": 560, "scene": scene, "hovermode": "closest", "updatemenus": [menu]}
     layout |= {"margin": {"l": 10, "r": 10, "t": 74, "b": 10}}
-    return figure(shown[0][1], traces, layout)
+    return figure(choices[0][1], traces, layout)

@@ -71,9 +71,9 @@ def _displacements(sector: Sector, fillet: Index, face: FaceBasis) -> Array:
     turn = sector.directions()
     parts = SectionMatrices(*(turned_stiffness(m, turn[mesh.elements]) for m in matrices))
     freedoms = node_freedoms(mesh.elements)
-    held = np.concatenate([mesh.right_cut, mesh.left_cut, mesh.fixed])
-    freedoms[np.repeat(np.isin(mesh.elements, held), 3, axis=1)] = -1
-    free = fillet[~np.isin(fillet, held) & ~np.isin(fillet, sector.flank)]
+    fixed = np.concatenate([mesh.right_cut, mesh.left_cut, mesh.fixed])
+    freedoms[np.repeat(np.isin(mesh.elements, fixed), 3, axis=1)] = -1
+    free = fillet[~np.isin(fillet, fixed) & ~np.isin(fillet, sector.flank)]
     retained = np.concatenate([3 * sector.flank, node_freedoms(free).ravel()])
     stiffness = condensed(freedoms, parts, sector.groups(), retained, face)
     size, places = retained.size * face.count, sector.flank.size
@@ -108,14 +108,14 @@ def _stress(sector: Sector, line: Index, moved: Array, face: tuple[Array, Array]
     across = np.sqrt(np.einsum("ex,ex->e", tangent, tangent) - slide**2)
     # strains along the curves of the surface, then along the root line and across it
     first = np.einsum("ex,exzpl->ezpl", tangent, along)
-    both = np.einsum("ex,exzpl->ezpl", tangent, over_face) + np.einsum(
+    sheared = np.einsum("ex,exzpl->ezpl", tangent, over_face) + np.einsum(
         "ex,exzpl->ezpl", lead, along
     )
     second = np.einsum("ex,exzpl->ezpl", lead, over_face)
     shape = (-1, 1, 1, 1)
     length, slide, across = (each.reshape(shape) for each in (length, slide, across))
     root = second / length**2
-    shear = (0.5 * both / length - slide * root) / across
+    shear = (0.5 * sheared / length - slide * root) / across
     normal = (first - slide**2 * root - 2.0 * slide * across * shear) / across**2
     nu = sector.poissons_ratio
     return np.asarray((normal + nu * root) / (1.0 - nu**2))
@@ -123,9 +123,11 @@ def _stress(sector: Sector, line: Index, moved: Array, face: tuple[Array, Array]
 
 def _over_plane(sector: Sector, line: Index, points: Array) -> Array:
     """Stress (places, points, loads) at points of the face over that of a plane section."""
-    face, one = sector.face, np.ones((1, 1))
-    even = FaceBasis(face.knots, one, 0.0 * one, 0.0 * one)  # along the helix
-    plane = _stress(sector, line, _displacements(sector, line, even), (one, 0.0 * one))[:, 0, :, 0]
+    face, unit = sector.face, np.ones((1, 1))
+    even = FaceBasis(face.knots, unit, 0.0 * unit, 0.0 * unit)  # along the helix
+    plane = _stress(sector, line, _displacements(sector, line, even), (unit, 0.0 * unit))[
+        :, 0, :, 0
+    ]
     functions = bspline_values(face.knots, points), bspline_slopes(face.knots, points)
     stress = _stress(sector, line, _displacements(sector, line, face), functions)
     length = np.hypot(*np.diff(sector.mesh.nodes[line[::2]], axis=0).T)

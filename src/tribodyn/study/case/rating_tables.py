@@ -265,10 +265,10 @@ def _viscosity_problems(oil: LubricantData, at_40: float | None) -> Iterator[tup
         )
         yield "rating", Problem(what, "", why, remedy)
     elif oil.temperature is not None:
-        known = float(oil.dynamic_viscosity or 0.0) / float(oil.density or 1.0)
-        if (known - at_40) * (oil.temperature - 313.15) >= 0.0:
+        viscosity = float(oil.dynamic_viscosity or 0.0) / float(oil.density or 1.0)
+        if (viscosity - at_40) * (oil.temperature - 313.15) >= 0.0:
             what = f"kinematic_viscosity_at_40 = {1e6 * at_40:g} mm2/s"
-            why = f"The oil has {1e6 * known:.4g} mm2/s at {oil.temperature - 273.15:g} degC"
+            why = f"The oil has {1e6 * viscosity:.4g} mm2/s at {oil.temperature - 273.15:g} degC"
             remedy = "An oil is thinner where it is warmer: correct one of them"
             yield "rating.kinematic_viscosity_at_40", Problem(what, "", why, remedy)
 

@@ -188,9 +188,9 @@ def judge_recordings(
     zone = ""
     if ends and np.isfinite(velocity[-1]):
         zone = "ABCD"[int(np.searchsorted(ends, velocity[-1]))]
-    found = () if lines is None else tuple(_findings(analyses, lines, velocity[-1]))
+    findings = () if lines is None else tuple(_findings(analyses, lines, velocity[-1]))
     rms, kurtosis = (np.array([n[key] for n in numbers]) for key in ("alternating_rms", "kurtosis"))
-    return RecordingVerdict(velocity, rms, kurtosis, ends, zone, found)
+    return RecordingVerdict(velocity, rms, kurtosis, ends, zone, findings)
 
 
 def _ends(limits: str | Sequence[float] | None) -> tuple[float, ...]:
@@ -228,10 +228,10 @@ def _line(lines: SignalSpectrum, frequency: float, within: float) -> _Line:
     step = lines.frequency[1] - lines.frequency[0]
     reach = max(within * frequency, _LOBE * step)
     distance = np.abs(lines.frequency - frequency)
-    near, about = distance <= reach, distance <= max(3.0 * reach, _ABOUT * step)
+    searched, about = distance <= reach, distance <= max(3.0 * reach, _ABOUT * step)
     if frequency + reach > lines.frequency[-1] or frequency <= 2.0 * reach:
         return _Line(frequency, 0.0, 0.0)
-    peak = int(np.flatnonzero(near)[np.argmax(lines.amplitude[near])])
+    peak = int(np.flatnonzero(searched)[np.argmax(lines.amplitude[searched])])
     size, floor = lines.amplitude[peak], np.median(lines.amplitude[about])
     return _Line(float(lines.frequency[peak]), float(size), float(size / floor) if floor else 0.0)
 
@@ -279,17 +279,17 @@ def _impacts(
             if any(abs(peak - round(peak / p) * p) <= reach * peak / p for p in peaks):
                 continue  # a harmonic of a lower rate
             peaks.append(peak)
-            near = [
+            candidates = [
                 row for row in rates
                 if abs(row[2] * scales[-1] - peak) <= max(_within(row[1]) * peak, reach)
             ]  # fmt: skip
-            near.sort(key=lambda row: abs(row[2] * scales[-1] - peak))
+            candidates.sort(key=lambda row: abs(row[2] * scales[-1] - peak))
             history = tuple(
-                _line(each[band], near[0][2] * scale, _within(near[0][1])).amplitude
+                _line(each[band], candidates[0][2] * scale, _within(candidates[0][1])).amplitude
                 for each, scale in zip(bursts, scales, strict=True)
             )
-            parts = ", or ".join(name for name, _, _ in near)
-            yield Finding(parts, evidence, _CHECKS[near[0][1]][1], peak, history)
+            parts = ", or ".join(name for name, _, _ in candidates)
+            yield Finding(parts, evidence, _CHECKS[candidates[0][1]][1], peak, history)
         if peaks:
             return
 

@@ -151,7 +151,7 @@ class PunchFile:
             entry = fields if head.rstrip("*") == "DMIG" else None
 
     def _add(self, fields: list[str]) -> None:
-        name, column, component, kind, *rest = *fields, "", "", ""
+        name, column, component, kind, *entries = *fields, "", "", ""
         if column == "0":
             form, kind = int(component or 0), kind or "2"
             if form not in (1, 6) or kind not in ("1", "2"):
@@ -161,7 +161,7 @@ class PunchFile:
         if name not in self.matrices:
             raise ValueError(f"{name} has no header")
         at = int(column), int(component or 0)
-        for row, its_component, value, _ in zip(*(rest[n::4] for n in range(4)), strict=False):
+        for row, its_component, value, _ in zip(*(entries[n::4] for n in range(4)), strict=False):
             if row:
                 self.matrices[name][(int(row), int(its_component or 0)), at] = _number(value)
 

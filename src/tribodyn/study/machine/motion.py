@@ -110,8 +110,8 @@ class Unit(NamedTuple):
 def unit_of(rates: Mapping[str, float], frequency: float) -> Unit:
     """Part of those with these rates of whose turns a frequency is the simplest multiple."""
     exact = {name: frequency / rate for name, rate in rates.items()}
-    near = (Unit(n, Fraction(e).limit_denominator(_MOST_TURNS)) for n, e in exact.items())
-    matches = [unit for unit in near if abs(unit.turns / exact[unit.name] - 1.0) < _EQUAL]
+    fractions = (Unit(n, Fraction(e).limit_denominator(_MOST_TURNS)) for n, e in exact.items())
+    matches = [unit for unit in fractions if abs(unit.turns / exact[unit.name] - 1.0) < _EQUAL]
     none = Unit("random load" if rates else "", Fraction(1))
     return min(matches, key=lambda unit: sum(unit.turns.as_integer_ratio()), default=none)
 

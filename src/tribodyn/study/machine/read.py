@@ -79,11 +79,11 @@ Add it with normal_module, normal_pressure_angle, driver, pinion, wheel.
         return kind(source, **(kind._changed_tables(data, changes, by=by) if changes else data))
     except InputError as error:
         # Some checks of parts know neither the file nor its lines.
-        known = (name, by or name, "--")
+        prefixes = (name, by or name, "--")
         raise InputError(
             [
                 problem
-                if str(problem.where).startswith(known)
+                if str(problem.where).startswith(prefixes)
                 else replace(problem, where=f"{name}: {problem.where}".removesuffix(": "))
                 for problem in error.problems
             ]

@@ -68,8 +68,8 @@ def is_chief(key: str) -> bool:
     """Whether a figure belongs to the summary that fits on a screen."""
     load, kind, _, name = split_key(key)
     chief = PARTS[kind]["chief"] if kind else CHIEF
-    own = f"{kind}.{name}" if kind else name
-    return name in (_OF_LOADS if load else chief) or own in MEASURES.names()
+    whole_key = f"{kind}.{name}" if kind else name
+    return name in (_OF_LOADS if load else chief) or whole_key in MEASURES.names()
 
 
 def figure_of(key: str) -> SummaryFigure:
