@@ -78,12 +78,12 @@ def test_a_compilation_is_announced_once_and_never_when_cached(tmp_path: Path) -
     assert outputs == ["['compiling the doubling, once on this machine, about no time']", "[]"]
 
 
-@pytest.mark.parametrize(("transient", "times"), [(40, 0), (40_000, 1)])
+@pytest.mark.parametrize(("transient", "times"), [(40, 0), (100_000_000, 1)])
 def test_a_diagram_of_many_steps_estimates_its_time(transient: int, times: int) -> None:
     mass = System([[1.0]], [[0.5]], [[1.0]], [0.0], [])
     with announcing_to((messages := []).append):
         bifurcation(mass, [0.1, 0.2], steps=512, transient=transient, cycles=8, keep=8, signal="q0")
-    estimates = [text for text in messages if "2 motions with up to 512 steps" in text]
+    estimates = [text for text in messages if "2 motions with 512 steps" in text]
     assert len(estimates) == times
     assert all("min at most" in text for text in estimates)
 

@@ -101,6 +101,7 @@ from tribodyn.plot.signals.diagnosis import (
     cyclic_coherence,
     kurtogram,
     narrowband_demodulation,
+    recording_verdict,
     sideband_cursors,
     synchronous_average,
 )
@@ -235,6 +236,7 @@ __all__ = [
     "power_flow",
     "rating_maps",
     "recording",
+    "recording_verdict",
     "response",
     "result_comparison",
     "ring_sensor",

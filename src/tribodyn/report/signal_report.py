@@ -19,7 +19,7 @@ from tribodyn.plot.signals.recorded import visible_frequency
 from tribodyn.plot.theme.labels import readable, significant
 from tribodyn.progress import SILENT, Progress
 from tribodyn.report.study import write_study_report
-from tribodyn.report.study_report_data import StudyReportData
+from tribodyn.report.study_report_data import StudyReportData, figure_with_caption
 from tribodyn.signals import cepstrum, narrowband_demodulation
 
 if TYPE_CHECKING:
@@ -28,6 +28,7 @@ if TYPE_CHECKING:
     from tribodyn.measurement import Recording, SignalAnalysis
     from tribodyn.measurement.shaft_speed import ShaftSpeed
     from tribodyn.signals.synchronous_average import SynchronousAverage
+    from tribodyn.study import RecordingVerdict
 
 #: Keys of the truth beside the faults, in SI.
 _OPERATION = tuple(f"operation.{key}" for key in ("torque", "speed", "speed_of", "input", "output"))
@@ -85,7 +86,9 @@ _SMEARED = (
 _NAMES = {SHAFT: "Shaft", MATE: "Mate"}
 
 
-def signal_report_data(analysis: SignalAnalysis, verdict: Sequence[str] = ()) -> StudyReportData:
+def signal_report_data(
+    analysis: SignalAnalysis, verdict: RecordingVerdict | None = None
+) -> StudyReportData:
     """Figures, sentences, table and numbers in SI of an analysed channel, and a verdict on it."""
     numbers = analysis.figures()
     facts: dict[str, Any] = {"channel": analysis.channel, "unit": analysis.unit, **numbers}
@@ -99,13 +102,16 @@ def signal_report_data(analysis: SignalAnalysis, verdict: Sequence[str] = ()) ->
         for heading, draw in _figures(analysis)
         if (picture := attempt(f'figure "{heading}"', draw, notes)) is not None
     ]
+    judged = [] if verdict is None else verdict.statements
+    if verdict is not None and (verdict.findings or verdict.kurtosis.size > 1):
+        pictures.insert(0, figure_with_caption(plot.recording_verdict, verdict))
     facts["notes"] = [sentence(each) for each in notes]
-    if verdict:
-        facts["verdict"] = list(verdict)
+    if judged:
+        facts["verdict"] = judged
     return StudyReportData(
         analysis,
         pictures,
-        [_lead(analysis), *verdict, *verdicts, *facts["notes"]],
+        [_lead(analysis), *judged, *verdicts, *facts["notes"]],
         HEAD,
         _rows(analysis, numbers),
         facts,
@@ -118,7 +124,7 @@ def write_signal_report(
     path: str | os.PathLike[str],
     *,
     title: str = "",
-    verdict: Sequence[str] = (),
+    verdict: RecordingVerdict | None = None,
 ) -> Path:
     """Write the analysis of a recorded channel to a file.
 
@@ -130,8 +136,8 @@ def write_signal_report(
         As :func:`write_report` takes it.
     title : str
         Title of the report; that of the channel by default.
-    verdict : sequence of str
-        Sentences such as :attr:`tribodyn.study.RecordingVerdict.statements`.
+    verdict : RecordingVerdict, optional
+        What :func:`tribodyn.study.judge_recordings` returns, for its sentences and its figure.
 
     Raises
     ------

@@ -10,7 +10,8 @@ import pytest
 import tribodyn as td
 from tribodyn.errors import InputError
 from tribodyn.measurement import Recording, analyse_signal
-from tribodyn.study import judge_recordings, kinematic_frequencies
+from tribodyn.study import RecordingVerdict, judge_recordings, kinematic_frequencies
+from tribodyn.study.faults.recording_verdict import Finding
 
 RATE = 12_800.0
 TIME = np.arange(round(4.0 * RATE)) / RATE
@@ -137,3 +138,14 @@ def test_the_lines_follow_the_speed_of_the_recording(lines) -> None:
     analysis = analyse_signal(rig, "acc", speed=2.0 * np.pi * 50.0, teeth=23, mate_teeth=57)
     parts = [each.part for each in judge_recordings([analysis], lines).findings]
     assert any(part.startswith("bearing B, outer ring") for part in parts)
+
+
+def test_the_figure_shows_severity_and_growth_of_the_lines() -> None:
+    parts = (Finding("bearing A, outer ring", "stands out", "look", 100.0, (2.0, 6.0)),)
+    values = np.array([1.0e-3, 3.0e-3]), np.array([1.0, 2.0]), np.array([3.0, 5.0])
+    figure = RecordingVerdict(*values, (1e-3, 2e-3, 4e-3), "C", parts).plot()
+    curves = {trace.name: np.asarray(trace.y, dtype=float) for trace in figure.data}
+    assert curves["velocity"] == pytest.approx([1.0, 3.0])
+    assert [curves[f"end of zone {zone}"][0] for zone in "ABC"] == pytest.approx([1.0, 2.0, 4.0])
+    assert curves["bearing A, outer ring"] == pytest.approx([1.0, 3.0])
+    assert figure.layout.title.text == "Zone C; bearing A, outer ring"

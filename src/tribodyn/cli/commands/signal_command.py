@@ -23,6 +23,7 @@ from tribodyn.nomenclature import GEARS
 
 if TYPE_CHECKING:
     from tribodyn.measurement import Recording, SignalAnalysis
+    from tribodyn.study import RecordingVerdict
 
 Text = str | None
 _TEETH = "Write --teeth 29, or --teeth 29/67 with the mate, or name the case with --case"
@@ -164,14 +165,14 @@ def signal(
         name = options.channel or _only_channel(recording, options, turning, out)
         earlier = _earlier(options, turning) if name else []
         analysis = name and _analysis(recording, name, options, turning, earlier)
-        verdict = analysis and _verdict(analysis, earlier, options, turning)
+        verdict = _verdict(analysis, earlier, options, turning) if analysis else None
     show_warnings(warnings)
     if analysis and turning.line is not None and recording.sample_rate == 1.0:
         analysis = replace(analysis, notes=(_PER_SAMPLE, *analysis.notes))
     if not analysis:
         _list(file, recording, json)
         return
-    _show(file, analysis, verdict or [], (out, force, json))
+    _show(file, analysis, verdict, (out, force, json))
 
 
 def _recording(file: Path, options: Channel, line: Text) -> Recording:
@@ -355,8 +356,8 @@ def _earlier(options: Channel, turning: Shaft) -> list[Recording]:
 
 def _verdict(
     analysis: SignalAnalysis, earlier: Sequence[Recording], options: Channel, turning: Shaft
-) -> list[str]:
-    """Severity, trend and suspected parts in sentences, as far as something is known for them."""
+) -> RecordingVerdict:
+    """Severity, trend and suspected parts, as far as something is known for them."""
     from tribodyn.cases.load import load_case
     from tribodyn.study import judge_recordings, kinematic_frequencies
 
@@ -367,7 +368,7 @@ def _verdict(
         ends, _, unit = limits.strip().rpartition(" ")
         limits = [_quantity("--limits", f"{end} {unit}") for end in ends.split("/")]
     with with_options(_OPTIONS):
-        return judge_recordings([*before, analysis], lines, limits=limits).statements
+        return judge_recordings([*before, analysis], lines, limits=limits)
 
 
 def _check_channel(recording: Recording, name: str, option: str) -> None:
@@ -446,7 +447,10 @@ def _written_teeth(text: Text) -> tuple[int | None, int | None]:
 
 
 def _show(
-    file: Path, analysis: SignalAnalysis, verdict: list[str], output: tuple[Output, bool, bool]
+    file: Path,
+    analysis: SignalAnalysis,
+    verdict: RecordingVerdict | None,
+    output: tuple[Output, bool, bool],
 ) -> None:
     from tribodyn.report.signal_report import signal_report_data, write_signal_report
 
@@ -465,6 +469,6 @@ def _show(
     else:
         say("\n".join([answer.statements[0], table([answer.head, *answer.rows])]))
         for note in answer.statements[1:]:
-            tell(note if note in verdict else f"note: {note}")
+            tell(note if note in answer.facts.get("verdict", ()) else f"note: {note}")
     if out is not None:
         tell(f"Report: {out / 'report.html'}")

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from itertools import cycle
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -10,7 +11,7 @@ from tribodyn.drawing import Sketch, drawing
 from tribodyn.plot.signals.lines import strongest_lines
 from tribodyn.plot.signals.maps import amplitude_label, with_unit
 from tribodyn.plot.signals.recorded import outline
-from tribodyn.plot.theme.colors import FILLS, MUTED, PINION, TOTAL, WHEEL
+from tribodyn.plot.theme.colors import COLORS, FILLS, MUTED, PINION, TOTAL, WHEEL
 from tribodyn.plot.theme.labels import axis_label, label_with, readable, significant
 from tribodyn.plot.theme.panels import Panel, event_lines, from_zero, stack
 from tribodyn.plot.theme.style import (
@@ -34,6 +35,7 @@ if TYPE_CHECKING:
         SynchronousAverage,
     )
     from tribodyn.measurement import SidebandCursors
+    from tribodyn.study import RecordingVerdict
 
 #: Most points of a curve; a mean revolution has 2.6 per mesh harmonic.
 _POINTS = 6000
@@ -282,3 +284,35 @@ def sideband_cursors(cursors: SidebandCursors) -> Sketch:
     panel = Panel(amplitude_label(cursors.unit), curves, POWERS, 1.5)
     layout = {"hovermode": "closest", "xaxis": {"range": [low, high]}, **event_lines(marks)}
     return stack(title, "Order [cycles per revolution]", [panel], layout)
+
+
+@drawing(
+    heading="Verdict on the recordings",
+    caption="Over the recordings, the oldest first: the velocity from 10 to 1000 Hz with the ends "
+    "of the zones A, B and C, where limits were named and the velocity is known, the kurtosis, and "
+    "the lines of the suspected parts over their first amplitude. What rises is worth a look.",
+    of="RecordingVerdict",
+    made_by="Call tribodyn.study.judge_recordings(...).",
+)
+def recording_verdict(verdict: RecordingVerdict) -> Sketch:
+    """Draw severity, kurtosis and the lines of suspected parts over the recordings."""
+    number = np.arange(1, verdict.kurtosis.size + 1)
+    panels = [from_zero("Kurtosis [-]", [marked(number, verdict.kurtosis, "kurtosis", MUTED, 8)])]
+    if np.isfinite(verdict.velocity).any():
+        points = [marked(number, 1e3 * verdict.velocity, "velocity", TOTAL, 8, unit="mm/s")]
+        reach = np.array([0.5, number[-1] + 0.5])
+        for name, end in zip("ABC", verdict.limits, strict=False):
+            level = np.full(2, 1e3 * end)
+            points.append(line(reach, level, f"end of zone {name}", MUTED, unit="mm/s", dash="dot"))
+        panels.insert(0, from_zero("Velocity, rms [mm/s]", points))
+    lines = []
+    for each, color in zip(verdict.findings, cycle(COLORS), strict=False):
+        growth = np.array(each.amplitudes) / (each.amplitudes[0] or np.nan)
+        lines.append(marked(number, growth, each.part, color, 8, showlegend=True))
+    if lines:
+        panels.append(Panel("Lines over their first amplitude [-]", lines, POWERS))
+    title = f"Zone {verdict.zone}" if verdict.zone else "Zone not known"
+    title += f"; {verdict.findings[0].part}" if lines else "; no part stands out"
+    title += f" and {len(lines) - 1} more" if len(lines) > 1 else ""
+    ends = {"dtick": 1, "range": [0.5, number[-1] + 0.5]}
+    return stack(title, "Recording", panels, {"xaxis": ends})

@@ -234,7 +234,7 @@ def _check_rim(form: ToothForm, bore_radius: float) -> None:
     if rim < _THINNEST_RIM * form.normal_module:
         name, change = ("rim", "larger") if form.sign < 0 else ("bore", "smaller")
         raise InputError(
-            f"the {name} of {2e3 * bore_radius:.4g} mm leaves {rim * 1e3:.3g} mm behind the root",
+            f"the {name} of {2e3 * bore_radius:.4g} mm leaves a rim of {rim * 1e3:.3g} mm",
             where=f"{name}_diameter",
             why=f"The finite element model needs {_THINNEST_RIM:g} modules, "
             f"{_THINNEST_RIM * form.normal_module * 1e3:.3g} mm",

@@ -250,7 +250,7 @@ def _mixed(mesh: MeshTable) -> Iterator[ModelWarning]:
     """Warn of films below the roughness: the models assume that they carry the full load."""
     if mesh.film_ratio is None:
         return
-    least = float(np.nanmin(mesh.film_ratio[mesh.in_contact]))
+    least = float(np.fmin.reduce(mesh.film_ratio[mesh.in_contact], initial=np.inf))
     if least < 1.0:
         from tribodyn.mesh.film.film_columns import judged
 
