@@ -135,6 +135,7 @@ def _cluster(address: str) -> Iterator[Callable[[Jobs, Progress], Results]]:
     """Connect to the workers of a cluster before anything is written."""
     try:
         from distributed import Client
+        from distributed.comm import CommClosedError
         from distributed.comm.addressing import parse_host_port
     except ImportError:
         remedy = 'Install it: pip install "tribodyn[cluster]"'
@@ -151,8 +152,8 @@ def _cluster(address: str) -> Iterator[Callable[[Jobs, Progress], Results]]:
     def compute(jobs: Jobs, progress: Progress) -> Results:
         try:
             yield from _on_workers(client, jobs, progress)
-        except Exception:
-            if client.status == "running":
+        except Exception as error:
+            if client.status == "running" and not isinstance(error, CommClosedError):
                 raise
             what = f"the connection to the Dask scheduler at {address} is lost"
             why = "Finished members are stored"
