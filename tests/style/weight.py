@@ -82,6 +82,7 @@ __all__ = ["ANY", "FILES", "LINES", "import_circles", "lines_of_code", "measures
 #: rating: deviations in fewer lines
 #: study: phases with a clearance are refused
 #: plot, study: a figure of the verdict on recordings; export of machines by the command.
+#: variants: a closed connection to a cluster is said.
 LINES: dict[str, int] = {
     "__init__": 105,
     "__main__": 3,
@@ -131,7 +132,7 @@ LINES: dict[str, int] = {
     "uncertainty": 289,
     "units": 243,
     "validated_files": 195,
-    "variants": 1048,
+    "variants": 1049,
 }
 #: Modules of the package, and its annotations without a type.
 FILES, ANY = 727, 2236
