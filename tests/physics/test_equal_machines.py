@@ -280,22 +280,24 @@ def test_a_shaft_that_carries_nothing_changes_nothing_at_rest(seed: int) -> None
 def test_a_shaft_that_carries_nothing_changes_the_motion_by_its_modes_alone(tmp_path: Path) -> None:
     """Means are those of the torques; modal damping, and so peaks, know the idle shaft a little.
 
-    Of this machine the idle mesh does not chatter; that of others has several motions.
+    A gear that nothing holds has several motions, and rounding chooses: where it chatters, only
+    the balance of torques and what holds at rest is known.
     """
-    alone, joined = (figures(each, tmp_path) for each in (drawn(0), with_idle_shaft(drawn(0))))
+    alone, joined = (figures(each, tmp_path) for each in (drawn(5), with_idle_shaft(drawn(5))))
+    static = alone["meshes.second.static_mesh_force"]
+    assert abs(joined["meshes.idle.mean_mesh_force"]) < 1e-3 * static
+    for mesh in ("first", "second"):
+        key = f"meshes.{mesh}.static_mesh_force"
+        assert joined[key] == pytest.approx(alone[key], rel=1e-9)
+    if joined["meshes.idle.contact_loss_share"] < 0.999:
+        return
     assert joined["meshes.idle.mean_mesh_force"] == 0.0
-    assert joined["meshes.idle.contact_loss_share"] == pytest.approx(1.0)
     for mesh in ("first", "second"):
         key = f"meshes.{mesh}."
         mean = alone[f"{key}mean_mesh_force"]
         assert joined[f"{key}mean_mesh_force"] == pytest.approx(mean, rel=1e-4)
-        limits = {"peak": 2e-3, "minimum": 1e-2, "alternating_rms": 2e-3}
-        for name, limit in limits.items():
-            force = alone[f"{key}{name}_mesh_force"]
-            assert joined[f"{key}{name}_mesh_force"] == pytest.approx(force, abs=limit * mean), name
-        assert joined[f"{key}static_mesh_force"] == pytest.approx(
-            alone[f"{key}static_mesh_force"], rel=1e-9
-        )
+        for name in ("peak_mesh_force", "minimum_mesh_force", "alternating_rms_mesh_force"):
+            assert joined[key + name] == pytest.approx(alone[key + name], abs=2e-3 * mean), name
 
 
 def in_a_machine(stage: Any) -> MachineCase:

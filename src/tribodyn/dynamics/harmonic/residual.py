@@ -131,11 +131,11 @@ class Residual:
                  for part, force in zip(self.parts, forces, strict=True)]  # fmt: skip
         motions = []
         for to in range(len(self.parts)) if of is None else of:
-            part, own = self.parts[to], lines[to]
-            if own is None:
+            part, driving = self.parts[to], lines[to]
+            if driving is None:
                 moved = np.zeros(part.receptances.shape[:2], dtype=complex)
             else:
-                moved = (part.receptances @ own[..., None])[..., 0]
+                moved = (part.receptances @ driving[..., None])[..., 0]
             if loaded:
                 moved[: len(part.loaded)] += part.loaded
             for by, pushing in enumerate(lines):
