@@ -35,7 +35,8 @@ class Housing:
     ------
     InputError
         If a matrix has a wrong shape, is not finite and symmetric, or mass or stiffness is
-        singular, or a node has a coordinate that the matrices do not have.
+        singular, or damping has a negative eigenvalue, or a node has a coordinate that the
+        matrices do not have.
 
     Examples
     --------
@@ -64,6 +65,7 @@ class Housing:
         }
         object.__setattr__(self, "nodes", nodes)
         self._refuse_singular()
+        self._refuse_active_damping()
 
     @property
     def names(self) -> tuple[str, ...]:
@@ -99,6 +101,13 @@ class Housing:
                 remedy,
             )
 
+    def _refuse_active_damping(self) -> None:
+        values = [0.0] if self.damping is None else np.linalg.eigvalsh(np.asarray(self.damping))
+        if values[0] < -1e-6 * max(abs(values[0]), values[-1]):
+            what = f"the damping matrix feeds in power: its least eigenvalue is {values[0]:.4g}"
+            why = "The damping of a passive housing is positive semi-definite"
+            raise InputError(what, Argument("Housing.damping"), why, "Check the file and its signs")
+
     @property
     def size(self) -> int:
         """Number of coordinates."""
@@ -112,10 +121,14 @@ def _symmetric(name: str, value: ArrayLike) -> Array:
         what = f"{name} has the shape {matrix.shape} or is not finite"
         why = "It must be a finite square matrix"
         raise InputError(what, where, why, "Give rows and columns over the same coordinates")
-    difference = np.abs(matrix - matrix.T).max()
-    if difference > 1e-6 * np.abs(matrix).max():
-        row, column = np.unravel_index(np.abs(matrix - matrix.T).argmax(), matrix.shape)
-        what = f"{name} is not symmetric: entries ({row}, {column}) differ by {difference:.4g}"
+    # over the sizes of both coordinates, which may be lengths and angles
+    size = np.sqrt(np.abs(np.diag(matrix)))
+    size[size == 0.0] = np.sqrt(np.abs(matrix).max()) or 1.0
+    difference = np.abs(matrix - matrix.T) / np.outer(size, size)
+    if difference.max() > 1e-6:
+        row, column = np.unravel_index(difference.argmax(), matrix.shape)
+        values = f"{matrix[row, column]:.6g} and {matrix[column, row]:.6g}"
+        what = f"{name} is not symmetric: entries ({row}, {column}) are {values}"
         why = "Reduced matrices of a passive housing are symmetric"
         raise InputError(what, where, why, "Check the file; give a lower triangle completed")
     return np.asarray(0.5 * (matrix + matrix.T))

@@ -95,7 +95,7 @@ def test_a_housing_in_tonnes_and_millimetres_is_that_in_si(tmp_path: Path) -> No
     assert again.housing.mass == pytest.approx(mass, rel=1e-8)
     assert again.housing.nodes["2"][:3] == (3, 4, 5)
     for old, new, message in (
-        ('units = "mm-t-s"\n', "", "A punch file does not state its units"),
+        ('units = "mm-t-s"\n', "", "The file of matrices does not state its units"),
         ("housing.pch", "complex.pch", "KAAX is not a real square or symmetric matrix"),
         ("housing.pch", "none.pch", "no DMIG matrices of the stiffness.*Its matrices: MAAX"),
         ("housing.pch", "cut.pch", "KAAX has no header"),
@@ -108,19 +108,23 @@ def test_a_housing_in_tonnes_and_millimetres_is_that_in_si(tmp_path: Path) -> No
             td.load_case(path)
 
 
-def test_units_of_other_files_are_refused() -> None:
+def test_units_of_archives_are_refused(tmp_path: Path) -> None:
+    housing = td.load_case("two-stage-spur").housing
+    names = [str(name) for name in range(6)]
+    np.savez(tmp_path / "h.npz", K=np.eye(36), M=np.eye(36), nodes=names)
+    keys = {"stiffness_file": None, "mass_file": None, "damping_file": None, "nodes": None}
+    files = {"matrices": str(tmp_path / "h.npz"), "units": "mm-t-s", **keys}
+    assert housing is not None
     with pytest.raises(InputError, match="has no effect here"):
-        td.load_case("two-stage-spur").replace({"housing.units": "mm-t-s"})
+        td.load_case("two-stage-spur").replace({f"housing.{k}": v for k, v in files.items()})
 
 
 def test_rotations_and_forces_change_their_units(tmp_path: Path) -> None:
     """N*mm/rad is 1e-3 N*m/rad, N/rad stays, and a generalized coordinate keeps its frequency."""
-    from tribodyn.study.machine.housing_files import _of_punch_file
-
     text = SMALL + "DMIG    KAAX         101       5             101       5   8.+06\n"
     text += "DMIG    KAAX         101       1             101       5   3.+04\n"
     text += "DMIG    MAAX         101       5             101       5   6.+02\n"
-    matrices, nodes = _of_punch_file(PunchFile(text), "mm-t-s")
+    matrices, nodes = PunchFile(text).in_si("matrices", "mm-t-s")
     assert nodes == {"101": [0, -1, -1, -1, 1, -1], "102": [-1, -1, 2, -1, -1, -1]}
     assert matrices["stiffness"][0, 0] == pytest.approx(2.5e6)
     assert matrices["stiffness"][1, 1] == pytest.approx(8e3)

@@ -375,18 +375,25 @@ class HousingTable(Section):
         '{ "seat A" = [0, 1, 2, -1, -1, -1] }',
     )
     matrices: str | None = file_path(
-        meaning="NumPy file with K, M, optional C, and names of the nodes, or a Nastran punch file "
-        "with DMIG entries, whose grid points are the nodes",
+        meaning="NumPy file with K, M, optional C, and names of the nodes; a Nastran punch file "
+        "with DMIG entries or an Abaqus substructure, whose nodes are named by their numbers",
         example='"housing.npz"',
     )
     units: str | None = choice(
         None,
         {"m-kg-s": "metres, kilograms", "mm-t-s": "millimetres, tonnes"},
-        meaning="units of a punch file, which does not state them",
+        meaning="units of files of Nastran, Abaqus and Ansys, which do not state them",
     )
-    stiffness_file: str | None = file_path(meaning="Matrix Market file", example='"K.mtx"')
-    mass_file: str | None = file_path(meaning="Matrix Market file", example='"M.mtx"')
-    damping_file: str | None = file_path(meaning="Matrix Market file", example='"C.mtx"')
+    stiffness_file: str | None = file_path(
+        meaning="Matrix Market file, Abaqus matrix output or Ansys Harwell-Boeing file",
+        example='"K.mtx"',
+    )
+    mass_file: str | None = file_path(meaning="file of the same kind", example='"M.mtx"')
+    damping_file: str | None = file_path(meaning="file of the same kind", example='"C.mtx"')
+    mapping_file: str | None = file_path(
+        meaning="nodes of the rows of Harwell-Boeing files, as Ansys writes them",
+        example='"K.mapping"',
+    )
 
 
 class OperationTable(Section):
