@@ -4,6 +4,7 @@ import sys
 
 import numpy as np
 import pytest
+from scipy.integrate import solve_ivp
 
 from known_machines import CLOCK, two_mesh_system
 from known_random_machines import random_machine
@@ -18,7 +19,9 @@ from tribodyn.dynamics import (
     simulate_ensemble,
     steady_state,
 )
+from tribodyn.dynamics.equations.compiled import sample_system
 from tribodyn.dynamics.harmonic.newton import Solution, newton
+from tribodyn.dynamics.modal.modal_march import ModalEngine
 from tribodyn.errors import ComputationError, InputError
 
 module = sys.modules["tribodyn.dynamics.harmonic.harmonic_balance"]
@@ -92,6 +95,33 @@ def test_order_stays_above_two_where_contacts_open():
         errors.append(np.abs(ends).max())
     assert np.log2(errors[0] / errors[2]) > 2 * 2.3
     assert errors[2] < 1e-7
+
+
+def test_motion_with_gap_and_ramps_is_that_of_an_adaptive_method_of_eighth_order():
+    turn, stiffness, ramps, gaps = 2.0 * np.pi, 40.0, (25.0, 15.0), (0.05, 0.4, 0.7)
+    error = lambda x: 0.3 * np.cos(turn * x)  # noqa: E731
+    contact = Contact([1.0], stiffness, 0.3, error, gaps[0], ramp_stiffness=ramps,
+                      ramp_gap=gaps[1:], events=())  # fmt: skip
+    machine = System([[1.0]], [[0.2]], [[1.0]], [6.0], [contact])
+
+    def rate(time, y):
+        d, speed = y[0] - error(time), y[1] + 0.3 * turn * np.sin(turn * time)
+        beyond = np.sign(d) * np.maximum(np.abs(d) - np.array(gaps), 0.0)
+        force = np.dot((stiffness, *ramps), beyond) + 0.3 * speed * (beyond[0] != 0.0)
+        return [y[1], 6.0 - 0.2 * y[1] - y[0] - force]
+
+    exact = solve_ivp(rate, (0.0, 4.0), [0.2, 1.0], "DOP853", rtol=1e-12, atol=1e-13, max_step=2e-3)
+    errors, changes = [], []
+    for steps in (32, 64, 128):
+        motion = ModalEngine(sample_system(machine, steps), np.zeros((0, 1))).motion
+        state, free = motion.state(np.array([0.2]), np.array([1.0]))
+        ends, sums, trace = motion.advance(state, 1.0, 4, np.zeros(1))
+        q, v = motion.motion(ends, free, np.array([4.0]), state, sums)
+        errors.append(np.abs(np.hstack((q, v))[0] - exact.y[:, -1]).max())
+        changes.append(int(trace.report[3]))
+    assert min(changes) >= 12
+    assert np.log2(errors[0] / errors[2]) > 2 * 3.5
+    assert errors[2] < 1e-6
 
 
 def test_free_rotation_of_the_drive_is_that_of_runge_kutta():

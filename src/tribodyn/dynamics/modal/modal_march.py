@@ -20,14 +20,8 @@ from tribodyn.dynamics.equations.nodes import Nodes, ramp_count, springs
 from tribodyn.dynamics.equations.system import System, contact_label
 from tribodyn.dynamics.modal.closed_structure import ClosedStructure
 from tribodyn.dynamics.modal.contact_equations import close_contacts, with_dead_zone
-from tribodyn.dynamics.modal.modal_kernel import (
-    CHATTER,
-    UNSETTLED,
-    Contacts,
-    Modes,
-    Trace,
-    march_modes,
-)
+from tribodyn.dynamics.modal.modal_kernel import CHATTER, UNSETTLED, Trace, march_modes
+from tribodyn.dynamics.modal.modal_step import Contacts, Modes
 from tribodyn.errors import ComputationError, InputError, Problem, require_positive
 from tribodyn.types import Array, ComplexArray
 
@@ -51,12 +45,14 @@ class ModalMotion:
         chosen = values.imag >= 0.0
         weight = np.where(values.imag[chosen] > 0.0, 2.0, 1.0)
         self._right, self._left = right[:, chosen] * weight, left[chosen]
+        values, place = values[chosen], structure.output @ self._right
+        #: Of forces in modes (m, s), and of modes in motion and rate at the contacts (2 r, m).
+        self.input, self.output = self._left @ structure.input, np.vstack((place, place * values))
         self.modes = Modes(
-            np.ascontiguousarray(values[chosen]),
-            self._left @ structure.input,
-            structure.output @ self._right,
-            np.ascontiguousarray(structure.contact_stiffness),
-            np.ascontiguousarray(structure.contact_damping),
+            np.ascontiguousarray(values),
+            np.array((self.input.T.real, self.input.T.imag), order="C"),
+            np.array((self.output.T.real, -self.output.T.imag), order="C"),
+            np.hstack((structure.contact_stiffness, structure.contact_damping)).T.copy("C"),
         )
         system = compiled.system
         frictions, count = system.frictions, len(system.contacts)
@@ -147,7 +143,7 @@ class ModalMotion:
         """Rows of the kernel (steps, 3, row) at a frequency, under an additional force (n,)."""
         structure, rows = self.structure, self._rows.copy()
         rows[..., self._rates] *= frequency
-        width = self.modes.input.shape[1]
+        width = self.input.shape[1]
         if extra.any():
             count, each = self.contacts.dead.shape
             at = (3 + 2 * each + 2 * structure.along.shape[1] + width) * count
@@ -165,18 +161,13 @@ class ModalMotion:
     ) -> tuple[Array, Array, Trace]:
         """States and sums of forces at the ends of all steps, or the last, from a state (m,)."""
         # log: most changes of side that the trace keeps
-        grid, rows, width = (
-            self.compiled.grid,
-            self.rows(frequency, extra),
-            self.modes.input.shape[1],
-        )
+        grid, rows, output = self.compiled.grid, self.rows(frequency, extra), self.output
         widths, kind = np.unique(np.round(grid.width, 15), return_inverse=True)
         z = self.split(state)
-        output = np.concatenate((self.modes.output, self.modes.output * self.modes.values))
         count = cycles * grid.steps + 1 if recorded else 0
         trace = Trace(
             np.empty((count, 2, z.size)),
-            np.empty((count, 2, width)),
+            np.empty((count, 2, self.input.shape[1])),
             np.empty((grid.steps, 2, len(output))),
             np.zeros(6),
             np.empty((log, 5 + len(output))),

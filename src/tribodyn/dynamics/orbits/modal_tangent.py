@@ -8,7 +8,7 @@ Where a contact opens or closes its damping force jumps, and the disturbance wit
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
@@ -64,8 +64,6 @@ class ModalTangent:
         self.motion, self.frequency, self.extra = motion, frequency, extra
         self.modes, self.rows = motion.modes, motion.rows(frequency, extra)
         self.width = motion.compiled.grid.width / frequency
-        output = self.modes.output
-        self._output = np.concatenate((output, output * self.modes.values))
         self._known: dict[float, _Weights] = {}
 
     def at(self, state: Array, sections: int = 1) -> Tangent:
@@ -75,7 +73,7 @@ class ModalTangent:
         tangents = self._tangents(parts, nodes)
         ends = np.linspace(0, self.width.size, sections + 1).astype(np.int64)[1:]
         first = self.motion.split(np.eye(state.size))
-        z, sums = first, np.zeros((self.modes.input.shape[1], state.size))
+        z, sums = first, np.zeros((self.motion.input.shape[1], state.size))
         square = (sections, state.size, state.size)
         tangent = Tangent(end, np.empty(square), np.empty((sections, *sums.shape)))
         number = 0
@@ -86,7 +84,7 @@ class ModalTangent:
             sums = sums + h * (left + 4.0 * middle + right) / 6.0
             for entry in part.entries:
                 impulse = self._impulse(log[entry], part, z)
-                z, sums = z + self.modes.input @ impulse, sums + impulse
+                z, sums = z + self.motion.input @ impulse, sums + impulse
             if part.end == 1.0 and part.step + 1 == ends[number]:
                 tangent.products[number], tangent.sums[number] = self.motion.joined(z), sums
                 z, sums, number = first, 0.0 * sums, number + 1
@@ -101,7 +99,7 @@ class ModalTangent:
             if trace.report[5] <= entries:
                 break
             entries = int(trace.report[5])
-        first = (self._output @ self.motion.split(state[:, None])).real[:, 0]
+        first = (self.motion.output @ self.motion.split(state[:, None])).real[:, 0]
         begin = np.concatenate((first[None], trace.contacts[:-1, 1]))
         nodes = np.concatenate((begin[:, None], trace.contacts), axis=1)
         return trace.log[: int(trace.report[5])], nodes, ends[-1]
@@ -147,14 +145,12 @@ class ModalTangent:
 
     def _slope(self, entries: list[Array], side: Array, nodes: Array) -> Array:
         """Minus forces per motion and rate, from motions and rates ``nodes`` (..., 2 r)."""
-        modes = self.modes
         spring, damper = self._springs(entries, side)
         along, turning = entries[5], entries[6]
         push = self._push(entries, spring, damper, side, nodes)
         place = spring[..., None] * along + damper[..., None] * turning
         each = np.concatenate((place, damper[..., None] * along), axis=-1)
-        mean = np.concatenate((modes.stiffness, modes.damping), axis=1)
-        return np.asarray(mean - np.swapaxes(push, -1, -2) @ each)
+        return np.asarray(self.modes.mean.T - np.swapaxes(push, -1, -2) @ each)
 
     def _springs(self, entries: list[Array], side: Array) -> tuple[Array, Array]:
         """Stiffness and damping of the contacts in force."""
@@ -184,7 +180,7 @@ class ModalTangent:
         key = round(h, 18)
         if key in self._known:
             return self._known[key]
-        weights = _step_weights(self.modes, self._output, h)
+        weights = _step_weights(self.motion, h)
         if part.end - part.begin == 1.0:
             self._known[key] = weights
         return weights
@@ -193,7 +189,7 @@ class ModalTangent:
         """Forces of the delay of a disturbance where the first spring of a contact changes."""
         tau, contact, spring = float(entry[1]), int(entry[2]), int(entry[3])
         contacts = self.motion.contacts
-        r, none = self.modes.output.shape[0], np.zeros((self.modes.input.shape[1], z.shape[1]))
+        r, none = len(self.motion.output) // 2, np.zeros((self.motion.input.shape[1], z.shape[1]))
         if spring or contacts.damped_in_gap[contact]:
             return none
         table = self.rows[part.step]
@@ -211,7 +207,7 @@ class ModalTangent:
         strength = closing * entries[1][contact] * speed / relative
         damped = self._springs(entries, part.side)
         push = self._push(entries, *damped, part.side, entry[5:])[contact]
-        felt = along @ (self._output[:r] @ z).real
+        felt = along @ (self.motion.output[:r] @ z).real
         return np.asarray(-strength * np.outer(push, felt))
 
 
@@ -235,9 +231,9 @@ def _advanced(z: ComplexArray, weights: _Weights, tangent: Array) -> tuple[Compl
     return weights.decay[:, None] * z + weights.force @ forces, forces
 
 
-def _step_weights(modes: Any, output: ComplexArray, h: float) -> _Weights:
+def _step_weights(motion: ModalMotion, h: float) -> _Weights:
     """Weights of a step of ``h`` seconds, as those of the engine."""
-    values = modes.values
+    values, output = motion.modes.values, motion.output
     full_step, full = _integrals(values * h)
     half_step, half = _integrals(0.5 * values * h)
     first, second, third = full
@@ -247,7 +243,7 @@ def _step_weights(modes: Any, output: ComplexArray, h: float) -> _Weights:
     part = h * np.stack((0.5 * (begin - 1.5 * middle + end), middle - end,
                          0.5 * (end - 0.5 * middle)))  # fmt: skip
     force, inner = (
-        np.concatenate([each[:, None] * modes.input for each in parts], axis=1)
+        np.concatenate([each[:, None] * motion.input for each in parts], axis=1)
         for parts in (step_weights, part)
     )
     signals = np.concatenate((output, output * half_step, output * full_step))
