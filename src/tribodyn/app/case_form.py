@@ -237,7 +237,8 @@ class CaseForm:
             "meaning": place.meaning,
             "note": str(self._chosen(chosen)) if chosen else "",
             "values": len({*filled} - {chosen}) + sum(group["values"] for group in inner),
-            "open": key.partition(".")[0] in is_open and not key.endswith("modification"),
+            "open": key.partition(".")[0] in is_open
+            and not key.endswith(("modification", "cutter")),
             "fields": [field for name, field in fields if name in first],
             "more": [field for name, field in fields if name not in first],
             "groups": inner,

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-from dataclasses import asdict, dataclass, field
+from dataclasses import asdict, dataclass, field, replace
 from functools import cached_property, partial
 from itertools import chain
 from typing import TYPE_CHECKING, Any
@@ -21,7 +21,7 @@ from tribodyn.rating import (
 )
 from tribodyn.rating.factor import check_range
 from tribodyn.record import figure_method
-from tribodyn.study.case.rating_tables import gear_material
+from tribodyn.study.case.rating_tables import gear_material, history_classes, shaper_cutter
 from tribodyn.study.computed_rating import load_sharing_factor
 from tribodyn.study.rated_oil import gear_oil
 from tribodyn.study.rated_parts import (
@@ -137,6 +137,7 @@ class MeshRating:
         Verdict
         """
         needed = self.standard.conditions
+        has_run = self.rated is None or self.rated.motion is not None
         pairs = zip(
             self.gears, self.standard.gears.values(), self.computed.gears.values(), strict=True
         )
@@ -145,7 +146,7 @@ class MeshRating:
             places = {"pitting": f"at {point}", "bending": "root"}
             for mode, where in places.items():
                 key, required = f"{mode}_safety", getattr(needed, f"{mode}_safety")
-                values = getattr(gear, key), required, getattr(other, key)
+                values = getattr(gear, key), required, getattr(other, key) if has_run else None
                 yield Verdict(mode, name, self.load, *values, where)
         for mode, key, required, factor in (
             ("scuffing (flash)", "scuffing_safety_flash", needed.scuffing_safety, "theta_fl_max"),
@@ -156,7 +157,8 @@ class MeshRating:
                 points = (self.pointwise.get(name) for name in (key, f"{key}_method_a"))
                 least = next(filter(None, points), {"safety": getattr(self.computed, key)})
                 where = self.standard.factors[factor].branch if factor else "mean of the path"
-                yield Verdict(mode, self.mesh, self.load, safety, required, least["safety"], where)
+                computed = least["safety"] if has_run else None
+                yield Verdict(mode, self.mesh, self.load, safety, required, computed, where)
 
     def to_dict(self) -> dict[str, Any]:
         """Ratings of the mesh, as JSON has them.
@@ -294,9 +296,14 @@ class CaseRating:
                 gears.setdefault(name, {})[mesh] = rating
         return gears
 
+    @property
+    def _to_last(self) -> list[MeshRating]:
+        """Loads that the gears have to last: load classes, else the operating point."""
+        return [each for each in self.ratings if not self.spectra or each.load != "operation"]
+
     def _governing(self) -> dict[str, MeshRating]:
         least: dict[str, tuple[float, MeshRating]] = {}
-        for each in self.ratings:
+        for each in self._to_last:
             margin = min(verdict.margin for verdict in each.verdicts())
             if each.mesh not in least or margin < least[each.mesh][0]:
                 least[each.mesh] = margin, each
@@ -310,7 +317,7 @@ class CaseRating:
         list of Verdict
         """
         least: dict[tuple[str, ...], Verdict] = {}
-        listed = [each.verdicts() for each in self.ratings]
+        listed = [each.verdicts() for each in self._to_last]
         listed += [each.verdicts() for each in self.spectra]
         for verdict in chain(*listed, self.parts.verdicts()):
             place = verdict.where if verdict.mode.startswith("shaft") else ""  # each notch
@@ -372,7 +379,8 @@ class RatedMesh:
     mesh: str
     case: Case  #: of its pair
     gears: tuple[str, str]
-    operation: tuple[float, float]  #: speed [rad/s] and torque [N*m] of the pinion
+    #: speed [rad/s] and torque [N*m] of the pinion, negative where the other flanks carry
+    operation: tuple[float, float]
     computed: Mapping[str, float]  #: factors of the motion and the load distribution
     meshes_per_turn: tuple[int, int] = (1, 1)
     reversed: tuple[bool, bool] = (False, False)
@@ -389,6 +397,7 @@ class RatedMesh:
         pinion, wheel = (
             RatedGear(
                 material=gear_material(self.case, role),
+                cutter=shaper_cutter(self.case, role),
                 accuracy_grade=data.accuracy_grade,
                 flank_roughness=data.flank_roughness,
                 root_roughness=data.root_roughness,
@@ -412,7 +421,7 @@ class RatedMesh:
 
 def rate_mesh(mesh: RatedMesh) -> MeshRating:
     """Rating of a mesh with the factors of the standard, and with computed ones."""
-    pair, (speed, torque) = mesh.case.gear_pair, mesh.operation
+    pair, speed, torque = mesh.case.gear_pair, mesh.operation[0], abs(mesh.operation[1])
     standard = rate_pair(pair, torque=torque, speed=speed, **mesh.common)
     factors = dict(mesh.computed)
     if mesh.table is not None:
@@ -468,9 +477,18 @@ def rated_pair(result: Result) -> Iterator[RatedMesh]:
     if case.is_rated:
         factors = computed_factors(result.figures)
         operation = result._MESH, case, _ROLES, case.operating_point, factors
-        yield RatedMesh(
+        rated = RatedMesh(
             "operation", *operation, table=result.mesh, motion=partial(_force_over_mean, result)
         )
+        yield rated
+        stated = case.operation
+        speed, torque = (
+            a / b for a, b in zip(rated.operation, (stated.speed, stated.torque), strict=True)
+        )
+        for each in history_classes(case.rating, stated.speed):
+            load = speed * each.speed, torque * each.torque
+            yield replace(rated, load=each.name, operation=load, computed={}, share=each.duration,
+                          table=None, motion=None)  # fmt: skip
 
 
 def _force_over_mean(result: Result) -> tuple[Array, Array]:

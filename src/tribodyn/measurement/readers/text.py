@@ -204,6 +204,8 @@ def _column_names_and_units(
         why = "The comma seems to be both column delimiter and decimal sign"
         remedy = "Export it with semicolons as delimiters or with decimal points"
         raise InputError(what, str(path), why, remedy)
+    if rows and width == 1 and _WITH_UNIT.fullmatch(name := head[-1].lstrip("#%").strip()):
+        rows[-1] = [name]  # the blank before the unit delimits no columns
     rows = [cells for cells in rows if len(cells) == width]
     units = [""] * width
     if len(rows) > 1 and _are_units(rows[-1], rows[-2]):

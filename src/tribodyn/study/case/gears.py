@@ -12,6 +12,7 @@ from tribodyn.gear.hypoid.blank import GENERATIONS, HANDS, PROCESSES, RANGES, hy
 from tribodyn.gear.hypoid.kinematics import ENTRAINMENTS
 from tribodyn.model import REQUIRED, Option, choice, file_path, flag, integer, number, numbers, text
 from tribodyn.study.case.changes import with_values
+from tribodyn.study.case.rating_tables import CutterTable
 from tribodyn.study.case.section import Section, Table
 from tribodyn.study.case.section import table as inner_table
 from tribodyn.study.case.user_input import UserInput, conflicting_keys
@@ -150,6 +151,7 @@ class Gear(Section):
     specific_heat: float | None = number(
         None, 100.0, 5000.0, _GUARD, of="specific_heat", example='"460 J/kg/K"'
     )
+    cutter: CutterTable | None = inner_table(CutterTable, "cutter of its root, in a rating", "none")
     modification: Modification | None = inner_table(
         Modification, "what the loaded flanks have that the involute has not", "none"
     )

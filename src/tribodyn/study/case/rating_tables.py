@@ -4,14 +4,15 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
+from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 from tribodyn.errors import InputError, Problem, did_you_mean
-from tribodyn.model import REQUIRED, choice, flag, integer, number, numbers
+from tribodyn.model import REQUIRED, choice, file_path, flag, integer, number, numbers, text
 from tribodyn.study.case.section import NamedTables, Section, table
 
 if TYPE_CHECKING:
-    from tribodyn.rating import GearMaterial
+    from tribodyn.rating import GearMaterial, ShaperCutter, SpectrumLoad
     from tribodyn.study.case.case_data import CaseData
     from tribodyn.study.case.sections import LubricantData
 
@@ -126,6 +127,46 @@ class RatingTable(Section):
     lubrication: str = choice(
         "dip", ("dip", "spray", "submerged"), meaning="how the oil reaches the gears"
     )
+    torque_history: str | None = file_path(
+        meaning="recording of the torque of [operation] over the required life, CSV or another "
+        "format of recordings, which becomes load classes by ISO 6336-6",
+        example='"torque.csv"',
+    )
+    torque_column: str | None = text(
+        None, meaning="its column of torques", basis="torque", example='"torque"'
+    )
+    torque_unit: str | None = text(
+        None, meaning="unit of these torques", basis="that in the file", example='"N*m"'
+    )
+    speed_column: str | None = text(
+        None, meaning="its column of speeds", basis="the speed of [operation]", example='"speed"'
+    )
+    speed_unit: str | None = text(
+        None, meaning="unit of these speeds", basis="that in the file", example='"rpm"'
+    )
+    load_classes: int | None = integer(
+        None, 1, 1000, "each class of a machine is a run", basis="16", example="16",
+        meaning="classes from no load to the greatest torque, for each sign",
+    )  # fmt: skip
+
+
+#: Keys of ``[rating]`` about the history of the torque.
+HISTORY = (
+    "torque_history", "torque_column", "torque_unit", "speed_column", "speed_unit", "load_classes",
+)  # fmt: skip
+
+
+class CutterTable(Section):
+    """A ``[gears.NAME.cutter]`` table: gear-shaped cutter that made a gear, for its root."""
+
+    teeth: int = integer(REQUIRED, 5, 500, "shaping cutters", symbol="z_0",
+                         meaning="number of teeth", example="25")  # fmt: skip
+    profile_shift_coefficient: float = number(
+        0.0, -2.0, 2.0, "new to worn cutters", symbol="x_0", meaning="profile shift of the cutter"
+    )
+    tip_radius_coefficient: float = number(
+        0.2, 0.0, 1.0, "round tips", meaning="radius of its tip round over the module"
+    )
 
 
 def _load(meaning: str, example: str) -> Any:
@@ -233,6 +274,52 @@ def gear_material(case: CaseData, role: str) -> GearMaterial:
     )
 
 
+def shaper_cutter(case: CaseData, role: str) -> ShaperCutter | None:
+    """Cutter that made a gear; None where its case has none."""
+    from tribodyn.rating import ShaperCutter
+
+    stated = getattr(case.gears, role).cutter
+    return (
+        None if stated is None else ShaperCutter(**{k: getattr(stated, k) for k in stated.fields})
+    )
+
+
+def history_classes(rating: Any, speed: float) -> tuple[SpectrumLoad, ...]:
+    """Load classes of the history of ``[rating]``, durations as shares; empty without one."""
+    from tribodyn.measurement.load_history import read_load_classes
+
+    if rating is None or rating.torque_history is None:
+        return ()
+    names = ("torque_column", "torque_unit", "speed_column", "speed_unit")
+    stated = {name: getattr(rating, name) for name in names if getattr(rating, name) is not None}
+    return read_load_classes(
+        rating.torque_history, speed, classes=rating.load_classes or 16, **stated
+    )
+
+
+def history_problems(rating: Any, speed: float | None) -> Iterator[tuple[str, Problem]]:
+    """Problems of the history of the torque, by dotted key."""
+    if rating is None:
+        return
+    stated = [name for name in HISTORY if getattr(rating, name) is not None]
+    if stated and rating.torque_history is None:
+        what, why = f"{stated[0]} has no effect here", "There is no torque_history"
+        yield f"rating.{stated[0]}", Problem(what, "", why, "Add it, or remove this key")
+    elif stated and rating.required_life is None:
+        what, why = "torque_history has no effect here", "Its classes are parts of a running time"
+        yield "rating.torque_history", Problem(what, "", why, "Add required_life, or remove it")
+    elif stated and speed is not None:
+        try:
+            history_classes(rating, speed)
+        except InputError as error:
+            for problem in error.problems:
+                key = getattr(problem.where, "name", "")
+                if key not in HISTORY:  # a fault of the file itself
+                    key, what = "torque_history", f"{rating.torque_history} {problem.what}"
+                    problem = replace(problem, what=what)
+                yield f"rating.{key}", problem
+
+
 def _wear_problems(case: CaseData) -> Iterator[tuple[str, Problem]]:
     assert case.rating is not None
     if case.rating.wear_coefficient is None:
@@ -281,9 +368,17 @@ def rating_problems(case: CaseData) -> Iterator[tuple[str, Problem]]:
             what, why = "materials has no effect here", "Only a rating needs strengths"
             yield "materials", Problem(what, "", why, "Add [rating], or remove it")
         for role in ("pinion", "wheel"):
-            if (name := getattr(case.gears, role).material) is not None:
-                what, why = f'material = "{name}" has no effect here', "Only a rating needs it"
-                yield f"gears.{role}.material", Problem(what, "", why, "Add [rating], or remove it")
+            gear, why, remedy = (
+                getattr(case.gears, role),
+                "Only a rating needs it",
+                "Add [rating], or remove it",
+            )
+            if (name := gear.material) is not None:
+                what = f'material = "{name}" has no effect here'
+                yield f"gears.{role}.material", Problem(what, "", why, remedy)
+            if gear.cutter is not None:
+                what = "cutter has no effect here"
+                yield f"gears.{role}.cutter", Problem(what, "", why, remedy)
         return
     if case.gears.kind != "spur":
         what, why = "rating has no effect here", "Cylindrical gears are rated, others are not"
@@ -293,6 +388,7 @@ def rating_problems(case: CaseData) -> Iterator[tuple[str, Problem]]:
         what, why = f"edition = {case.rating.edition}", "ISO 6336 is computed as of 2006 and 2019"
         yield "rating.edition", Problem(what, "", why, "Choose one of these")
     yield from _wear_problems(case)
+    yield from history_problems(case.rating, case.operation.speed)
     if case.lubricant is None:
         what, why = "the table [lubricant] is missing", "Ratings need the viscosity at 40 degC"
         yield "rating", Problem(what, "", why, "Add it with a name, or the figures of a data sheet")

@@ -159,7 +159,7 @@ class MachineCase(BaseCase):
         self.rated_parts = read_rated_parts(tables.rating, groups, self.shafts, problems)
         self.motion, self.solver = tables.dynamics, tables.solver
         self.faults: dict[str, Any] = groups["faults"]
-        loads = read_loads(self.data, tables.operation, groups["load_cases"], problems)
+        loads = read_loads(self.data, tables, groups["load_cases"], problems)
         if loads is not None:
             self.ends, self.operating_point, self.load_cases = loads
         if problems:

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
 from typing import Any, NamedTuple
 
 from tribodyn.errors import Problem
+from tribodyn.study.case.rating_tables import history_classes, history_problems
 from tribodyn.study.case.section import named_rows
 from tribodyn.study.case.values import KeyedProblems
 from tribodyn.study.machine.read_parts import is_faulty, read_share
@@ -47,9 +49,10 @@ class Loads(NamedTuple):
 
 
 def read_loads(
-    data: Mapping[str, Any], operation: Any, tables: Mapping[str, Any], problems: KeyedProblems
+    data: Mapping[str, Any], tables: Any, named: Mapping[str, Any], problems: KeyedProblems
 ) -> Loads | None:
-    """Read ``[operation]`` and ``[[load_cases]]``; None where there is no operating point."""
+    """Read ``[operation]``, and ``[[load_cases]]`` or a history; None without operating point."""
+    operation = tables.operation
     rows = data.get("load_cases", [])
     if not isinstance(rows, list | tuple) or not all(isinstance(r, Mapping) for r in rows):
         remedy = "Write [[load_cases]] with share, speed and torque"
@@ -64,12 +67,30 @@ def read_loads(
             problem = Problem(f'{end} = ""', "", "It names a shaft or a member", "Give its name")
             problems.append((f"operation.{end}", problem))
     point = LoadCase("operation", operation.speed, operation.torque, 1.0)
-    loads = tuple(_load_cases(tables, point, problems))
+    loads = _history_loads(tables.rating, point, bool(named), problems)
+    loads += tuple(_load_cases(named, point, problems))
     total = sum(load.share for load in loads)
     if total > 1.0 + 1e-9:
         what, why = f"the shares add up to {100.0 * total:.6g} %", "They are parts of one time"
         problems.append(("load_cases", Problem(what, "", why, "Correct the shares")))
     return Loads((operation.input, operation.output), point, loads)
+
+
+def _history_loads(
+    rating: Any, point: LoadCase, has_load_cases: bool, problems: KeyedProblems
+) -> tuple[LoadCase, ...]:
+    """Classes of the history of the torque as load cases."""
+    if is_faulty("rating", problems):
+        return ()
+    faults = list(history_problems(rating, point.speed))
+    if not faults and has_load_cases and rating is not None and rating.torque_history is not None:
+        what, why = "torque_history stands beside [[load_cases]]", "Both are loads of the machine"
+        faults = [("rating.torque_history", Problem(what, "", why, "Remove one of both"))]
+    problems += faults
+    return () if faults else tuple(
+        LoadCase(each.name, math.copysign(each.speed, point.speed), each.torque, each.duration)
+        for each in history_classes(rating, point.speed)
+    )  # fmt: skip
 
 
 def _load_cases(

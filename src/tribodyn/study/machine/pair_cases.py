@@ -14,7 +14,7 @@ from tribodyn.machine.graph.mesh_checks import gear_hand
 from tribodyn.study.case import gears
 from tribodyn.study.case.case import Case
 from tribodyn.study.case.hypoid import blank_of
-from tribodyn.study.case.rating_tables import PartRating
+from tribodyn.study.case.rating_tables import HISTORY, PartRating
 from tribodyn.study.case.sections import Operation
 from tribodyn.study.case.to_models import usual_backlash
 from tribodyn.study.case.user_input import Source
@@ -39,7 +39,7 @@ if TYPE_CHECKING:
 #: Those that meshes of hypoid gears have not.
 _OF_CYLINDRICAL = ("stiffness", "materials", "rating")
 #: Keys of tables of models that are those of the whole machine.
-_OF_MACHINE = (*HEAT, *PartRating.fields)
+_OF_MACHINE = (*HEAT, *PartRating.fields, *HISTORY)
 #: The machine is what vibrates: its pairs have no supports of their own.
 _WITHOUT_SUPPORTS = {"model": "torsional"}
 _ROLES = ("pinion", "wheel")

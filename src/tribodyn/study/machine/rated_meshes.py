@@ -77,6 +77,7 @@ def _rated_mesh(
     gears = load.machine.meshes[mesh].gears
     torques = dict(zip(gears, flow[mesh].torque, strict=True))
     pinion, wheel = case._pinion_and_wheel(mesh)
+    forwards = case.operating_point.torque
     speed = 2.0 * math.pi * flow[mesh].mesh_frequency / abs(load.machine.gears[pinion].teeth)
     prefix = f"meshes.{mesh}."
     figures = {
@@ -95,7 +96,7 @@ def _rated_mesh(
         mesh=mesh,
         case=pair,
         gears=names,
-        operation=(speed, abs(torques[pinion])),
+        operation=(speed, math.copysign(torques[pinion], load.load.torque * forwards)),
         computed=factors,
         meshes_per_turn=counts,
         reversed=reversed_,

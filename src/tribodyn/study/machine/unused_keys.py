@@ -8,7 +8,12 @@ from typing import Any
 from tribodyn.errors import Problem, did_you_mean
 from tribodyn.model import NO_OPTIONS
 from tribodyn.study.case.changes import changed_tables, with_values
-from tribodyn.study.case.rating_tables import BearingCatalogue, PartRating, ShaftStrength
+from tribodyn.study.case.rating_tables import (
+    HISTORY,
+    BearingCatalogue,
+    PartRating,
+    ShaftStrength,
+)
 from tribodyn.study.case.section import entries, section_at, table_in
 from tribodyn.study.case.values import written
 from tribodyn.study.machine.tables import (
@@ -128,11 +133,12 @@ def _rated_parts(data: Mapping[str, Any]) -> KeyedProblems:
     if not any(rated):
         why = "No bearing has dynamic_load_rating"
         yield from _refused("rating", data.get("rating"), PartRating.fields, why, "Remove it")
-    why, remedy = "Bearings are those of the whole machine", "Write it in [rating]"
+    why, remedy = "It is that of the whole machine", "Write it in [rating]"
     for group in ("meshes", "planets"):
         for name, body in _tables(data, group).items():
             table = body.get("rating")
-            yield from _refused(f"{group}.{name}.rating", table, PartRating.fields, why, remedy)
+            parts = *PartRating.fields, *HISTORY
+            yield from _refused(f"{group}.{name}.rating", table, parts, why, remedy)
 
 
 def _heat(data: Mapping[str, Any]) -> KeyedProblems:
