@@ -27,10 +27,8 @@ def read_load_classes(
     speed_unit: str | None = None,
     classes: int = 16,
 ) -> tuple[SpectrumLoad, ...]:
-    """Load classes of a recorded torque that carry a load, with durations that are shares.
-
-    ``speed`` [rad/s] is that of the whole recording where no column has one; its sign is not read.
-    """
+    """Load classes of a recorded torque that carry a load, with durations that are shares."""
+    # ``speed`` [rad/s] is that of the whole recording where no column has one, without its sign.
     data = read_recording_data(path)
     torques = _channel(data, path, ("torque", torque_column, torque_unit or "", "N*m"))
     speeds = np.full(torques.size, abs(speed))
