@@ -277,27 +277,27 @@ def test_a_shaft_that_carries_nothing_changes_nothing_at_rest(seed: int) -> None
 
 
 @pytest.mark.slow
-def test_a_shaft_that_carries_nothing_changes_the_motion_by_its_modes_alone(tmp_path: Path) -> None:
-    """Means are those of the torques; modal damping, and so peaks, know the idle shaft a little.
-
-    A gear that nothing holds has several motions, and rounding chooses: where it chatters, only
-    the balance of torques and what holds at rest is known.
-    """
-    alone, joined = (figures(each, tmp_path) for each in (drawn(5), with_idle_shaft(drawn(5))))
-    static = alone["meshes.second.static_mesh_force"]
-    assert abs(joined["meshes.idle.mean_mesh_force"]) < 1e-3 * static
-    for mesh in ("first", "second"):
-        key = f"meshes.{mesh}.static_mesh_force"
-        assert joined[key] == pytest.approx(alone[key], rel=1e-9)
-    if joined["meshes.idle.contact_loss_share"] < 0.999:
-        return
-    assert joined["meshes.idle.mean_mesh_force"] == 0.0
+@pytest.mark.parametrize(
+    ("seed", "change"), [(5, 0.0), (5, 1e-12), (5, 1e-8), (5, 1e-2), (0, 1e-9), (1, 1e-6), (2, 0.0)]
+)
+def test_a_shaft_that_carries_nothing_changes_the_motion_by_its_modes_alone(
+    seed: int, change: float, tmp_path: Path
+) -> None:
+    """Means are those of the torques; modal damping, and so peaks, know the idle shaft a little."""
+    tables = drawn(seed)
+    speed = float(tables["operation"]["speed"].removesuffix(" rpm")) * (1.0 + change)
+    tables["operation"]["speed"] = f"{speed!r} rpm"
+    alone, joined = (figures(each, tmp_path) for each in (tables, with_idle_shaft(tables)))
+    assert joined["meshes.idle.contact_loss_share"] == pytest.approx(1.0, abs=1e-12)
+    assert joined["meshes.idle.mean_mesh_force"] == joined["meshes.idle.peak_mesh_force"] == 0.0
     for mesh in ("first", "second"):
         key = f"meshes.{mesh}."
+        static = alone[f"{key}static_mesh_force"]
+        assert joined[f"{key}static_mesh_force"] == pytest.approx(static, rel=1e-9)
         mean = alone[f"{key}mean_mesh_force"]
         assert joined[f"{key}mean_mesh_force"] == pytest.approx(mean, rel=1e-4)
         for name in ("peak_mesh_force", "minimum_mesh_force", "alternating_rms_mesh_force"):
-            assert joined[key + name] == pytest.approx(alone[key + name], abs=2e-3 * mean), name
+            assert joined[key + name] == pytest.approx(alone[key + name], abs=1e-2 * mean), name
 
 
 def in_a_machine(stage: Any) -> MachineCase:

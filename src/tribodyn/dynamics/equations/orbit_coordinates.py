@@ -19,7 +19,7 @@ from tribodyn.arrays.linear_algebra import each_times
 from tribodyn.arrays.memory import Memo
 from tribodyn.dynamics.equations.compiled import Compiled
 from tribodyn.dynamics.equations.grid import unrepeated
-from tribodyn.dynamics.equations.motion import compression, forces
+from tribodyn.dynamics.equations.motion import compression, forces, has_gap
 from tribodyn.dynamics.equations.nodes import (
     Nodes,
     carried_load,
@@ -30,7 +30,7 @@ from tribodyn.dynamics.equations.nodes import (
 )
 from tribodyn.dynamics.equations.system import System
 from tribodyn.errors import InputError, warn
-from tribodyn.types import Array
+from tribodyn.types import Array, Mask
 
 _RANK = 1e-9
 #: Directions of a contact over the clock that are replaced by a basis of them.
@@ -247,6 +247,8 @@ def _row_space(matrices: list[Array]) -> Array:
     return np.ascontiguousarray(rows[values > _RANK * values[0]].T)
 
 
+#: Force of a contact at rest that is none, over the largest one or that of a dead zone.
+_UNLOADED = 1e-9
 #: Iterations in which the ramps of a force law open and close, one ramp per iteration at least.
 #: The same number is enough for load-dependent friction.
 _ROUNDS = 50
@@ -280,6 +282,42 @@ def static_start(compiled: Sampled) -> Array:
         carrying = closed
         position = _equilibrium(compiled, carrying, gap)
     return np.concatenate((position, np.zeros(compiled.system.size)))
+
+
+class Rest(NamedTuple):
+    """A system at rest under the mean loads."""
+
+    position: Array  #: (n,)
+    floating: Mask  #: contacts that carry nothing, in the middle of their dead zones
+
+
+def at_rest(compiled: Compiled) -> Rest:
+    """Static equilibrium; a body that nothing loads is in the middle between its flanks."""
+    nodes, position = compiled.nodes, static_start(compiled)
+    lowest = lowest_of_each_law(nodes) & nodes.stiffness.any(axis=(0, 1))
+    floating, rest = has_gap(nodes) & lowest & _unloaded(compiled, position), position
+    while floating.any():
+        middle = nodes._replace(gap=np.where(floating, 0.0, nodes.gap))
+        rest = static_start(replace(compiled, nodes=middle))
+        free = floating & _unloaded(replace(compiled, nodes=middle), rest)
+        if np.array_equal(free, floating):
+            break
+        floating, rest = free, position
+    return Rest(rest[: compiled.system.size], floating)
+
+
+def _unloaded(compiled: Compiled, state: Array) -> Mask:
+    """Contacts without a mean force at rest, where those lowest of a force law are closed."""
+    nodes = compiled.nodes
+    stiffness, gap = springs(nodes)
+    pressed = compression(nodes, state[: compiled.system.size])[..., None] - gap
+    closed = pressed > 0.0
+    closed[..., 0] |= lowest_of_each_law(nodes)
+    force, most = (
+        np.abs(np.einsum("rs,rsjm->j", nodes.weight, stiffness * np.where(closed, part, 0.0)))
+        for part in (pressed, np.abs(pressed) + gap)
+    )
+    return np.asarray(force <= _UNLOADED * most.max(initial=0.0))
 
 
 def _equilibrium(compiled: Sampled, carrying: Array, gap: Array) -> Array:

@@ -18,8 +18,9 @@ from tribodyn.checks import require_flag, require_number, require_whole
 from tribodyn.dynamics.equations.compiled import Compiled, sample_system
 from tribodyn.dynamics.equations.grid import system_events
 from tribodyn.dynamics.equations.orbit_coordinates import (
+    Rest,
+    at_rest,
     refuse_disconnected,
-    static_start,
     structure_coordinates,
     warn_of_unbalanced,
 )
@@ -57,6 +58,8 @@ _ADDED = (0.3, 0.1, 0.03, 0.01, 0.003)
 #: Newton steps with each of them, and periods that are integrated, short ones and those that
 #: forget their start.
 _TRIES, _MARCHED, _LONG = 12, (3, 6, 12, 24), (1, 2)
+#: Rounding of two equal multipliers, which is the root of that of one.
+_NEUTRAL = 1e-3
 #: Natural logarithm of the decay in a period after which nothing is left of a start.
 _FORGOTTEN = 10.0
 
@@ -68,7 +71,7 @@ class Prepared:
     system: System
     structure: ClosedStructure
     closed: Mask  #: springs that are closed at rest (contacts, m)
-    start: Array  #: static equilibrium (n,)
+    rest: Rest  #: static equilibrium
     grids: dict[int, Compiled]
     samples: dict[int, ContactEquations] = field(default_factory=dict)
 
@@ -82,7 +85,9 @@ class Prepared:
                 if finer is None
                 else finer.coarser()
             )
-        return ClockResidual(self.structure, self.samples[steps], frequency, self.closed)
+        return ClockResidual(
+            self.structure, self.samples[steps], frequency, self.closed, self.rest.floating
+        )
 
     def grid(self, steps: int) -> Compiled:
         """Grid of a response with a number of steps per cycle of the fastest mesh."""
@@ -101,9 +106,9 @@ def prepare(system: System, frequency: float, steps: int = 0) -> Prepared:
     refuse_disconnected(compiled)
     coordinates = structure_coordinates(compiled)
     warn_of_unbalanced(compiled, coordinates)
-    start = static_start(compiled)[: system.size]
-    structure, closed = close_contacts(compiled, np.zeros((0, system.size)), start, coordinates)
-    prepared = Prepared(system, structure, closed, start, {steps: compiled})
+    rest = at_rest(compiled)
+    structure, closed = close_contacts(compiled, np.zeros((0, system.size)), rest, coordinates)
+    prepared = Prepared(system, structure, closed, rest, {steps: compiled})
     _cache[:] = [(weakref.ref(system), prepared), *_cache[:3]]
     return prepared
 
@@ -169,6 +174,8 @@ def harmonic_balance(
     ``step_error`` the change of the motion when the steps are halved, or an estimate of it where
     ``steps`` is chosen automatically. With dead zones the start decides which of several motions
     is found, and without ``stability`` it may be an unstable one.
+    A body that nothing loads starts in the middle between its flanks and floats there without
+    force, if they leave it room.
 
     Over several phases the unknowns are functions of all of them: a line of the whole numbers k has
     the frequency ``k.f``, so that no common period is needed. ``step_error`` is then the sum of the
@@ -270,7 +277,9 @@ def _multipliers(prepared: Prepared, residual: ClockResidual, solution: Solution
     state, torque = starting_state(residual, solution.state)
     motion = ModalMotion(grid, prepared.structure)
     multipliers = motion.multipliers(state, residual.frequency, torque)
-    if np.abs(multipliers[:1]).max(initial=0.0) > 1.0:
+    # A body that floats between its flanks keeps a disturbance, two multipliers of 1.
+    limit = 1.0 if solution.state.held is None else 1.0 + _NEUTRAL
+    if np.abs(multipliers[:1]).max(initial=0.0) > limit:
         warn(
             "unstable-orbit",
             f"the motion is unstable: largest Floquet multiplier {np.abs(multipliers[0]):.6g}, "
@@ -303,7 +312,9 @@ def _start(
             [np.interp(at, phase - phase[0], part, period=start.periods) for part in columns],
             axis=1,
         )
-    position = prepared.start if start is None else read_start(prepared.system, start)[:size]
+    position = (
+        prepared.rest.position if start is None else read_start(prepared.system, start)[:size]
+    )
     y = np.tile(position @ into, (contacts.steps, 1))
     if start is not None:
         return y

@@ -12,9 +12,9 @@ import numpy as np
 from tribodyn.arrays.memory import machine_memory
 from tribodyn.checks import require_whole
 from tribodyn.dynamics.equations.orbit_coordinates import (
+    at_rest,
     orbit_coordinates,
     refuse_disconnected,
-    static_start,
 )
 from tribodyn.dynamics.equations.phases import read_frequencies
 from tribodyn.dynamics.equations.system import System, contact_label
@@ -111,10 +111,10 @@ class _Search:
         means = rows.means
         refuse_disconnected(means)
         orbit_coordinates(means, float(frequency.max()))  # warns of forces that do not balance
-        start = static_start(means)[: system.size]
-        structure, _ = close_contacts(means, rows.sampled_forces(), start)
-        parts = parts_of(system, frequency, structure, start)
-        return cls(rows, parts[0].structure, parts, start)
+        rest = at_rest(means)
+        structure, _ = close_contacts(means, rows.sampled_forces(), rest)
+        parts = parts_of(system, frequency, structure, rest)
+        return cls(rows, parts[0].structure, parts, rest.position)
 
     def residual(self, points: Points, prior: PhaseResidual | None = None) -> PhaseResidual:
         """Residual on grids with so many points over each phase."""
@@ -357,7 +357,7 @@ def _not_converged(
         along = np.broadcast_to(along, (len(state.y), *along.shape[1:]))
         distance = np.abs(np.einsum("pjr,pr->pj", along, state.residual)).max(axis=0)
         number = int(np.argmax(distance))
-        rows, weight = part.structure.rows, 1.0 if state.cell is None else state.cell.pieces.weight
+        rows, weight = part.structure.rows, None if state.cell is None else state.cell.pieces.weight
         share = np.average(state.law.side[:, number] == 0.0, weights=weight)
         mesh = next(mesh for mesh in rows.meshes if number in mesh.contacts)
         rate = abs(rows.rate(mesh.cycles)) * mesh.period

@@ -14,6 +14,7 @@ from typing import Any
 
 import numpy as np
 
+from tribodyn.dynamics.equations.orbit_coordinates import Rest
 from tribodyn.dynamics.equations.system import System
 from tribodyn.dynamics.harmonic.meshwise_inverse import MeshwiseInverse
 from tribodyn.dynamics.harmonic.newton import LINEAR, State
@@ -45,6 +46,7 @@ class Part:
     contact_stiffness: Array  #: means of these contacts (s, r) [1/s^2]
     contact_damping: Array
     closed: Mask  #: springs that are closed at rest
+    floating: Mask  #: contacts that carry nothing at rest
 
     @property
     def coordinates(self) -> Any:
@@ -65,11 +67,11 @@ class Part:
         loaded = (self.receptances(omega, structure.push) @ lines[..., None])[..., 0]
         loaded[grid.unpaired[: len(lines)]] = 0.0
         contacts = PhaseContacts.of(self.rows, self, grid, self.axis)
-        return OnGrid.of(self, grid, contacts, loaded, self.members, self.closed)
+        return OnGrid.of(self, grid, contacts, loaded, self.members, self.closed, self.floating)
 
 
 def parts_of(
-    system: System, frequency: Array, structure: ClosedStructure, start: Array
+    system: System, frequency: Array, structure: ClosedStructure, rest: Rest
 ) -> list[Part]:
     """Divide a system into the contacts that follow the same phases, and close them all."""
     groups: dict[tuple[frozenset[int], int], list[int]] = {}
@@ -92,9 +94,12 @@ def parts_of(
         )  # fmt: skip
         rows = PhaseRows.of(alone, frequency)
         none = np.zeros((0, system.size))
-        law, closed = close_contacts(rows.means, none, start, structure.coordinates)
+        resting = rest._replace(floating=rest.floating[numbers])
+        law, closed = close_contacts(rows.means, none, resting, structure.coordinates)
         means = law.along, law.push, law.contact_stiffness, law.contact_damping
-        parts.append(Part(rows, np.array(numbers), *key, structure, *means, closed))
+        parts.append(
+            Part(rows, np.array(numbers), *key, structure, *means, closed, resting.floating)
+        )
     push, along = structure.push, structure.along
     stiffness, damping = (
         sum(push.T @ part.push @ getattr(part, name) @ part.along.T @ along for part in parts)

@@ -19,7 +19,7 @@ from tribodyn.dynamics.harmonic.newton import LINEAR, VECTORS, State, force_chan
 from tribodyn.dynamics.harmonic.phase_contacts import Cell, PhaseContacts
 from tribodyn.dynamics.harmonic.phase_grid import PhaseGrid
 from tribodyn.dynamics.modal.closed_structure import ClosedStructure
-from tribodyn.dynamics.modal.contact_equations import ContactEquations
+from tribodyn.dynamics.modal.contact_equations import ContactEquations, Law, outer
 from tribodyn.types import Array, ComplexArray, Index, Mask
 
 #: Bytes of the vectors of a linear solution, and the fewest of them.
@@ -39,17 +39,18 @@ class OnGrid(NamedTuple):
     loaded: ComplexArray  #: lines of the motion under external forces that act apart (k or 1, r)
     members: Index  #: numbers of the contacts in the system
     closed: Mask  #: springs that are closed at rest
+    floating: Mask  #: contacts that carry nothing at rest
 
     @classmethod
     def of(
         cls, structure: Any, grid: PhaseGrid, contacts: PhaseContacts | ContactEquations,
-        loaded: ComplexArray, members: Index, closed: Mask,
+        loaded: ComplexArray, members: Index, closed: Mask, floating: Mask,
     ) -> OnGrid:  # fmt: skip
         """Contacts with the receptances at the lines of their grid."""
         receptances = structure.receptances(grid.omega)
         receptances[grid.unpaired] = 0.0
         slope = np.where(grid.unpaired, 0.0, 1j * grid.omega)[:, None]
-        return cls(structure, grid, contacts, receptances, slope, loaded, members, closed)
+        return cls(structure, grid, contacts, receptances, slope, loaded, members, closed, floating)
 
     def rate(self, y: Array) -> Array:
         """Derivative of a motion (p, r) by time."""
@@ -63,7 +64,16 @@ class OnGrid(NamedTuple):
         force = self.integral(law.force, cell) + y @ means[0].T
         force += rate @ means[1].T
         breaks.scatter(force, breaks.correction)
-        return State(y, rate, law, breaks, force, y, cell)
+        return State(y, rate, law, breaks, force, y, cell, self._held(law))
+
+    def _held(self, law: Law) -> Array | None:
+        """Stiffness (s, r) that holds the mean place of bodies which nothing holds in a motion."""
+        open_throughout = self.floating & (law.side == 0.0).all(axis=0)
+        if not open_throughout.any():
+            return None
+        rows = self.contacts.rows
+        stiffness = np.where(open_throughout, rows.stiffness[..., 0], 0.0)
+        return np.asarray(outer(rows.push, stiffness, rows.along).mean(axis=0))
 
     @staticmethod
     def integral(values: Array, cell: Cell | None) -> Array:
@@ -200,14 +210,15 @@ class ClockResidual(Residual):
     """Residual of a periodic motion at one frequency of the clock."""
 
     def __init__(
-        self, structure: ClosedStructure, contacts: ContactEquations, frequency: float, closed: Mask
-    ) -> None:
+        self, structure: ClosedStructure, contacts: ContactEquations, frequency: float,
+        closed: Mask, floating: Mask,
+    ) -> None:  # fmt: skip
         grid = PhaseGrid((contacts.steps,), np.array([frequency]))
         structure.refuse_resonance(grid.omega)
         still, members = np.zeros((1, structure.along.shape[1]), complex), np.arange(len(closed))
         self.structure, self.contacts, self.frequency = structure, contacts, frequency
         contacts = contacts.turning(frequency)
-        super().__init__([OnGrid.of(structure, grid, contacts, still, members, closed)])
+        super().__init__([OnGrid.of(structure, grid, contacts, still, members, closed, floating)])
 
     @cached_property
     def omega(self) -> Array:

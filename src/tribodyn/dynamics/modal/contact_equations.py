@@ -28,7 +28,8 @@ from tribodyn.dynamics.equations.nodes import (
 )
 from tribodyn.dynamics.equations.orbit_coordinates import (
     OrbitCoordinates,
-    static_start,
+    Rest,
+    at_rest,
     structure_coordinates,
 )
 from tribodyn.dynamics.equations.system import System
@@ -282,10 +283,11 @@ def _touch_factor(
 def close_contacts(
     compiled: Compiled,
     extra: Array,
-    still: Array | None = None,
+    rest: Rest | None = None,
     coordinates: OrbitCoordinates | None = None,
 ) -> tuple[ClosedStructure, Mask]:
     """Structure with closed contacts, and those closed at rest; ``extra`` (m, n) forces act too."""
+    # Contacts that carry nothing are in the structure, but not closed.
     system, nodes = compiled.system, compiled.nodes
     coordinates = coordinates or structure_coordinates(compiled)
     inverse = coordinates.inverse
@@ -294,7 +296,7 @@ def close_contacts(
         pushes.append(np.asarray(system.balance)[None])
     along = _basis([nodes.direction, nodes.direction_slope], inverse)
     push = _basis(pushes, inverse)
-    still = static_start(compiled)[: system.size] if still is None else still
+    still, floating = rest or at_rest(compiled)
     stiffness, gap = springs(nodes)
     pressed = compression(nodes, still)[..., None] - gap
     closed = np.einsum("rs,rsjm->jm", nodes.weight, pressed) > 0.0
@@ -305,7 +307,7 @@ def close_contacts(
     damped = np.where(closed[:, 0], nodes.damping, 0.0)
     means = [outer(into_push, part[:, 0], into_along) for part in (carried, damped)]
     shifts = [np.tensordot(nodes.weight.sum(axis=1), part, 1) for part in means]
-    return ClosedStructure(system, coordinates, push, along, *shifts), closed
+    return ClosedStructure(system, coordinates, push, along, *shifts), closed & ~floating[:, None]
 
 
 def contact_equations(
