@@ -302,6 +302,11 @@ def aside(work: Callable[[], Value]) -> Value:
 
 def stoppable(kernel: Callable[..., Any], *arguments: Any, brief: bool = False) -> Any:
     """Call a compiled function that takes the flag last and returns its status (first)."""
+    # Numba compiles a function anew for arrays that are read-only: it gets copies of these.
+    arguments = tuple(
+        item.copy() if isinstance(item, np.ndarray) and not item.flags.writeable else item
+        for item in arguments
+    )
     answer = in_threads(lambda _: kernel(*arguments, stop_flag()), (0,), 1, brief=brief)[0]
     refuse_stopped(answer[0] if isinstance(answer, tuple) else answer)
     return answer

@@ -2,14 +2,17 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from types import SimpleNamespace
 
+import numba
 import numpy as np
 import pytest
 
 from plain.loaded_contact import plain_approach, plain_loads
 from tribodyn.errors import ComputationError, InputError
 from tribodyn.stiffness import ContactProblem
+from tribodyn.stiffness.loaded.kernel import solve_deflections, solve_loads
 from tribodyn.stiffness.loaded.problem import Compliance
 
 WIDTH = 0.02
@@ -176,3 +179,16 @@ def test_an_approach_far_from_the_first_gap_carries_the_whole_load():
     solution = contact_problem.at_loads(np.array([100.0, 1900.0]))
     total = contact_problem.forces(solution.load).sum(axis=2)
     assert total == pytest.approx(np.array([[100.0], [1900.0]]) * np.ones(20_000), rel=1e-8)
+
+
+@pytest.mark.parametrize("kernel", [solve_loads, solve_deflections])
+def test_one_compiled_function_serves_widths_of_every_shape(kernel):
+    few = problem(2, phases=3, slices=2)
+    every = replace(few, widths=np.broadcast_to(few.widths, few.gaps.shape))
+    of_each = replace(few, widths=every.widths.copy())
+    solved = [each.at_loads(np.array([900.0])) for each in (few, every, of_each)]
+    forces = [each.at_approach(solved[0].approach)[0] for each in (few, every, of_each)]
+    assert solved[0].load.tolist() == solved[1].load.tolist() == solved[2].load.tolist()
+    assert forces[0].tolist() == forces[1].tolist() == forces[2].tolist()
+    for signature in kernel.signatures:
+        assert all(kind.mutable for kind in signature if isinstance(kind, numba.types.Array))
