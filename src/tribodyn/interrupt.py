@@ -100,11 +100,10 @@ class Threads:
     """Worker threads that end with the ``with`` block, or soon after an interruption."""
 
     def __init__(self, count: int) -> None:
-        self.flag, self.interrupted = stop_flag(), False
+        self.flag, self.interrupted, self._limits = stop_flag(), False, ExitStack()
         self._handler: Any = None  #: handler of Ctrl-C before, where these threads replace it
         self._tasks: SimpleQueue[tuple[Future[Any], Callable[..., Any], Any] | None] = SimpleQueue()
         self._waiting: list[Future[Any]] = []
-        self._limits = ExitStack()
         self._threads = [threading.Thread(target=self._work, daemon=True) for _ in range(count)]
 
     def _work(self) -> None:
@@ -303,10 +302,7 @@ def aside(work: Callable[[], Value]) -> Value:
 def stoppable(kernel: Callable[..., Any], *arguments: Any, brief: bool = False) -> Any:
     """Call a compiled function that takes the flag last and returns its status (first)."""
     # Numba compiles a function anew for arrays that are read-only: it gets copies of these.
-    arguments = tuple(
-        item.copy() if isinstance(item, np.ndarray) and not item.flags.writeable else item
-        for item in arguments
-    )
-    answer = in_threads(lambda _: kernel(*arguments, stop_flag()), (0,), 1, brief=brief)[0]
+    items = [np.require(a, None, "W") if isinstance(a, np.ndarray) else a for a in arguments]
+    answer = in_threads(lambda _: kernel(*items, stop_flag()), (0,), 1, brief=brief)[0]
     refuse_stopped(answer[0] if isinstance(answer, tuple) else answer)
     return answer

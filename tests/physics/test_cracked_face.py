@@ -17,7 +17,7 @@ from tribodyn.faults import Crack, crack_compliance, crack_influence, turning_me
 from tribodyn.gear import Material, SpurGear, SpurPair, cylindrical_pair
 from tribodyn.stiffness.fe2d import MeshSize
 from tribodyn.stiffness.fe3d import SolidSize
-from tribodyn.stiffness.fe3d.face import FaceSize
+from tribodyn.stiffness.fe3d.sections import FaceSize
 from tribodyn.stiffness.teeth.face_influence import FaceInfluence
 from tribodyn.types import Array
 

@@ -24,8 +24,8 @@ from tribodyn.gear import spur_pair
 from tribodyn.rating import GearOil, RatedGear, RatingConditions, rate_pair
 from tribodyn.rating.factor import Factors
 from tribodyn.rating.mesh_load import MeshLoad
-from tribodyn.rating.surface import micropitting, scuffing_flash, scuffing_integral
-from tribodyn.rating.surface.micropitting_test import TORQUES
+from tribodyn.rating.surface import micropitting, scuffing
+from tribodyn.rating.surface.micropitting import TORQUES
 from tribodyn.rating.surface.path_load import ScuffingLoad, helical_load_factor, overlap_factor
 
 ONES = dict.fromkeys(("K_v", "K_Hbeta", "K_Halpha"), 1.0)
@@ -52,8 +52,8 @@ def test_flash_temperature_is_that_of_blok(make, driver):
     load = load_of(make(driver=driver))
     pair, friction = load.mesh.pair, 0.05
     position = load.points.grid(41)
-    flash = scuffing_flash.flash_temperatures(load, position, friction)
-    flash = flash / scuffing_flash.approach_factor(load, position)
+    flash = scuffing.flash_temperatures(load, position, friction)
+    flash = flash / scuffing.approach_factor(load, position)
     motion = path_of_contact(pair).kinematics(load.points.path(position), load.mesh.speed)
     per_width = load.points.share(position, 5) * load.line_load * load.helical_factor
     per_width = per_width / math.cos(pair.transverse_pressure_angle)
@@ -77,8 +77,8 @@ def test_scuffing_test_gears_scuff_in_their_own_load_stage(stage):
     )  # fmt: skip
     oil = replace(OIL, scuffing_load_stage=stage)
     load = load_of(pair, 3.726 * stage**2, 2170.0, oil)
-    assert scuffing_flash.record_scuffing_flash(load) == pytest.approx(1.0, abs=0.12)
-    assert scuffing_integral.record_scuffing_integral(load) == pytest.approx(1.1, abs=0.12)
+    assert scuffing.record_scuffing_flash(load) == pytest.approx(1.0, abs=0.12)
+    assert scuffing.record_scuffing_integral(load) == pytest.approx(1.1, abs=0.12)
 
 
 @pytest.mark.parametrize("stage", list(TORQUES))
@@ -133,7 +133,7 @@ def test_safeties_need_the_tests_of_the_oil():
 def test_relief_and_rough_or_new_flanks():
     load = load_of(spur_example())
     position = load.points.grid(11)
-    assert scuffing_flash.approach_factor(load, position).min() == 1.0
+    assert scuffing.approach_factor(load, position).min() == 1.0
     coarse = tuple(replace(gear, accuracy_grade=8) for gear in SPUR_GEARS)
     rating = rate_spur(oil=OIL, pinion=coarse[0], wheel=coarse[1], torque=100.0)
     assert rating.factors["X_Ca"] == 1.0
@@ -166,12 +166,12 @@ def test_factors_are_continuous_where_their_rules_meet():
         below, above = (helical_load_factor(at + d) for d in (-1e-12, 1e-12))
         assert below == pytest.approx(above, abs=1e-5)
     assert helical_load_factor(5.0) == pytest.approx(1.3)
-    q = scuffing_integral.approach_ratio_factor
+    q = scuffing.approach_ratio_factor
     assert q(1.5) == pytest.approx(1.0)
     assert q(3.0) == pytest.approx(0.6)
     assert q(1.0) == 1.0
     assert q(4.0) == pytest.approx(0.6)
-    x = scuffing_integral.contact_ratio_factor
+    x = scuffing.contact_ratio_factor
     for other in (0.5, 0.9):
         assert x(1.0 - 1e-12, other) == pytest.approx(x(1.0 + 1e-12, other), rel=1e-9)
     assert x(1.0, 1.0 - 1e-12) == pytest.approx(x(1.0, 1.0 + 1e-12), rel=1e-9)

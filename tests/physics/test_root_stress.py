@@ -28,9 +28,9 @@ from tribodyn.stiffness.fe2d.root_stress import (
 )
 from tribodyn.stiffness.fe2d.tooth_mesh import MeshSize, grid_elements
 from tribodyn.stiffness.fe3d import SolidSize
-from tribodyn.stiffness.fe3d.face import FaceSize
 from tribodyn.stiffness.fe3d.provider import gear_sector
 from tribodyn.stiffness.fe3d.root_spread import SIZE, RootSpread, computed_spread
+from tribodyn.stiffness.fe3d.sections import FaceSize
 
 NU = 0.3
 PAIRS = {"spur": spur_example, "helical": helical_example, "ring": ring_example}

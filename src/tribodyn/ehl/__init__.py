@@ -21,9 +21,8 @@ from __future__ import annotations
 
 from tribodyn.arguments import guard
 from tribodyn.ehl.area.finite_line import RollerProfile, solve_finite_line_contact
-from tribodyn.ehl.area.friction import AreaFriction
 from tribodyn.ehl.area.point_contact import solve_point_contact
-from tribodyn.ehl.area.solution import FiniteLineSolution, PointContactSolution
+from tribodyn.ehl.area.solution import AreaFriction, FiniteLineSolution, PointContactSolution
 from tribodyn.ehl.asperities import Asperities, asperity_integral
 from tribodyn.ehl.flow_factors import (
     FlowFactors,

@@ -14,7 +14,7 @@ from typing import Literal, NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike
 
-from tribodyn.ehl.solver.contact_problem import ContactProblem, DiscreteContact, SolvedContact
+from tribodyn.ehl.solver.contact_case import ContactProblem, DiscreteContact, SolvedContact
 from tribodyn.ehl.solver.fallbacks import solve_problem
 from tribodyn.ehl.solver.grid import estimate_film
 from tribodyn.errors import (

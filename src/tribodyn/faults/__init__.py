@@ -4,8 +4,7 @@
 |---|---|
 | ``fault`` | what every fault answers: the gear, the gap and the compliance that it adds |
 | ``deviations`` | eccentricity and waviness, pitch deviations of an accuracy class |
-| ``flanks`` | slopes of profile and helix that differ from tooth to tooth |
-| ``topographies`` | measured flanks of several teeth |
+| ``flanks`` | slopes of profile and helix that differ from tooth to tooth, measured flanks |
 | ``damage`` | spalls, broken teeth, root cracks |
 | ``cracked_tooth`` | compliance of a cracked tooth by finite elements |
 | ``cracked_face`` | the same over path and face, of a crack on a part of the face |
@@ -36,8 +35,7 @@ from tribodyn.faults.excitation import (
     TorqueRipple,
 )
 from tribodyn.faults.fault import Fault
-from tribodyn.faults.flanks import FlankDeviations, slope_tolerances
-from tribodyn.faults.topographies import FlankTopographies
+from tribodyn.faults.flanks import FlankDeviations, FlankTopographies, slope_tolerances
 from tribodyn.faults.turning import TurningMesh, turning_mesh, turns_of
 
 __all__ = [

@@ -30,13 +30,15 @@ from tribodyn.faults.cracked_tooth import (
 from tribodyn.gear import Material, SpurGear
 from tribodyn.stiffness.fe2d.provider import load_arrays, store_arrays
 from tribodyn.stiffness.fe2d.tooth_mesh import MeshSize
-from tribodyn.stiffness.fe3d.face import FaceBasis, FaceSize, face_basis
 from tribodyn.stiffness.fe3d.provider import file_name, gear_sector
 from tribodyn.stiffness.fe3d.sections import (
+    FaceBasis,
+    FaceSize,
     SectionMatrices,
     condensed,
     element_matrices,
     eliminated,
+    face_basis,
 )
 from tribodyn.stiffness.fe3d.sector import Sector, SolidSize, node_freedoms, turned_stiffness
 from tribodyn.stiffness.teeth.face_influence import FaceInfluence

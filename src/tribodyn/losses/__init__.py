@@ -5,9 +5,8 @@
 | `bearings` | frictional moment of rolling bearings by the model of SKF; bearings of an FZG rig |
 | `no_load` | radial shaft seals, churning in an oil bath, windage |
 | `gearbox` | gear loss factor; all losses of a gear stage over torque and speed |
-| `rig` | power flow of a back-to-back rig |
 | `loss_table` | measured torque losses, read from a file or printed in a paper |
-| `measured_loss` | friction coefficient and its uncertainty from measured torque losses |
+| `measured_loss` | friction from measured torque losses with its uncertainty; power flow of a rig |
 """
 
 from tribodyn.arguments import guard
@@ -21,9 +20,13 @@ from tribodyn.losses.gearbox import (
     ohlendorf_loss_factor,
 )
 from tribodyn.losses.loss_table import PowerLossTable, power_loss_table, read_power_loss_table
-from tribodyn.losses.measured_loss import FrictionFromLoss, friction_from_power_loss
+from tribodyn.losses.measured_loss import (
+    FrictionFromLoss,
+    RigPowerFlow,
+    friction_from_power_loss,
+    rig_power_flow,
+)
 from tribodyn.losses.no_load import churning_loss, seal_loss, windage_loss
-from tribodyn.losses.rig import RigPowerFlow, rig_power_flow
 
 __all__ = [
     "BEARINGS",

@@ -46,9 +46,12 @@ from tribodyn.machine.planetary.ring_sensor import RingSensorSignal, ring_sensor
 from tribodyn.machine.planetary.stage_parts import PlanetaryStage
 from tribodyn.machine.reduction import machine_structure, reduce_structure
 from tribodyn.machine.rolling.ball_bearing import AngularContactBallBearing, DeepGrooveBallBearing
-from tribodyn.machine.rolling.bearing_types import ROLLING_BEARINGS
 from tribodyn.machine.rolling.element_ring import BearingState, RollingElementBearing
-from tribodyn.machine.rolling.roller_bearing import CylindricalRollerBearing, TaperedRollerBearing
+from tribodyn.machine.rolling.roller_bearing import (
+    ROLLING_BEARINGS,
+    CylindricalRollerBearing,
+    TaperedRollerBearing,
+)
 from tribodyn.machine.section import STEEL, Section
 from tribodyn.machine.shaft import COUPLINGS, Coupling, CouplingModel, Shaft
 from tribodyn.machine.shaft_matrices import ShaftMatrices

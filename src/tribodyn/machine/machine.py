@@ -21,16 +21,19 @@ from tribodyn.machine.graph.bodies import GearBody, body_problems, gear_body
 from tribodyn.machine.graph.clock import Clock, Phases, clock_of, phases_of
 from tribodyn.machine.graph.directions import MeshDirection, mesh_direction
 from tribodyn.machine.graph.kinematics import PowerFlow, kinematics, ratio_problems
-from tribodyn.machine.graph.mesh_checks import mesh_problems
-from tribodyn.machine.graph.mobility import Drive, Mobility
+from tribodyn.machine.graph.mobility import Drive, Mobility, ShaftGraph
+from tribodyn.machine.graph.part_checks import (
+    drive_problems,
+    mesh_problems,
+    place_problems,
+    support_problems,
+)
 from tribodyn.machine.graph.placement import (
     Placement,
     carrier_axes,
     placement_problems,
     shaft_poses,
 )
-from tribodyn.machine.graph.shaft_checks import drive_problems, place_problems, support_problems
-from tribodyn.machine.graph.shaft_graph import ShaftGraph
 from tribodyn.machine.housing import Housing
 from tribodyn.machine.mesh import Mesh
 from tribodyn.machine.planetary.stage_parts import PlanetaryStage

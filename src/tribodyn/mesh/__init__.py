@@ -8,8 +8,8 @@ from tribodyn.mesh.force_law import MeshForceLaw
 from tribodyn.mesh.functions import LOADS, MeshFriction, MeshFunctions, mesh_friction
 from tribodyn.mesh.grid import MonotonePhaseFunction, PhaseFunction, PhaseGrid, phase_grid
 from tribodyn.mesh.hypoid.friction import HypoidFriction, hypoid_friction
-from tribodyn.mesh.hypoid.harris import hypoid_transmission_error_over_torque
 from tribodyn.mesh.hypoid.loaded_contact import HypoidLoadedContact, hypoid_loaded_contact
+from tribodyn.mesh.hypoid.table import hypoid_transmission_error_over_torque
 from tribodyn.mesh.operation import (
     ComprehensiveStiffness,
     FilmOverOperation,

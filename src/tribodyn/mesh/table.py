@@ -11,12 +11,18 @@ import numpy as np
 
 from tribodyn.errors import InputError
 from tribodyn.mesh.columns import MeshColumns, whole_stiffness
-from tribodyn.mesh.face_lines import SUMMED, face_load_factor, face_map, slice_count
+from tribodyn.mesh.face_lines import (
+    SUMMED,
+    contact_ratio,
+    face_load_factor,
+    face_map,
+    slice_count,
+    teeth_shares,
+)
 from tribodyn.mesh.force_law import MeshForceLaw
 from tribodyn.mesh.functions import MeshFunctions
 from tribodyn.mesh.gears import load_center, spatial_columns
 from tribodyn.mesh.grid import PhaseFunction
-from tribodyn.mesh.loaded_intervals import contact_ratio, teeth_shares
 from tribodyn.mesh.storage import FORMAT, FORMAT_WITHOUT_GEARS, stored_values, write_csv
 from tribodyn.record import Labels, Parts, figure_method, record
 from tribodyn.types import Array

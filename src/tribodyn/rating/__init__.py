@@ -10,10 +10,10 @@
 | `materials` | strength by type, grade and hardness: ISO 6336-5 |
 | `oil` | the oil as ratings need it |
 | `tolerances` | deviations by accuracy grade: ISO 1328-1 |
-| `mesh_load` | forces and speeds of one mesh |
+| `mesh_load` | forces, speeds and running-in of one mesh |
 | `influence` | K_v, K_Hbeta, K_Halpha: ISO 6336-1 |
 | `pitting` | contact stress and its limit: ISO 6336-2 |
-| `root_section`, `bending`, `root_strength` | root stress and its limit: ISO 6336-3 |
+| `root_section`, `bending` | root stress and its limit: ISO 6336-3 |
 | `root_elements` | root stress by finite elements beside it |
 | `surface` | scuffing, micropitting: ISO/TS 6336-20, -21, -22; stress below the surface |
 | `elements` | life of rolling bearings, shafts, load cycles: ISO 281, ISO/TS 16281, DIN 743 |

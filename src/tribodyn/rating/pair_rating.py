@@ -10,21 +10,21 @@ from typing import Any
 
 from tribodyn.errors import ModelWarning, collected, require_positive, warn
 from tribodyn.gear import CylindricalPair
-from tribodyn.rating.bending import record_helix_factor, record_root_stress
+from tribodyn.rating.bending import record_bending, record_helix_factor, record_root_stress
 from tribodyn.rating.conditions import RatingConditions, rating_conditions
 from tribodyn.rating.factor import Factor, Factors, refuse_unknown, split_replacements
 from tribodyn.rating.influence.dynamic_factor import record_dynamic_factor
-from tribodyn.rating.influence.face_load import record_face_load_factors
-from tribodyn.rating.influence.transverse_load import record_transverse_load_factors
+from tribodyn.rating.influence.face_load import (
+    record_face_load_factors,
+    record_transverse_load_factors,
+)
 from tribodyn.rating.mesh_load import MeshLoad
 from tribodyn.rating.oil import GearOil
 from tribodyn.rating.pitting import record_contact_stress, record_film_factors, record_pitting
 from tribodyn.rating.rated_gear import RatedGear
-from tribodyn.rating.root_strength import record_bending
-from tribodyn.rating.surface.micropitting_test import record_micropitting
+from tribodyn.rating.surface.micropitting import record_micropitting
 from tribodyn.rating.surface.path_load import ScuffingLoad
-from tribodyn.rating.surface.scuffing_flash import record_scuffing_flash
-from tribodyn.rating.surface.scuffing_integral import record_scuffing_integral
+from tribodyn.rating.surface.scuffing import record_scuffing_flash, record_scuffing_integral
 
 #: Names of both gears.
 GEARS = ("pinion", "wheel")

@@ -15,7 +15,7 @@ from typing import Final
 
 from tribodyn.rating.conditions import RELIEF_DESIGNS
 from tribodyn.rating.factor import Factors, check_range
-from tribodyn.rating.influence.transverse_load import contact_ratio_factor
+from tribodyn.rating.influence.face_load import contact_ratio_factor
 from tribodyn.rating.life import (
     Curve,
     between_static_and_endurance,

@@ -18,6 +18,7 @@ from numpy.typing import ArrayLike
 
 from tribodyn.errors import Argument, InputError, require_between, require_positive
 from tribodyn.gear import CylindricalPair
+from tribodyn.rating.bending import record_bending
 from tribodyn.rating.conditions import rating_conditions
 from tribodyn.rating.factor import Factors
 from tribodyn.rating.life import Curve, bending_curve, cycles_to_failure
@@ -26,7 +27,6 @@ from tribodyn.rating.oil import GearOil
 from tribodyn.rating.pair_rating import GEARS, PairRating, load_cycles, rate_mesh
 from tribodyn.rating.pitting import pitting_strength_curve, record_pitting
 from tribodyn.rating.rated_gear import RatedGear
-from tribodyn.rating.root_strength import record_bending
 
 
 @dataclass(frozen=True)

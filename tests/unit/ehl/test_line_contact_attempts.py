@@ -9,8 +9,7 @@ import pytest
 
 from tribodyn.ehl import solve_line_contact_moes
 from tribodyn.ehl.solver import fallbacks as attempts
-from tribodyn.ehl.solver.contact_case import moes_case
-from tribodyn.ehl.solver.contact_problem import ContactProblem, Outcome
+from tribodyn.ehl.solver.contact_case import ContactProblem, Outcome, moes_case
 from tribodyn.ehl.solver.engines import first_intervals, newton_engine
 from tribodyn.ehl.solver.fallbacks import ENGINES, continue_to, solve_problem, verify
 from tribodyn.ehl.solver.grid import choose_domain, estimate_film

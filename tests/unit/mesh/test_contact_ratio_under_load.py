@@ -9,14 +9,14 @@ import pytest
 
 import tribodyn as td
 from tribodyn.errors import ModelWarning
-from tribodyn.mesh.grid import phase_grid
-from tribodyn.mesh.loaded_intervals import (
+from tribodyn.mesh.face_lines import (
     contact_ratio,
     loaded_ages,
     loaded_intervals,
     sharing_parts,
     teeth_shares,
 )
+from tribodyn.mesh.grid import phase_grid
 from tribodyn.stiffness import loaded_contact
 from tribodyn.study import Case
 from tribodyn.study.pipeline.tooth_contact import loaded_settings, mesh_of

@@ -15,9 +15,9 @@ from tribodyn.stiffness import LoadedContact, loaded_contact
 from tribodyn.stiffness.fe2d import MeshSize, fe2d_influence
 from tribodyn.stiffness.fe2d.provider import unit_compliances
 from tribodyn.stiffness.fe3d import SolidSize, fe3d_influence, provider
-from tribodyn.stiffness.fe3d.face import FaceSize
 from tribodyn.stiffness.fe3d.provider import gear_sector
 from tribodyn.stiffness.fe3d.ring import Ring, harmonic_weights, solved_harmonics
+from tribodyn.stiffness.fe3d.sections import FaceSize
 from tribodyn.stiffness.loaded import face_problem
 
 MODULE = 4e-3

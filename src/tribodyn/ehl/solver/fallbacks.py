@@ -10,8 +10,8 @@ from functools import lru_cache, partial
 import numpy as np
 
 from tribodyn.ehl.flow_factors import FlowFactors
-from tribodyn.ehl.solver.contact_case import ContactCase
-from tribodyn.ehl.solver.contact_problem import (
+from tribodyn.ehl.solver.contact_case import (
+    ContactCase,
     ContactProblem,
     DiscreteContact,
     Outcome,

@@ -12,11 +12,16 @@ from numpy.typing import ArrayLike
 
 from tribodyn.checks import require_number, require_whole
 from tribodyn.ehl.flow_factors import FlowFactors
-from tribodyn.ehl.solver.contact_case import ContactCase, moes_case, require_kind, si_case
-from tribodyn.ehl.solver.contact_problem import ContactProblem
+from tribodyn.ehl.solver.contact_case import (
+    ContactCase,
+    ContactProblem,
+    moes_case,
+    require_kind,
+    si_case,
+)
+from tribodyn.ehl.solver.engines import GridError, grid_error
 from tribodyn.ehl.solver.fallbacks import Verified, solve_problem, solve_rough
 from tribodyn.ehl.solver.grid import choose_domain, choose_nodes, cut_error, estimate_film
-from tribodyn.ehl.solver.grid_error import GridError, grid_error
 from tribodyn.ehl.steady.solution import LineContactSolution, assemble, with_heat
 from tribodyn.ehl.thermal.thermal_contact import HeatedFilm, solve_heated
 from tribodyn.ehl.thermal.thermal_model import ThermalModel, read_thermal

@@ -10,11 +10,10 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from tribodyn.ehl.film_stiffness import film_stiffness, frequency_response
-from tribodyn.ehl.solver.contact_case import ContactCase
-from tribodyn.ehl.solver.contact_problem import DiscreteContact
+from tribodyn.ehl.solver.contact_case import ContactCase, DiscreteContact
+from tribodyn.ehl.solver.engines import GridError
 from tribodyn.ehl.solver.fallbacks import Verified
 from tribodyn.ehl.solver.grid import Domain, regime_name
-from tribodyn.ehl.solver.grid_error import GridError
 from tribodyn.ehl.thermal.thermal_contact import HeatedFilm
 from tribodyn.ehl.thermal.thermal_model import ThermalModel
 from tribodyn.lubricant import Lubricant

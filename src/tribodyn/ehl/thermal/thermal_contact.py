@@ -11,8 +11,7 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from tribodyn.ehl.solver.contact_case import ContactCase
-from tribodyn.ehl.solver.contact_problem import ContactProblem, DiscreteContact, Outcome
+from tribodyn.ehl.solver.contact_case import ContactCase, ContactProblem, DiscreteContact, Outcome
 from tribodyn.ehl.solver.fallbacks import ENGINES, Verified, fluxes, solve_problem, verify
 from tribodyn.ehl.thermal.surface_history import slowest_speed, surface_response
 from tribodyn.ehl.thermal.thermal_model import MODELS, ThermalModel

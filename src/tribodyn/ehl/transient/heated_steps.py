@@ -11,8 +11,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from tribodyn.ehl.solver.contact_case import ContactCase
-from tribodyn.ehl.solver.contact_problem import DiscreteContact
+from tribodyn.ehl.solver.contact_case import ContactCase, DiscreteContact
 from tribodyn.ehl.solver.fallbacks import fluxes
 from tribodyn.ehl.thermal.surface_history import SurfaceHistory
 from tribodyn.ehl.thermal.thermal_contact import (

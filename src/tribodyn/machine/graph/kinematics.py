@@ -10,8 +10,7 @@ from fractions import Fraction
 from tribodyn.errors import Problem
 from tribodyn.machine.fields import display
 from tribodyn.machine.gear import Gear
-from tribodyn.machine.graph.mobility import Drive, Mobility
-from tribodyn.machine.graph.shaft_graph import ShaftGraph, listed
+from tribodyn.machine.graph.mobility import Drive, Mobility, ShaftGraph, listed
 from tribodyn.machine.mesh import Mesh, mean_over_phase
 
 #: Mesh stiffness per face width by which loops share where none is given [Pa].

@@ -15,7 +15,7 @@ from tribodyn.machine.bearing import Bearing
 from tribodyn.machine.fields import display
 from tribodyn.machine.gear import Gear
 from tribodyn.machine.graph.directions import center_distance
-from tribodyn.machine.graph.shaft_graph import ShaftGraph, listed
+from tribodyn.machine.graph.mobility import ShaftGraph, listed
 from tribodyn.machine.mesh import Mesh
 from tribodyn.types import Array
 

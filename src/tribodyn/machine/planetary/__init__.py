@@ -5,7 +5,7 @@
 | ``kinematics`` | speeds, torques, rolling power and efficiency |
 | ``positions`` | where planets can be assembled, and how close neighbours are |
 | ``phases`` | phases of all meshes, and which modes their harmonics excite |
-| ``plane_model`` | equations of motion in the plane, after Lin and Parker |
+| ``plane_model`` | equations of motion in the plane, after Lin and Parker, and its pins |
 | ``double_planets`` | stepped planets and pairs of planets of the plane model |
 | ``modes`` | which modes are rotational, translational or modes of the planets |
 | ``mesh_laws`` | computed teeth in the plane model, lag of the ring meshes |

@@ -4,6 +4,5 @@
 | --- | --- |
 | `element_ring` | sum over a ring of rolling elements, balance of a load |
 | `ball_bearing` | deep groove and angular contact ball bearings, Hertzian point contact |
-| `roller_bearing` | cylindrical and tapered roller bearings, line contact in laminae |
-| `bearing_types` | types by name |
+| `roller_bearing` | cylindrical and tapered ones, line contact in laminae; all types by name |
 """

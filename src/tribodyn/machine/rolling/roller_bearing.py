@@ -1,4 +1,4 @@
-"""Roller bearings: line contact between roller and raceways, in laminae.
+"""Roller bearings: line contact between roller and raceways, in laminae; rolling bearings by name.
 
 A lamina at ``xi`` along the roller is compressed by the displacement of the inner ring along
 the normal of the raceway, less clearance and profile, and carries
@@ -18,7 +18,9 @@ from numpy.typing import ArrayLike
 
 from tribodyn.errors import InputError, require_one_of
 from tribodyn.machine.fields import check_number
+from tribodyn.machine.rolling.ball_bearing import AngularContactBallBearing, DeepGrooveBallBearing
 from tribodyn.machine.rolling.element_ring import ElementLaw, RollingElementBearing
+from tribodyn.model import Registry
 from tribodyn.types import Array
 
 #: Force of a steel roller over length^(8/9) compression^(10/9), both raceways together; the
@@ -261,3 +263,16 @@ class TaperedRollerBearing(RollerBearing):
             f"It carries axial forces along {sign}x only, and a radial force needs an axial force "
             f"of about {1.26 * math.tan(self.contact_angle):.2f} of it to load half of the rollers"
         )
+
+
+#: Types of rolling bearings: classes by name.
+ROLLING_BEARINGS: Registry[type[RollingElementBearing]] = Registry(
+    "type of rolling bearing", "tribodyn.rolling_bearing"
+)
+for _name, _type in (
+    ("deep-groove", DeepGrooveBallBearing),
+    ("angular-contact", AngularContactBallBearing),
+    ("cylindrical-roller", CylindricalRollerBearing),
+    ("tapered-roller", TaperedRollerBearing),
+):
+    ROLLING_BEARINGS.register(_name)(_type)

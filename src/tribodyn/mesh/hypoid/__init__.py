@@ -5,8 +5,7 @@
 | `cells` | contact lines in cells, and the forces of their springs |
 | `coupled` | the same on the compliance of the teeth by finite elements |
 | `loaded_contact` | load of every cell, stiffness, transmission error, pressure |
-| `harris` | transmission error over phase and torque |
 | `film` | oil film of every cell, in series with the teeth |
 | `friction` | film and friction of every cell, and what they sum up to |
-| `table` | the same as a mesh table for the dynamics |
+| `table` | the same as a mesh table for the dynamics; transmission error over torque |
 """

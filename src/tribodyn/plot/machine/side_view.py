@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from tribodyn.drawing import Sketch, drawing
-from tribodyn.machine.graph.mesh_checks import gear_hand
+from tribodyn.machine.graph.part_checks import gear_hand
 from tribodyn.plot.theme.colors import FILLS, INK, MUTED, PAIR_COLORS, PINION, WHEEL
 from tribodyn.plot.theme.labels import rounded
 from tribodyn.plot.theme.style import Trace, axis, note, plane_figure, strokes

@@ -13,8 +13,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from tribodyn.drawing import drawing
-from tribodyn.mesh.face_lines import middle_delay, pair_column
-from tribodyn.mesh.loaded_intervals import loaded_ages, sharing_parts, teeth_shares
+from tribodyn.mesh import face_lines
 from tribodyn.plot.theme.labels import display_unit, displayed
 from tribodyn.plot.theme.path import mesh_marks, number_word, pair_ages, roll_angle_of
 from tribodyn.types import Array
@@ -44,8 +43,8 @@ def cycles(phase: Array, values: Array, repeats: int = CYCLES) -> Curve:
 
 def pair_life(mesh: MeshTable, column: str, *, in_middle: bool = False) -> Curve:
     """Age and values of a column for a tooth pair from entry to exit, or that in mid face."""
-    values, in_contact = pair_column(mesh, column, in_middle=in_middle)
-    ages = mesh.phase[:, None] + np.arange(values.shape[1]) - middle_delay(mesh)
+    values, in_contact = face_lines.pair_column(mesh, column, in_middle=in_middle)
+    ages = mesh.phase[:, None] + np.arange(values.shape[1]) - face_lines.middle_delay(mesh)
     touching = in_contact.T
     return ages.T[touching], values.T[touching]
 
@@ -111,8 +110,9 @@ _BRIEF = 1e-6
 
 def sharing_under_load(mesh: MeshTable, *, ends: bool = False) -> str:
     """Sentences on the number of pairs that share the load, and on their limits if ``ends``."""
-    ages = loaded_ages(mesh, teeth_shares(mesh))
-    parts = {number: part for number, part in sharing_parts(ages).items() if part > _BRIEF}
+    ages = face_lines.loaded_ages(mesh, face_lines.teeth_shares(mesh))
+    shares = face_lines.sharing_parts(ages)
+    parts = {number: part for number, part in shares.items() if part > _BRIEF}
     phrases = [
         f"{number_word(number)} pair{'s carry' if number > 1 else ' carries'} "
         + (f"during {100.0 * part:.3g} % of the mesh cycle" if len(parts) > 1 else "all the time")
@@ -126,7 +126,7 @@ def _carrying_ends(mesh: MeshTable) -> str:
     """Sentence on where a pair begins and ceases to carry load, relative to A and E."""
     if mesh.gears is None:
         return ""
-    ages = loaded_ages(mesh, teeth_shares(mesh))
+    ages = face_lines.loaded_ages(mesh, face_lines.teeth_shares(mesh))
     first, last = ages[0][0], ages[-1][1]
     if mesh.face_position is not None:
         return (

@@ -1,10 +1,18 @@
-"""Face load factors K_Hbeta and K_Fbeta: ISO 6336-1, method C.
+"""Load factors over the face and over the pairs in contact: ISO 6336-1.
 
+K_Hbeta and K_Fbeta by method C:
 ``f_sh = F_m/b 0.023 (|B* + K' l s/d_1^2 (d_1/d_sh)^4 - 0.3| + 0.3) (b/d_1)^2`` in um, N/mm and mm;
 ``f_ma = sqrt(f_Hb1^2 + f_Hb2^2)``; ``F_bx = 1.33 B_1 f_sh + B_2 f_ma``, at least 0.005 F_m/b and
 half of f_Hb; ``F_by = F_bx - y_beta``; with ``k = F_by c_gamma,beta/(2 F_m/b)``
 ``K_Hbeta = 1 + k`` below k = 1, else ``2 sqrt(k)``;
 ``K_Fbeta = K_Hbeta^N_F``, ``N_F = 1/(1 + h/b + (h/b)^2)`` with b/h of at least 3.
+
+K_Halpha and K_Falpha by method B:
+with ``t = c_gamma,alpha (f_pb - y_alpha)/(F_tH/b)``, ``F_tH = F_t K_A K_gamma K_v K_Hbeta``:
+``eps_gamma/2 (0.9 + 0.4 t)`` up to eps_gamma = 2, else
+``0.9 + 0.4 sqrt(2 (eps_gamma - 1)/eps_gamma) t``; at least 1, at most
+``eps_gamma/(eps_alpha Z_eps^2)`` for K_Halpha and ``eps_gamma/(0.25 eps_alpha + 0.75)`` for
+K_Falpha.
 """
 
 from __future__ import annotations
@@ -13,8 +21,7 @@ import math
 
 from tribodyn.errors import require_between
 from tribodyn.rating.conditions import LEADS
-from tribodyn.rating.influence.running_in import mean_lead_allowance
-from tribodyn.rating.mesh_load import PART_1, MeshLoad, nominal_root_radius
+from tribodyn.rating.mesh_load import PART_1, MeshLoad, mean_lead_allowance, nominal_root_radius
 from tribodyn.rating.rated_gear import SHAFT_FACTORS
 from tribodyn.rating.tolerances import gear_tolerances
 
@@ -126,3 +133,33 @@ def record_face_load_factors(mesh: MeshLoad) -> float:
     record("N_F", exponent, f"{PART_1}, exponent of K_Fbeta", branch=branch)
     record("K_Fbeta", value**exponent, f"{PART_1}, K_Hbeta^N_F")
     return value
+
+
+def contact_ratio_factor(transverse: float, overlap: float) -> float:
+    """Z_eps of ISO 6336-2: ``sqrt((4 - eps_alpha)/3 (1 - eps_beta) + eps_beta/eps_alpha)``."""
+    limited = min(overlap, 1.0)
+    return math.sqrt((4.0 - transverse) / 3.0 * (1.0 - limited) + limited / transverse)
+
+
+def record_transverse_load_factors(mesh: MeshLoad) -> None:
+    """K_Halpha and K_Falpha of a mesh."""
+    factors, pair = mesh.factors, mesh.pair
+    transverse, total = pair.transverse_contact_ratio, pair.total_contact_ratio
+    load = mesh.line_load * factors["K_v"] * factors["K_Hbeta"]
+    t = factors["c_gamma_alpha"] * (factors["f_pb"] - factors["y_alpha"]) / load
+    if total <= 2.0:
+        value, branch = 0.5 * total * (0.9 + 0.4 * t), "eps_gamma <= 2"
+    else:
+        value = 0.9 + 0.4 * math.sqrt(2.0 * (total - 1.0) / total) * t
+        branch = "eps_gamma > 2"
+    z_eps = contact_ratio_factor(transverse, pair.overlap_ratio)
+    highest = {
+        "K_Halpha": total / (transverse * z_eps**2),
+        "K_Falpha": total / (0.25 * transverse + 0.75),
+    }
+    for name, most in highest.items():
+        limited = max(1.0, min(value, most))
+        rule = branch
+        if limited != value:
+            rule += f"; {value:.6g} limited to {limited:.6g}"
+        factors.record(name, limited, f"{PART_1}, method B", branch=rule)

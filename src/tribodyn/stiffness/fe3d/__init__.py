@@ -5,9 +5,8 @@
 | `provider` | influence of one gear over radius and face, looked up on disk or computed |
 | `sector` | section of one tooth with the top of the body, reduced to its flank and borders |
 | `ring` | all teeth, harmonic by harmonic around the axis |
-| `sections` | elements of a solid whose section turns along the face, elimination of freedoms |
+| `sections` | elements of a solid that turns along the face, splines over it, freedoms removed |
 | `root_spread` | root stress along the face under a load at one place |
-| `face` | functions over the face width |
 | `bevel` | influence over the flank of a hypoid or spiral bevel gear |
 | `bevel_sector` | section of one of its teeth in hexahedra |
 | `bevel_tooth` | flanks, fillets and cones of that tooth |

@@ -155,7 +155,7 @@ def unit_face_compliances(
 
 #: Folders, relative to this one, and modules on which the numbers depend.
 _SOURCES = (
-    (".", "face provider ring sections sector"),
+    (".", "provider ring sections sector"),
     ("../fe2d", "flank_load ring tooth_mesh"),
     ("../teeth", "tooth_bending tooth_compliance"),
     ("../../gear", "curves tooth_form"),

@@ -22,9 +22,14 @@ from tribodyn.stiffness.fe2d.provider import load_arrays, store_arrays
 from tribodyn.stiffness.fe2d.ring import quadratic_shapes
 from tribodyn.stiffness.fe2d.root_stress import fillet_nodes
 from tribodyn.stiffness.fe2d.tooth_mesh import MeshSize, ToothSide
-from tribodyn.stiffness.fe3d.face import FaceBasis, FaceSize
 from tribodyn.stiffness.fe3d.provider import file_name, gear_sector
-from tribodyn.stiffness.fe3d.sections import SectionMatrices, condensed, element_matrices
+from tribodyn.stiffness.fe3d.sections import (
+    FaceBasis,
+    FaceSize,
+    SectionMatrices,
+    condensed,
+    element_matrices,
+)
 from tribodyn.stiffness.fe3d.sector import Sector, SolidSize, node_freedoms, turned_stiffness
 from tribodyn.types import Array, Index
 

@@ -9,14 +9,16 @@ import numpy as np
 
 from tribodyn.gear import SpurGear
 from tribodyn.stiffness.fe2d.tooth_mesh import MeshSize, SectorMesh, tooth_mesh
-from tribodyn.stiffness.fe3d.face import FaceBasis, FaceSize, face_basis
 from tribodyn.stiffness.fe3d.sections import (
+    FaceBasis,
+    FaceSize,
     SectionMatrices,
     annulus_matrices,
     condensed,
     elasticity,
     element_matrices,
     eliminated,
+    face_basis,
 )
 from tribodyn.types import Array, Index
 

@@ -450,15 +450,8 @@ class ContactProblem:
     def _call(self, kernel: Any, solves: int, *arguments: Array) -> None:
         """Call a kernel that solves every slice of every phase so many times."""
         parts, gaps = self.compliance, np.minimum(self.gaps, FAR)
-        status = stoppable(
-            kernel,
-            parts.structure,
-            parts.local,
-            parts.logarithm,
-            gaps,
-            *arguments,
-            brief=solves * gaps.size <= _BRIEF,
-        )
+        teeth = parts.structure, parts.local, parts.logarithm
+        status = stoppable(kernel, *teeth, gaps, *arguments, brief=solves * gaps.size <= _BRIEF)
         if status:
             what, remedy = _STATUS[status]
             raise ComputationError(what, "loaded tooth contact", "", remedy)

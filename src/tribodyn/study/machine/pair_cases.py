@@ -10,7 +10,7 @@ import numpy as np
 
 from tribodyn.errors import Argument, InputError, Problem
 from tribodyn.gear import Misalignment
-from tribodyn.machine.graph.mesh_checks import gear_hand
+from tribodyn.machine.graph.part_checks import gear_hand
 from tribodyn.study.case import gears
 from tribodyn.study.case.case import Case
 from tribodyn.study.case.hypoid import blank_of

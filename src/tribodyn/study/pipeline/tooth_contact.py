@@ -109,7 +109,7 @@ def _rehearsed(settings: ToothContact) -> ToothContact:
 def teeth_contact_ratio(inputs: MeshInputs) -> float | None:
     """Contact ratio under load on the grid points of a run; None if only a mesh table has it."""
     from tribodyn.mesh.build import teeth_under_load
-    from tribodyn.mesh.loaded_intervals import contact_ratio
+    from tribodyn.mesh.face_lines import contact_ratio
 
     pair = inputs.cylindrical
     if pair is None or not pair.has_profile_modification:

@@ -155,7 +155,7 @@ def harris_map(
 
 
 def _hypoid_map(case: Case, torques: list[float], phases: int | None) -> HarrisMap:
-    from tribodyn.mesh.hypoid.harris import hypoid_transmission_error_over_torque
+    from tribodyn.mesh.hypoid.table import hypoid_transmission_error_over_torque
 
     if phases is not None:
         require_between("phases", require_whole("phases", phases), *_PHASES)
