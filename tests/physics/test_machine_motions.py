@@ -13,9 +13,11 @@ from known_systems import everything_varies, hysteresis_system
 from tribodyn.analysis import basins, bifurcation, lyapunov_exponents
 from tribodyn.dynamics import Contact, LoadFriction, System, continuation, harmonic_balance
 from tribodyn.dynamics.equations.compiled import compile_for
+from tribodyn.dynamics.equations.orbit_coordinates import static_start
 from tribodyn.dynamics.modal.modal_march import compile_modal, is_modal
 from tribodyn.dynamics.orbits.orbit_map import OrbitMap
 from tribodyn.errors import ComputationError
+from tribodyn.nonlinear.attractors import Motions, settle
 
 TURN = 2.0 * np.pi
 
@@ -140,6 +142,26 @@ def test_branch_loses_stability_at_the_edges_of_the_mathieu_tongue() -> None:
     assert TURN * doubling.parameter == pytest.approx(exact, rel=1e-5)
     balanced = harmonic_balance(beside_others(alone), 1.8 / TURN, steps=256)
     assert branch.rms[0, 0] == pytest.approx(np.std(balanced.deflection[:, 0]), rel=1e-4)
+
+
+def test_a_motion_that_settles_within_a_period_is_looked_at_after_each(monkeypatch) -> None:
+    contact = Contact([1.0], lambda p: 9.0 + np.cos(TURN * p), damping=0.5, gap=0.1)
+    alone = System([[1.0]], [[0.5]], [[0.0]], [1.0], [contact])
+    large, counts = beside_others(alone), []
+    compiled = compile_modal(large, 0.02, 512)
+    motions = Motions(compiled, np.array([0.02]), static_start(compiled)[None] + 0.05)
+    march = Motions.march
+
+    def counted(self, index, state, cycles, force, **options):
+        counts.append(cycles)
+        return march(self, index, state, cycles, force, **options)
+
+    monkeypatch.setattr(Motions, "march", counted)
+    settle(motions, [0], 160, width=1)
+    assert motions.period.tolist() == [1]
+    assert sum(counts) < 8
+    exact = motions.march(np.array([0]), motions.start, 40, motions.force)
+    assert motions.state == pytest.approx(exact, abs=1e-7 * np.abs(exact).max())
 
 
 def test_both_basins_behind_a_backlash_are_found() -> None:

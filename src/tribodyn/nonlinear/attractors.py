@@ -2,7 +2,8 @@
 
 A motion has settled when its states after ``p`` = 1 to 8 mesh cycles come back, and when the rate
 at which they do so bounds the distance to the motion that repeats exactly: the change ``d`` over
-``p`` cycles, shrinking by ``r`` every ``p`` cycles, leaves at most ``d / (1 - r)``.
+``p`` cycles, shrinking by ``r`` every ``p`` cycles, leaves at most ``d / (1 - r)``. Machines are
+looked at after each period of their clock too: its many mesh cycles may leave nothing of the start.
 """
 
 from __future__ import annotations
@@ -30,6 +31,8 @@ from tribodyn.types import Array, Index, Mask
 LONGEST_PERIOD = 8
 #: Mesh cycles between two looks at the lanes.
 _PART = 2 * LONGEST_PERIOD
+#: Rate in every cycle at which a motion settles so fast that its last four states tell.
+_FAST = 0.3
 #: Lanes of the kernel.
 _LANES = 16
 #: Lanes that a graphics processor marches at a time: enough to fill it.
@@ -158,7 +161,9 @@ class _Block:
 
     def __init__(self, motions: Motions, transient: int, tolerance: float, width: int) -> None:
         self.motions, self.tolerance, self.width = motions, tolerance, width
-        self.parts = -(-transient // _PART)
+        self.by_cycle = motions.compiled.engine is not None
+        self.cycles = LONGEST_PERIOD if self.by_cycle else _PART
+        self.parts = -(-transient // self.cycles)
         self.steps = motions.compiled.grid.steps
         self.scale = float(np.abs(motions.compiled.nodes.force).max(initial=0.0)) or 1.0
         size = motions.start.shape[1]
@@ -172,8 +177,7 @@ class _Block:
         points = LONGEST_PERIOD * self.steps + 1
         self.record = None
         self.lanes = width if on_gpu() else min(width, _LANES)
-        by_cycle = motions.compiled.engine is not None
-        if points * size * self.lanes <= _MOST_RECORDED and not by_cycle:
+        if points * size * self.lanes <= _MOST_RECORDED and not self.by_cycle:
             self.record = np.empty((points, size, self.lanes))
 
     def run(self) -> None:
@@ -217,22 +221,28 @@ class _Block:
         """March one part, look at every lane, and put others in place of those that are done."""
         m = self.motions
         index = np.where(self.job >= 0, self.job, self.job.max())
+        parts: list[Array] = []
         try:
-            middle = self._first_cycles(index, slice(None))
-            last, states = self._last_cycles(index, m.at_rest(middle))
+            if not self.by_cycle:
+                parts.append(self._first_cycles(index, slice(None)))
+            last, states = self._last_cycles(index, m.at_rest(parts[0] if parts else self.state))
         except ComputationError:
             self._drop_lost(index)
             return
         self.state = m.at_rest(last)
-        shift = np.zeros(self.width)
+        shift, parts = np.zeros(self.width), [*parts, last]
         if m.balance is not None:
-            gained = m.balance.gain(middle) + m.balance.gain(last)
-            more = m.balance.torque(gained, _PART / m.frequency[index])
+            gained = np.sum([m.balance.gain(part) for part in parts], axis=0)
+            cycles = self.cycles - LONGEST_PERIOD + len(states) - 1
+            more = m.balance.torque(gained, cycles / m.frequency[index])
             self.force -= more
             shift = np.abs(more).max(axis=1)
         self.part += 1
-        reduced = m.reduce(states, index)
-        self._find_periods(reduced, shift <= self.tolerance * self.scale)
+        reduced, balanced = m.reduce(states, index), shift <= self.tolerance * self.scale
+        if len(states) > LONGEST_PERIOD:
+            self._find_periods(reduced, balanced)
+        else:
+            self._end_early(reduced, bool(balanced[0]))
 
     def _first_cycles(self, index: Index, lanes: slice, width: int | None = None) -> Array:
         """March some lanes over the mesh cycles of a part before its last 8."""
@@ -256,7 +266,31 @@ class _Block:
         states = [state]
         for _ in range(LONGEST_PERIOD):
             states.append(m.march(index, states[-1], 1, self.force, **options))
+            if self.by_cycle and self._contraction(m.reduce(np.array(states[-4:]), index)) < _FAST:
+                break
         return states[-1], np.array(states)
+
+    def _contraction(self, states: Array) -> float:
+        """Rate in every cycle of a motion that is certified by four states; 1 if it is not."""
+        if len(states) < 4:
+            return 1.0
+        change = lengths(np.diff(states, axis=0))[:, 0]
+        rate = float(np.max(change[1:] / np.maximum(change[:-1], 1e-300)))
+        size = max(float(lengths(states[-1])[0]), float(self.least[0]))
+        near = rate < _FAST and change[-1] <= (1.0 - rate) * self.tolerance * size
+        return rate if near else 1.0
+
+    def _end_early(self, states: Array, balanced: bool) -> None:
+        """End the only motion, which repeats after each cycle, unless the torque still changes."""
+        m, job = self.motions, int(self.job[0])
+        self.before[:], self.earlier[:] = np.inf, np.nan
+        if balanced or self.part[0] >= self.parts:
+            m.rate[job] = self._contraction(states[-4:])
+            size = max(float(lengths(states[-1])[0]), float(self.least[0]))
+            change = float(lengths(states[-1] - states[-2])[0]) / size
+            recent = np.repeat(states[-1:, 0], LONGEST_PERIOD, axis=0)
+            facts = (int(balanced), change, self.force[0], recent)
+            self._begin(0, m.store(job, self.state[0], facts))
 
     def _find_periods(self, states: Array, balanced: Mask) -> None:
         """Find the lanes that repeat; ``states`` are (9, lanes, k), the last is the current one."""
@@ -264,7 +298,7 @@ class _Block:
         change = lengths(states[-1] - states[-2::-1]) / size
         with np.errstate(invalid="ignore", divide="ignore", over="ignore"):
             rate = np.where(change < self.before, change / self.before, 1.0)
-            rate **= np.arange(1, LONGEST_PERIOD + 1)[:, None] / _PART
+            rate **= np.arange(1, LONGEST_PERIOD + 1)[:, None] / self.cycles
             certified = change / (1.0 - rate) <= self.tolerance
         repeats = ((certified & np.isfinite(self.before)) | (change <= _ROUNDING)) & balanced
         period = np.where(repeats.any(axis=0), repeats.argmax(axis=0) + 1, 0)
@@ -273,7 +307,9 @@ class _Block:
         for lane in np.flatnonzero(period > 1):
             shorter = [p for p in range(1, period[lane]) if period[lane] % p == 0]
             period[lane] = next((p for p in shorter if change[p - 1, lane] <= _SAME), period[lane])
-            if still_settles(states[:, lane], self.earlier[:, lane], int(period[lane])):
+            if still_settles(
+                states[:, lane], self.earlier[:, lane], int(period[lane]), self.cycles
+            ):
                 period[lane] = 0
         self.earlier = states
         m = self.motions
@@ -331,9 +367,9 @@ def settle(
     in_threads(_Block.run, blocks, count)
 
 
-def still_settles(states: Array, earlier: Array, period: int) -> bool:
-    """Whether a motion still comes nearer after fewer cycles than its period."""
-    back = period * -(-_PART // period) - _PART
+def still_settles(states: Array, earlier: Array, period: int, part: int = _PART) -> bool:
+    """Whether a motion still comes nearer after fewer cycles than its period, from part to part."""
+    back = period * -(-part // period) - part
     for fewer in range(1, period):
         if period % fewer == 0:
             new = states[-1] - states[-1 - fewer]

@@ -161,7 +161,7 @@ def bifurcation(
     )
     first = None if start is None else read_start(values.systems[0], start)
     branches = _BRANCHES[sweep]
-    _announce(values, (transient + cycles) * len(branches) * (3 if verdict else 1))
+    _announce(values, transient, (transient + cycles) * len(branches) * (3 if verdict else 1))
     progress.start("Motions", values.count * len(branches) * (1 + bool(verdict)))
     rows = _rows(values, branches, first, survey, progress)
     finer = values.refined(_refined_steps(values))
@@ -271,7 +271,7 @@ def _read_survey(survey: Survey) -> Survey:
     return survey
 
 
-def _announce(values: Points, cycles: int) -> None:
+def _announce(values: Points, transient: int, cycles: int) -> None:
     """Announce the duration of a long computation, estimated from one period."""
     system, frequency = values.systems[0], float(values.mesh_frequency[0])
     compiled = values.compiled(values.groups[0])
@@ -295,8 +295,9 @@ def _announce(values: Points, cycles: int) -> None:
         if minutes > _LONG:
             announce(
                 f"following {values.count} motions with {compiled.grid.steps} steps in each "
-                f"period, {minutes:.2g} min at most; fewer values or steps, a shorter transient or "
-                "constant stiffness of the teeth take less"
+                f"period, up to {transient} periods until each repeats, {minutes:.2g} min at most; "
+                "fewer values or steps, a shorter transient or constant stiffness of the teeth "
+                "take less"
             )
 
 

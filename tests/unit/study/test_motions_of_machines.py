@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -9,11 +10,12 @@ import pytest
 from test_machine_case import SMALL
 
 import tribodyn as td
+from tribodyn.dynamics.modal.modal_march import compile_modal
 from tribodyn.dynamics.orbits.system_family import family_of
 from tribodyn.errors import InputError
 from tribodyn.nonlinear import bifurcation
 from tribodyn.study import read_case
-from tribodyn.study.studies.case_grid import moving, moving_at
+from tribodyn.study.studies.case_grid import moving, moving_at, settling_periods
 from tribodyn.study.studies.needs import STUDIES, needs_table, takes
 
 pytestmark = pytest.mark.filterwarnings("ignore::tribodyn.errors.ModelWarning")
@@ -121,6 +123,16 @@ def test_a_diagram_of_a_machine_is_as_long_as_that_of_a_pair(small: Any) -> None
     assert longer.rms == pytest.approx(diagram.rms, rel=1e-9, abs=1e-12)
 
 
+def test_a_motion_settles_as_long_as_its_slowest_mode_decays(small: Any) -> None:
+    member = moving(small, "second")
+    member = member._replace(frequency=100.0 * member.frequency)
+    slowest = -float(compile_modal(*member[:3]).engine.motion.modes.values.real.max())
+    assert settling_periods(member) == int(np.ceil(np.log(1e9) * member.frequency / slowest)) > 10
+    contacts = [replace(each, damping=0.0) for each in member.system.contacts]
+    undamped = replace(member.system, damping=0.0 * member.system.damping, contacts=contacts)
+    assert settling_periods(member._replace(system=undamped)) == 500
+
+
 def test_the_time_of_a_long_diagram_is_said_before_it_is_computed(
     small: Any, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -133,4 +145,6 @@ def test_the_time_of_a_long_diagram_is_said_before_it_is_computed(
     steps = 128 * max(small.machine().clock.cycles.values())
     assert len(told) == 1
     assert f"2 motions with {steps} steps in each period" in told[0]
+    longest = settling_periods(moving(small.replace({"operation.speed": "1234 rpm"}), "second"))
+    assert f"up to {max(32, longest)} periods until each repeats" in told[0]
     assert "fewer values" in told[0]

@@ -45,7 +45,7 @@ def bifurcation(
         clock, by default as many as have 64 cycles of its fastest mesh, at least 16.
     transient : int
         Mesh cycles before, fewer where the motion repeats; 300 by default, of a machine likewise,
-        at least 32 periods.
+        at least 32 periods, and as many as the slowest mode takes to decay to 1e-9, 500 at most.
     steps : int
         Steps per mesh cycle.
     """

@@ -19,6 +19,7 @@ from tribodyn.study.studies.case_grid import (
     contact_without_speed,
     many_motions,
     moving_members,
+    settling_periods,
     study_steps,
     varied,
 )
@@ -83,7 +84,8 @@ def bifurcation(
     **options : object
         ``sweep``, ``cycles``, ``transient``, ``keep``, ``signal``, ``verdict``, ``exponents`` and
         ``keep_partial`` of :func:`tribodyn.analysis.bifurcation`. Of a machine cycles are periods
-        of its clock, by default as many as have the mesh cycles of a pair, at least 16 and 32.
+        of its clock, by default as many as have the mesh cycles of a pair, at least 16 and 32; the
+        transient lasts until its slowest mode has decayed to 1e-9, 500 periods at most.
 
     Returns
     -------
@@ -107,12 +109,12 @@ def bifurcation(
 
     name = mesh_in_motion("bifurcation", case, mesh)
     values = _values(case, over, between, points, by)
-    options = _lengths(case, options)
     named = {} if mesh is None else {"mesh": name}
     study = identity("bifurcation", case, [over, values.tolist()], steps=steps, **named, **options)
     checkpoints = (Checkpoints() if checkpoints is None else checkpoints).begin(study)
     with many_motions(case):
         members = _members(case, name, over, values, progress, checkpoints)
+        options = _lengths(case, members, options)
         counts = [steps or each.steps for each in members]
         if members[0].system is members[-1].system and max(counts) <= _MAX_STEP_RATIO * min(counts):
             counts = [max(counts)] * len(counts)
@@ -132,12 +134,17 @@ def bifurcation(
     return replace(diagram, signal=f"mesh {name}") if of_mesh else diagram
 
 
-def _lengths(case: Case | MachineCase, options: dict[str, Any]) -> dict[str, Any]:
+def _lengths(
+    case: Case | MachineCase, members: list[Moving], options: dict[str, Any]
+) -> dict[str, Any]:
     """Options with the lengths of motions of a machine, in periods of its clock."""
     if case.lumped:
         return options
     fastest = max(case.machine().clock.cycles.values())
     lengths = {name: max(-(-count // fastest), least) for name, (count, least) in _LENGTHS.items()}
+    if "transient" not in options:
+        fast = max(members, key=lambda member: member.frequency)
+        lengths["transient"] = max(lengths["transient"], settling_periods(fast))
     chosen = {**lengths, **options}
     return {"keep": min(_MOST_KEPT, chosen["cycles"]), **chosen}
 

@@ -7,6 +7,8 @@ from contextlib import contextmanager, suppress
 from functools import partial
 from typing import TYPE_CHECKING, NamedTuple
 
+import numpy as np
+
 from tribodyn.checkpoints import Checkpoints
 from tribodyn.errors import Argument, ComputationError, InputError, collected
 from tribodyn.interrupt import STOPPED, refuse_stopped, single_blas_thread, stop_flag
@@ -150,6 +152,22 @@ def moving(case: Case | MachineCase, mesh: str | None = None) -> Moving:
     names = list(counts)
     first = sum(counts[name] for name in names[: names.index(mesh)]) if mesh in names else 0
     return Moving(system, machine.clock.frequency, steps_of_machine(structure), first)
+
+
+#: What is left of a disturbance where a motion counts as settled; periods of the clock in which a
+#: structure has to settle.
+_LEFT, _LONGEST = 1e-9, 500
+
+
+def settling_periods(member: Moving) -> int:
+    """Periods of the clock in which the slowest mode of a machine decays, 500 at most."""
+    from tribodyn.dynamics.equations.compiled import sample_system
+    from tribodyn.dynamics.modal.contact_equations import close_contacts
+
+    sampled = sample_system(member.system, member.steps)
+    structure, _ = close_contacts(sampled, np.zeros((0, member.system.size)))
+    periods = -np.log(_LEFT) * member.frequency / max(structure.decay, 1e-300)
+    return int(np.ceil(min(periods, _LONGEST)))
 
 
 def moving_members(
