@@ -157,11 +157,12 @@ def _parts(desk: TabSession, case: MachineCase) -> list[Any]:
     """View, speeds, torques and assumptions of the current machine."""
     from tribodyn import plot
     from tribodyn.report.numbers import describe
-    from tribodyn.study.machine.first_look import kinematic_figures, warn_of_motion
+    from tribodyn.study.machine.first_look import kinematic_figures, warn_of_gears, warn_of_motion
 
     with collected() as warnings:
         machine = case.machine()
         warn_of_motion(case.solver, machine)
+        warn_of_gears(case)
         values = kinematic_figures(case)
     alone = case.lone_stage is not None
     figure, subject = (plot.planetary_stage, case) if alone else (plot.machine, machine)

@@ -177,6 +177,12 @@ class Mesh:
         """Geometry of crossed axes; None of parallel ones."""
         return None if self.crossed is None else CrossedGeometry(self.crossed, self.angle)
 
+    @property
+    def has_play(self) -> bool:
+        """Whether the flanks can part."""
+        gap = self.contacts[0].gap if self.contacts else self.gap
+        return varies(gap) or bool(np.any(np.asarray(gap) > 0.0))
+
     def ratio(self, gears: tuple[Gear, Gear]) -> Fraction:
         """Speed of the second over that of the first gear, about x of their shafts.
 

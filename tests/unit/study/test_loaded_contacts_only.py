@@ -12,9 +12,8 @@ import tribodyn as td
 from tribodyn.errors import ModelWarning, collected
 from tribodyn.mesh import MeshTable
 from tribodyn.plot import FIGURES
-from tribodyn.study.machine.run import MeshWarning, warn_of_meshes
 from tribodyn.study.mesh_inputs import mesh_inputs
-from tribodyn.study.pipeline.cautions import mesh_cautions
+from tribodyn.study.pipeline.cautions import MeshWarning, mesh_cautions, warn_of_meshes
 from tribodyn.study.pipeline.tooth_contact import hypoid_friction_of, mesh_of
 
 RELIEVED: dict[str, Any] = {

@@ -13,7 +13,7 @@ from tribodyn.errors import ModelWarning
 from tribodyn.exchange import write_tables
 from tribodyn.report import render_machine_report
 from tribodyn.study import read_case
-from tribodyn.study.machine.run import MeshWarning, warn_of_meshes
+from tribodyn.study.pipeline.cautions import MeshWarning, warn_of_meshes
 
 
 @pytest.fixture(scope="module")

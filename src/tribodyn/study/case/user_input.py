@@ -190,6 +190,10 @@ class Source:
         """What the file has for each key."""
         return self.notes()
 
+    def key(self, key: str) -> str:
+        """Key of the file for a key of the case."""
+        return key
+
     def line(self, key: str) -> int:
         """Return the line of a key, or of its first inner key or enclosing table; zero if none."""
         while key and key not in self.lines:

@@ -3,15 +3,22 @@
 from __future__ import annotations
 
 import math
+import re
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from tribodyn.arrays.memory import machine_memory
-from tribodyn.errors import ComputationError, InputError, Problem, warn
+from tribodyn.errors import ComputationError, InputError, ModelWarning, Problem, warn
 from tribodyn.machine import machine_structure
 from tribodyn.study.machine.motion import phase_names
-from tribodyn.study.machine.pair_cases import inputs_under
+from tribodyn.study.machine.pair_cases import inputs_under, read_teeth, teeth_under
 from tribodyn.study.machine.summary import geometry_figures
+from tribodyn.study.pipeline.cautions import (
+    MeshWarning,
+    case_cautions,
+    teeth_cautions,
+    warn_of_meshes,
+)
 from tribodyn.study.planetary.machine_stages import motion_of_stage
 
 if TYPE_CHECKING:
@@ -119,6 +126,21 @@ def warn_of_motion(solver: SolverTable, machine: Machine) -> PhaseCost | None:
         return phase_cost_of(solver, machine)
     warn_of_period(machine, solver.memory)
     return None
+
+
+def warn_of_gears(case: MachineCase) -> None:
+    """Warn of gears whose teeth are computed, as those of a pair are warned of, by their names."""
+    firsts = {case.tooth_group(name): name for name in reversed(case.meshes_with_teeth)}
+    listed: dict[str, MeshWarning] = {}
+    for name in reversed(firsts.values()):
+        under = teeth_under(case, name, case.operating_point)
+        pair, _ = read_teeth(case, name, under)
+        names = dict(zip(("pinion", "wheel"), under.names, strict=True))
+        for each in (*case_cautions(pair, case), *teeth_cautions(pair)):
+            words = re.split(r"(?<![\w.])(pinion|wheel)\b", each.message)
+            text = "".join(names.get(word, word) for word in words)
+            listed.setdefault(text, MeshWarning(name, "", ModelWarning(each.code, text)))
+    warn_of_meshes(listed.values())
 
 
 def periods_of_turns(machine: Machine) -> int:

@@ -412,14 +412,14 @@ def machine_motion(
 ) -> MachineMotion:
     """Forces, errors and accelerations of the parts of a machine along its motion."""
     machine, fine = structure.machine, response.fine
-    samples = fine.phase.size
     force, compression, error, separated = {}, {}, {}, {}
-    first = 0
+    samples, first = fine.phase.size, 0
     for name, mesh in machine.meshes.items():
         count = max(len(mesh.contacts), 1)
         force[name] = fine.contact_force[:, first : first + count].sum(axis=1)
         compression[name] = fine.deflection[:, first]
-        separated[name] = (force[name] == 0.0).astype(float)
+        apart = mesh.has_play & ((force[name] == 0.0) | (compression[name] < 0.0))
+        separated[name] = apart.astype(float)
         error[name] = fine.position @ mesh_rotation(structure, name)
         first += count
     bearings = {

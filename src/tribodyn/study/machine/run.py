@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import json
-import re
 import sys
 import warnings
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, NamedTuple
+
+import numpy as np
 
 from tribodyn.dynamics import law_contact
 from tribodyn.dynamics.structure.force_law import with_load_friction
@@ -19,7 +20,6 @@ from tribodyn.errors import (
     ModelWarning,
     collected,
     frames,
-    warn,
 )
 from tribodyn.gear import Misalignment
 from tribodyn.interrupt import in_threads, processors, single_blas_thread
@@ -35,9 +35,9 @@ from tribodyn.progress import SILENT, Progress
 from tribodyn.study.coupling import load_of_torque, mesh_under_load
 from tribodyn.study.heat_balance import HeatBalance, Temperatures
 from tribodyn.study.machine.case import MachineCase
-from tribodyn.study.machine.first_look import over_phases, warn_of_motion
+from tribodyn.study.machine.first_look import over_phases, warn_of_gears, warn_of_motion
 from tribodyn.study.machine.load_cases import LoadCase
-from tribodyn.study.machine.motion import machine_motion, motion_from
+from tribodyn.study.machine.motion import MachineMotion, machine_motion, motion_from
 from tribodyn.study.machine.pair_cases import inputs_under, read_teeth, teeth_under
 from tribodyn.study.machine.result import (
     LoadResult,
@@ -48,10 +48,23 @@ from tribodyn.study.machine.result import (
 from tribodyn.study.mesh_inputs import MeshInputs, named_mesh
 from tribodyn.study.part_losses import part_losses
 from tribodyn.study.pipeline.assembly import mesh_contacts, mesh_damping
-from tribodyn.study.pipeline.cautions import mesh_cautions
+from tribodyn.study.pipeline.cautions import (
+    MeshWarning,
+    contact_cautions,
+    friction_cautions,
+    friction_suspected,
+    load_cautions,
+    mesh_cautions,
+    tension_cautions,
+    warn_of_meshes,
+)
 from tribodyn.study.pipeline.store import Stored, StoredLoad, figures_of_load
 from tribodyn.study.pipeline.stored_motion import read_passes
-from tribodyn.study.pipeline.tooth_contact import load_friction_of, mesh_table
+from tribodyn.study.pipeline.tooth_contact import (
+    load_friction_of,
+    mesh_table,
+    teeth_contact_ratio,
+)
 from tribodyn.study.settle import settle
 
 if TYPE_CHECKING:
@@ -67,14 +80,6 @@ _PASSES, _SAME = 4, 0.1
 _HEATED_PASSES, _SETTLED = 40, 1e-9
 #: Difference of misalignments of equal teeth that is rounding [m].
 _EQUAL = 1e-8
-
-
-class MeshWarning(NamedTuple):
-    """Warning about the teeth of a mesh under a load."""
-
-    mesh: str
-    load: str
-    warning: ModelWarning
 
 
 class Balanced(NamedTuple):
@@ -100,6 +105,7 @@ def run_machine(
     # The matrices of a machine are small: threads of the linear algebra only wait for each other.
     with collected() as caught, single_blas_thread():
         warn_of_motion(case.solver, case.machine())
+        warn_of_gears(case)
         of_meshes: list[MeshWarning] = []
         results: list[LoadResult] = []
         for load in (case.operating_point, *case.load_cases):
@@ -129,9 +135,11 @@ def run_load(
     progress.start(f"Motion: {load.name}")
     structure = structure_of(case, state.static.linearized())
     system = system_of(structure, phases=over_phases(case.solver, structure.machine))
-    response = steady_motion(structure, system, start)
+    with friction_suspected(state.tables.values()):
+        response = steady_motion(structure, system, start)
     progress.finish()
     motion = machine_motion(structure, response)
+    of_meshes += _of_motion(case, load, structure.machine, motion)
     losses = part_losses(case, state.load, state.static)
     return LoadResult(
         *(state.load, structure, state.static, state.tables, state.misalignment),
@@ -140,13 +148,31 @@ def run_load(
 
 
 def rehearse_machine(case: MachineCase) -> Balanced:
-    """Raise the input errors of teeth and balance without computing films and motion."""
+    """Raise the input errors of teeth and balance without films and motion; warn of the load."""
     with collected(), single_blas_thread():
-        state, *_ = (
+        states = [
             balanced_machine(case, load, rehearsal=True)
             for load in (case.operating_point, *case.load_cases)
-        )
-    return state
+        ]
+    warn_of_gears(case)
+    warn_of_meshes(each for state in states for each in state.warnings)
+    return states[0]
+
+
+def _of_motion(
+    case: MachineCase, load: LoadCase, machine: Machine, motion: MachineMotion
+) -> Iterator[MeshWarning]:
+    """Warnings about the meshes in a motion, those of a pair."""
+    for column, (name, mesh) in enumerate(machine.meshes.items()):
+        force, opened = motion.mesh_force[:, column], motion.open[:, column]
+        back = bool(np.any((opened > 0.0) & (force != 0.0)))
+        cautions = [*contact_cautions(float(motion.mean(opened)), touches_back=back)]
+        cautions += friction_cautions(next(iter(mesh.frictions), None), force)
+        if not mesh.has_play:
+            computed = name in case.meshes_with_teeth
+            law = inputs_under(case, name, load).law if computed else "stiffness"
+            cautions += tension_cautions(force, linear=law != "force-law")
+        yield from (MeshWarning(name, load.name, each) for each in cautions)
 
 
 def balanced_machine(
@@ -163,8 +189,14 @@ def balanced_machine(
         raise ComputationError(case._located(error)) from None
     point, tables = settled.point, dict(settled.tables)
     warm = load if settled.temperatures is None else warmed(load, settled.temperatures)
-    cautions = [] if rehearsal else [(n, each) for n in tables for each in mesh_cautions(tables[n])]
-    of_meshes = [*point.warnings, *(MeshWarning(n, load.name, each) for n, each in cautions)]
+    if rehearsal:  # the few phases of its teeth have their load alone
+        inputs = point.inputs
+        ratios = {n: teeth_contact_ratio(inputs[n]) for n in tables}
+        cautions = {n: load_cautions(table, ratios[n]) for n, table in tables.items()}
+    else:
+        cautions = {n: mesh_cautions(table) for n, table in tables.items()}
+    of_meshes = [MeshWarning(n, load.name, each) for n in tables for each in cautions[n]]
+    of_meshes = of_meshes if rehearsal else [*point.warnings, *of_meshes]
     parts = point.balance(tables), tables, point.misalignment, of_meshes
     return Balanced(warm, *parts, settled.heat)
 
@@ -404,32 +436,6 @@ def _balance(
     inputs = {name: inputs_under(case, name, load, misalignment[name]) for name in tables}
     laws = {name: _law(inputs[name], table) for name, table in tables.items()}
     return _static(case, load, laws, misalignment)
-
-
-def warn_of_meshes(mesh_warnings: Iterable[MeshWarning]) -> None:
-    """Warn of the teeth, each reason once, greatest part of the load first, with all its meshes."""
-    groups: dict[tuple[str, str], list[MeshWarning]] = {}
-    for each in mesh_warnings:
-        message = each.warning.message
-        model = re.sub(r"[-+]?\d[\d.e+-]*", "#", message)
-        if _part(each):
-            model = message.partition(":")[0]
-        groups.setdefault((each.warning.code, model), []).append(each)
-    for (code, _), group in groups.items():
-        first, *others = sorted(group, key=_part, reverse=True)
-        places = [
-            f"mesh {each.mesh}, {each.load}" + (f" ({_part(each):.0%})" if _part(each) else "")
-            for each in others
-        ]
-        text = f"mesh {first.mesh}, {first.load}: {first.warning.message}"
-        same = f". The same in {'; '.join(dict.fromkeys(places))}." if places else ""
-        warn(code, text.removesuffix(".") + same if same else text)
-
-
-def _part(mesh_warning: MeshWarning) -> float:
-    """Part of the load that a warning concerns; zero where it does not say."""
-    part = mesh_warning.warning.affected
-    return part if isinstance(part, float) else 0.0
 
 
 def _static(

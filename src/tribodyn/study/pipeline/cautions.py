@@ -2,16 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+import re
+from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
 from dataclasses import replace
 from functools import lru_cache
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple, Protocol
 
 import numpy as np
 
 from tribodyn.ehl import film_load_share
-from tribodyn.errors import ComputationError, ModelWarning, Problem, collected
+from tribodyn.errors import ComputationError, ModelWarning, Problem, collected, warn
 from tribodyn.study.case.hypoid import hypoid_warnings
 from tribodyn.study.case.provenance import body, changed_keys, effective
 from tribodyn.study.case.to_models import gear_warnings
@@ -20,14 +21,15 @@ from tribodyn.study.pipeline.response_series import (
     first_touch,
     is_steady,
     measured,
-    mesh_force,
 )
+from tribodyn.types import Array
 
 if TYPE_CHECKING:
     from tribodyn.dynamics import Response, System
     from tribodyn.gear import MassProperties, SpurGear
-    from tribodyn.mesh import MeshFriction, MeshTable
+    from tribodyn.mesh import MeshTable
     from tribodyn.study.case.case import Case
+    from tribodyn.study.case.case_data import BaseCase
 
 
 #: Hertzian pressure above the strength of case-hardened steel [Pa].
@@ -51,24 +53,61 @@ _OF_SOURCE, _UNLIKELY = 3.0, 1.25
 _INERTIAS = (("mass", "kg", 1.0), ("moment_of_inertia", "kg*mm^2", 1e6))
 
 
-def case_cautions(case: Case) -> tuple[ModelWarning, ...]:
-    """Return warnings about the gears of a case, before anything is computed."""
+class MeshWarning(NamedTuple):
+    """Warning about a mesh of a machine."""
+
+    mesh: str
+    load: str  #: empty of the shape of the gears
+    warning: ModelWarning
+
+
+def warn_of_meshes(mesh_warnings: Iterable[MeshWarning]) -> None:
+    """Warn of meshes, each reason once, greatest part of the load first, with all the meshes."""
+    groups: dict[tuple[str, str], list[MeshWarning]] = {}
+    for each in mesh_warnings:
+        message = each.warning.message
+        model = re.sub(r"[-+]?\d[\d.e+-]*", "#", message)
+        if _part(each):
+            model = message.partition(":")[0]
+        groups.setdefault((each.warning.code, model), []).append(each)
+    for (code, _), group in groups.items():
+        first, *others = sorted(group, key=_part, reverse=True)
+        places = [
+            _place(each) + (f" ({_part(each):.0%})" if _part(each) else "") for each in others
+        ]
+        text = f"{_place(first)}: {first.warning.message}"
+        same = f". The same in {'; '.join(dict.fromkeys(places))}." if places else ""
+        warn(code, text.removesuffix(".") + same if same else text)
+
+
+def _place(mesh_warning: MeshWarning) -> str:
+    return ", ".join(filter(None, (f"mesh {mesh_warning.mesh}", mesh_warning.load)))
+
+
+def _part(mesh_warning: MeshWarning) -> float:
+    """Part of the load that a warning concerns; zero where it does not say."""
+    part = mesh_warning.warning.affected
+    return part if isinstance(part, float) else 0.0
+
+
+def case_cautions(case: Case, machine: BaseCase | None = None) -> tuple[ModelWarning, ...]:
+    """Return warnings about the gears of a case, or of a pair of a machine, before a run."""
     if case.hypoid_flanks is not None:
         return hypoid_warnings(case.gears)
     if case.spur_pair is None:
         return ()
     tables = ("gears", "dynamics", "material", "stiffness", "film")
-    return case._once("cautions", tables, lambda: _of_gears(case))
+    return case._once("cautions", tables, lambda: _of_gears(case, machine or case))
 
 
-def _of_gears(case: Case) -> tuple[ModelWarning, ...]:
+def _of_gears(case: Case, whole: BaseCase) -> tuple[ModelWarning, ...]:
     pair = case.gear_pair
     warnings = list(gear_warnings(case.gears, case.dynamics.backlash))
     for name, gear in pair.gears.items():
         warnings += [
             *_rim(case, name, gear),
-            *_mass(case, name, gear),
-            *_other_gear(case, name, gear),
+            *_mass(case, whole, name, gear),
+            *_other_gear(case, whole, name, gear),
         ]
     return (*warnings, *_starved(case))
 
@@ -107,12 +146,13 @@ def _solid(gear: SpurGear, density: float) -> MassProperties:
         return mass_properties(bare, density)
 
 
-def _other_gear(case: Case, name: str, gear: SpurGear) -> Iterator[ModelWarning]:
+def _other_gear(case: Case, whole: BaseCase, name: str, gear: SpurGear) -> Iterator[ModelWarning]:
     """Warn of a given mass that was not adapted to the changed shape of its gear."""
-    changed, base = changed_keys(case), case.stated.base
-    shape = [key for key in changed if key in body(name)]
+    changed, base = changed_keys(whole), whole.stated.base
+    of_shape = {case.source.key(key) for key in body(name)}
+    shape = [key for key in changed if key in of_shape]
     for key, unit, factor in _INERTIAS:
-        full, value = f"gears.{name}.{key}", getattr(gear, key)
+        full, value = case.source.key(f"gears.{name}.{key}"), getattr(gear, key)
         if not shape or value is None or base.get(full) is None or full in changed:
             continue
         reference = getattr(_solid(gear, case.density(name)), key)
@@ -124,12 +164,12 @@ def _other_gear(case: Case, name: str, gear: SpurGear) -> Iterator[ModelWarning]
         )
 
 
-def _mass(case: Case, name: str, gear: SpurGear) -> Iterator[ModelWarning]:
+def _mass(case: Case, whole: BaseCase, name: str, gear: SpurGear) -> Iterator[ModelWarning]:
     """Compare given inertias with those of the solid: a wrong unit is far off."""
     solid = _solid(gear, case.density(name))
     for key, unit, factor in _INERTIAS:
         value, reference = getattr(gear, key), getattr(solid, key)
-        most = _OF_SOURCE if _is_stated(case, name, key) else _UNLIKELY
+        most = _OF_SOURCE if _is_stated(case, whole, name, key) else _UNLIKELY
         if value is not None and not 1.0 / most <= value / reference <= most:
             yield ModelWarning(
                 "mass-unlikely",
@@ -139,12 +179,12 @@ def _mass(case: Case, name: str, gear: SpurGear) -> Iterator[ModelWarning]:
             )
 
 
-def _is_stated(case: Case, name: str, key: str) -> bool:
+def _is_stated(case: Case, whole: BaseCase, name: str, key: str) -> bool:
     """Whether the document that the case began with states the value, for a gear of this shape."""
-    changed = changed_keys(case)
-    full = f"gears.{name}.{key}"
-    stated = case.stated.base.get("origin") and case.stated.base.get(full) is not None
-    return bool(stated) and not any(k in changed for k in (full, *body(name)))
+    changed, base = changed_keys(whole), whole.stated.base
+    full, *shape = map(case.source.key, (f"gears.{name}.{key}", *body(name)))
+    stated = base.get("origin") and base.get(full) is not None
+    return bool(stated) and not any(k in changed for k in (full, *shape))
 
 
 def mesh_cautions(mesh: MeshTable) -> tuple[ModelWarning, ...]:
@@ -159,12 +199,13 @@ def load_cautions(mesh: MeshTable, contact_ratio: float | None = None) -> tuple[
 
 
 @contextmanager
-def friction_suspected(mesh: MeshTable) -> Iterator[None]:
+def friction_suspected(meshes: Iterable[MeshTable]) -> Iterator[None]:
     """Name an implausibly high friction first if the motion inside the block fails."""
     try:
         yield
     except ComputationError as error:
-        greatest = float(np.nanmax(mesh.friction_coefficient, initial=0.0))
+        coefficients = [float(np.nanmax(m.friction_coefficient, initial=0.0)) for m in meshes]
+        greatest = max(coefficients, default=0.0)
         if greatest <= _RUBS:
             raise
         suspect = Problem(
@@ -176,14 +217,23 @@ def friction_suspected(mesh: MeshTable) -> Iterator[None]:
         raise ComputationError([suspect, *error.problems]) from None
 
 
-def friction_cautions(
-    friction: MeshFriction | None, response: Response
-) -> tuple[ModelWarning, ...]:
+class FrictionRange(Protocol):
+    """Friction of teeth that is known up to a limit of their load."""
+
+    @property
+    def load(self) -> float:
+        """Nominal load [N]."""
+
+    @property
+    def limit(self) -> float:
+        """Highest load over the nominal one."""
+
+
+def friction_cautions(friction: FrictionRange | None, force: Array) -> tuple[ModelWarning, ...]:
     """Warn of tooth loads beyond the range of the friction table."""
     if friction is None:
         return ()
-    force = np.abs(mesh_force(measured(response)))
-    most = float(force.max()) / friction.load
+    most = float(np.abs(force).max()) / friction.load
     if most <= friction.limit:
         return ()
     return (
@@ -194,6 +244,19 @@ def friction_cautions(
             "constant",
         ),
     )
+
+
+def tension_cautions(force: Array, *, linear: bool) -> tuple[ModelWarning, ...]:
+    """Warn of tension in a mesh without backlash, where real flanks would separate."""
+    least = float(force.min())
+    if least >= -1e-9 * float(force.max()):
+        return ()
+    consequence = "makes the mesh linear" if linear else "lets the back flanks push at once"
+    message = (
+        f"backlash 0 {consequence}, and its force falls to {least:.4g} N: real flanks "
+        "part below 0 N. Give dynamics.backlash, for example 0.05 mm"
+    )
+    return (ModelWarning("mesh-tension", message),)
 
 
 def _relieved(mesh: MeshTable) -> Iterator[ModelWarning]:
@@ -284,14 +347,17 @@ def motion_cautions(case: Case, system: System, response: Response) -> tuple[Mod
         return ()
     samples = response.fine  # all of them, as the motion is steady
     deflection, touch = compression(samples), first_touch(system, samples)
-    separated = deflection <= touch
-    if not separated.any():
+    share = float(measured(response).mean((deflection <= touch).astype(float)))
+    return contact_cautions(share, touches_back=bool(np.any(deflection < -touch)))
+
+
+def contact_cautions(share: float, *, touches_back: bool) -> tuple[ModelWarning, ...]:
+    """Warn of loss of contact for a part of the mesh cycle."""
+    if not share:
         return ()
-    share = float(measured(response).mean(separated.astype(float)))
-    back = "the back flanks touch as well" if np.any(deflection < -touch) else ""
+    back = "the back flanks touch as well" if touches_back else "no back flank touches"
     message = (
-        f"the flanks lose contact for {share:.3g} of the mesh cycle; "
-        f"{back or 'no back flank touches'}. More load or damping "
+        f"the flanks lose contact for {share:.3g} of the mesh cycle; {back}. More load or damping "
         "prevents this; other steady motions may exist as well"
     )
     return (ModelWarning("contact-loss", message),)

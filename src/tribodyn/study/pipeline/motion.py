@@ -15,6 +15,7 @@ from tribodyn.progress import Progress
 from tribodyn.study.case.provenance import effective
 from tribodyn.study.case.sections import Solver
 from tribodyn.study.case.to_models import mesh_law_of
+from tribodyn.study.pipeline.cautions import tension_cautions
 from tribodyn.study.pipeline.tooth_contact import repeat
 
 if TYPE_CHECKING:
@@ -46,7 +47,9 @@ def motion_of(case: Case, system: System, mesh_frequency: float, progress: Progr
                 response = _marched_orbit(case, system, response, steps, progress)
         else:
             response = _transient(case, system, mesh_frequency, steps, progress)
-    _warn_of_tension(case, response)
+    if case.backlash == 0.0:
+        force = response.contact_force.sum(axis=1)
+        repeat(tension_cautions(force, linear=mesh_law_of(case) != "force-law"))
     return response
 
 
@@ -201,20 +204,6 @@ def _lost(orbit: Response) -> Problem:
         "The motion repeats after more cycles, or never",
         'Look at it over time with solver.method = "transient", or add damping',
     )
-
-
-def _warn_of_tension(case: Case, response: Response) -> None:
-    """Warn of tension in a mesh without backlash, where real flanks would separate."""
-    force = response.contact_force.sum(axis=1)
-    least = float(force.min())
-    if case.backlash == 0.0 and least < -1e-9 * float(force.max()):
-        linear = mesh_law_of(case) != "force-law"
-        consequence = "makes the mesh linear" if linear else "lets the back flanks push at once"
-        warn(
-            "mesh-tension",
-            f"backlash 0 {consequence}, and its force falls to {least:.4g} N: real flanks "
-            "part below 0 N. Give dynamics.backlash, for example 0.05 mm",
-        )
 
 
 _STEPS = "steps_per_mesh_cycle"

@@ -27,6 +27,7 @@ from tribodyn.study.pipeline.cautions import (
     teeth_cautions,
 )
 from tribodyn.study.pipeline.motion import motion_of, motions_of, steps_of
+from tribodyn.study.pipeline.response_series import measured, mesh_force
 from tribodyn.study.pipeline.result import Result
 from tribodyn.study.pipeline.store import Stored
 from tribodyn.study.pipeline.stored_motion import NOMINAL, read_friction, read_passes, read_response
@@ -147,7 +148,7 @@ class PreparedRun:
         case, mesh, response, compared = self.case, self.mesh, self.response, None
         with unchanged_files(case), locate_errors(case), collected() as model_warnings:
             if response is None:
-                with friction_suspected(mesh):
+                with friction_suspected([mesh]):
                     response = motion_of(case, self.system, mesh.mesh_frequency, progress)
             if self.friction is not None:
                 table = system_of(case, mesh, self.damping)
@@ -155,7 +156,7 @@ class PreparedRun:
         cautions = (
             *mesh_cautions(mesh),
             *motion_cautions(case, self.system, response),
-            *friction_cautions(self.friction, response),
+            *friction_cautions(self.friction, mesh_force(measured(response))),
         )
         everything = (
             *case_cautions(case),

@@ -22,8 +22,9 @@ from tribodyn.study.machine.case import MachineCase
 from tribodyn.study.machine.rated_meshes import rated_figures
 from tribodyn.study.machine.result import LoadResult
 from tribodyn.study.machine.result import steps_of as steps_of_machine
-from tribodyn.study.machine.run import MeshWarning, balanced_machine, run_load, structure_of
+from tribodyn.study.machine.run import balanced_machine, run_load, structure_of
 from tribodyn.study.pipeline.assembly import whole_system
+from tribodyn.study.pipeline.cautions import MeshWarning
 from tribodyn.study.pipeline.motion import steps_of
 from tribodyn.study.pipeline.tooth_contact import mesh_of
 from tribodyn.study.studies.runner import run_each
