@@ -11,14 +11,17 @@ from functools import lru_cache
 from importlib.metadata import EntryPoints, entry_points
 from importlib.resources import files
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from tribodyn.errors import InputError
-from tribodyn.study.case.case import Case
 from tribodyn.study.case.checks import DEFAULT_MARK
-from tribodyn.study.case.provenance import changed_keys, same
-from tribodyn.study.case.read import read_text
+from tribodyn.study.case.provenance import changed_keys, reasons, same
+from tribodyn.study.case.read import parse_toml, read_text
 from tribodyn.study.case.values import Plain
-from tribodyn.study.machine.read import read_case
+from tribodyn.study.machine.read import kind_of_tables, read_case
+
+if TYPE_CHECKING:
+    from tribodyn.study.case.case_data import BaseCase
 
 
 def case_files() -> dict[str, Path]:
@@ -95,10 +98,10 @@ def cases(*, machines: bool = False) -> dict[str, str]:
     }
 
 
-def with_known_reasons(case: Case) -> Case:
+def with_known_reasons(case: BaseCase) -> BaseCase:
     """Drop reasons that a built-in case gives, word for word, for another value of the same key."""
     # A file with the origin of a built-in case began as its copy: compare it with that case.
-    lines = case.source.lines
+    lines, kind = case.source.lines, type(case)
     if "based_on" in lines:
         return case
     plain = {
@@ -106,41 +109,47 @@ def with_known_reasons(case: Case) -> Case:
         for key, why in case.assumed.items()
         if why != DEFAULT_MARK and f"assumed.{key}.value" not in lines
     }
-    models = _models(case.origin, plain)
+    models = [model for path in all_files().values() if (model := _model_of(path, case, plain))]
     stale = {key for key in plain if _of_another_value(case, key, models)}
-    data = {**case.user_input.data, "assumed": _without(case.user_input.data["assumed"], stale)}
+    tables = case.user_input.data
+    data = {**tables, "assumed": _without(tables["assumed"], stale)}
     copied = [model for model in models if case.origin and model.origin == case.origin]
     if not (stale or copied):
         return case
     bases = [{key: Plain(v) for key, v in model.stated.base.items()} for model in copied]
-    copies = [Case(case.source, **{**data, "based_on": base}) for base in bases]
-    return min(copies or [Case(case.source, **data)], key=lambda copy: len(changed_keys(copy)))
+    copies = [kind(case.source, **{**data, "based_on": base}) for base in bases]
+    listed: list[BaseCase] = copies or [kind(case.source, **data)]
+    return min(listed, key=lambda copy: len(changed_keys(copy)))
 
 
-def _models(origin: str | None, plain: Mapping[str, str]) -> list[Case]:
-    """Built-in cases with the origin, or with one of the reasons, of a case."""
-    if not (origin or plain):
-        return []
-    models = [_model(path) for path in case_files().values()]
-    return [
-        model
-        for model in models
-        if model is not None
-        and ((origin and model.origin == origin) or plain.items() & model.assumed.items())
-    ]
+def _model_of(path: Path, case: BaseCase, plain: Mapping[str, str]) -> BaseCase | None:
+    """Named case of the kind of another, if it has its origin or one of its reasons."""
+    kind, origin, why = _beginning(path)
+    is_source = (case.origin and case.origin == origin) or plain.items() & why.items()
+    return _model(path) if kind is type(case) and is_source else None
 
 
 @lru_cache(maxsize=64)
-def _model(path: Path) -> Case | None:
+def _beginning(path: Path) -> tuple[type[BaseCase] | None, str | None, dict[str, str]]:
+    """Kind, origin and reasons of a named case; no kind where another package brings a bad one."""
+    try:
+        data = parse_toml(read_text(path), path.name)
+        return kind_of_tables(data), data.get("origin"), dict(reasons({"assumed": {}, **data}))
+    except (InputError, ValueError, TypeError):
+        return None, None, {}
+
+
+@lru_cache(maxsize=64)
+def _model(path: Path) -> BaseCase | None:
     """A named case, or None where another package brings one that is faulty."""
     try:
-        model: Case = read_case(read_text(path), path.name)
+        model: BaseCase = read_case(read_text(path), path.name, path.parent)
         return model
     except InputError:
         return None
 
 
-def _of_another_value(case: Case, key: str, models: list[Case]) -> bool:
+def _of_another_value(case: BaseCase, key: str, models: list[BaseCase]) -> bool:
     """Whether built-in cases have the reason of a key, and none of them its value."""
     sources = [model for model in models if model.assumed.get(key) == case.assumed[key]]
     value = case.stated.marks[key]

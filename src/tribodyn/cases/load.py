@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 from tribodyn.cases.catalogue import all_files
 from tribodyn.errors import InputError, Problem
 from tribodyn.progress import SILENT, Progress
-from tribodyn.study.pipeline.store import MOTIONS, read_stored, readable
+from tribodyn.study.pipeline.store import MOTIONS, as_computed, read_stored, readable
 
 if TYPE_CHECKING:
     from tribodyn.study import Case
@@ -93,8 +93,7 @@ def _load_toml(
         raise InputError(_not_found(name, path, list(paths)))
     if name in paths:
         return read_case(read_text(path), path.name, path.parent, changes, by)
-    case = read_case(read_text(path), name, None, changes, by)
-    return with_known_reasons(case) if case.lumped else case
+    return with_known_reasons(read_case(read_text(path), name, None, changes, by))
 
 
 def _not_found(name: str, path: Path, names: list[str]) -> Problem:
@@ -183,7 +182,8 @@ Give the directory that tribodyn run or the save method of a result wrote.
 
     folder = Path(directory)
     with readable(folder):
-        stored, case = read_stored(folder), load_case(folder / "case.toml")
+        stored = read_stored(folder)
+        case: Any = as_computed(load_case(folder / "case.toml"), stored)
         if "planet" in stored.loads[0].data.coords:  # an earlier version wrote it
             result = run(case)
         elif stored.motion == MOTIONS[0]:

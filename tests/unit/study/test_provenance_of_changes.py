@@ -12,6 +12,7 @@ import pytest
 
 import tribodyn as td
 from tribodyn.cases import case_files
+from tribodyn.cases.catalogue import all_files
 from tribodyn.cli import call
 from tribodyn.errors import InputError
 from tribodyn.model import Option
@@ -391,3 +392,15 @@ def test_only_options_of_the_chosen_law_are_listed(law: str) -> None:
     option_keys = {f"friction.{name}" for name in case.friction.chosen.options}
     assert listed - {"friction.law"} <= option_keys
     assert ("friction.summit_density" in listed) == (law == "mixed")
+
+
+@pytest.mark.parametrize("name", ["fzg-roughness", "planetary-stage", "wind-turbine-gearbox"])
+def test_an_edited_copy_of_a_named_case_knows_what_was_changed(name: str, tmp_path: Path) -> None:
+    file, text = tmp_path / "copy.toml", all_files()[name].read_text(encoding="utf-8")
+    file.write_text(text, encoding="utf-8")
+    assert td.load_case(file) == td.load_case(name)
+    speed = re.search(r'^speed = "([\d.]+) rpm"', text, re.MULTILINE)
+    assert speed is not None
+    line = f'speed = "{2.0 * float(speed[1])} rpm"'
+    file.write_text(text.replace(speed[0], line, 1), encoding="utf-8")
+    assert changed_keys(td.load_case(file)) == ("operation.speed",)

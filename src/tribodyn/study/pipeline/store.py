@@ -6,16 +6,19 @@ import hashlib
 import json
 import os
 from collections.abc import Iterator, Mapping
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from pathlib import Path
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
 from tribodyn.drawing import write_report_of
 from tribodyn.errors import InputError, ModelWarning, TribodynError, collected
 from tribodyn.interrupt import single_blas_thread
+from tribodyn.model import Option
 from tribodyn.record import Parts
+from tribodyn.study.case.provenance import same
+from tribodyn.study.case.section import Section, Table, table_in
 from tribodyn.study.pipeline.save import new_directory
 from tribodyn.study.pipeline.summary_figures import Figures, in_order, is_figure
 from tribodyn.validated_files import read_bytes, read_dataset, write_dataset
@@ -24,6 +27,7 @@ if TYPE_CHECKING:
     import xarray
 
     from tribodyn.mesh import MeshTable
+    from tribodyn.study.case.case_data import BaseCase
     from tribodyn.study.pipeline.result_of_case import ResultOfCase
 
 #: Names of the files of a motion: of parts by name, and of a pair.
@@ -84,6 +88,7 @@ def write_result(
                 warning_texts = [(warning.code, warning.message) for warning in result.warnings]
                 facts |= {"warnings": json.dumps(warning_texts), "files": json.dumps(others)}
                 facts["version"] = tribodyn.__version__
+                facts["defaults"] = json.dumps(defaults_of(result.case))
             stored_parts = Parts(parts.variables, parts.coordinates, {**parts.attributes, **facts})
             write_dataset(stored_parts, place / f"{_of_load(number)}{result._MOTION}.nc")
         if csv:
@@ -125,6 +130,45 @@ def read_stored(folder: Path) -> Stored:
     first = loads[0].data.attrs
     model_warnings = tuple(ModelWarning(*each) for each in json.loads(first["warnings"]))
     return Stored(motion, summary, model_warnings, loads)
+
+
+def defaults_of(case: Any) -> dict[str, Any]:
+    """Values in SI of the keys that a case leaves to defaults, also in the pairs of its meshes."""
+    keys = _left_out(case.root, case.data, case.lumped)
+    if case.lumped:
+        values = {key: case._effective.get(key) for key in keys}
+    else:
+        values = {key: case._default_of(key) for key in keys}
+        for _, pair, _ in case.mesh_pairs():
+            of_pair = {pair.source.key(key): value for key, value in defaults_of(pair).items()}
+            values |= {k: v for k, v in of_pair.items() if case.option_of(k) is not None}
+    return {key: value for key, value in values.items() if value is not None}
+
+
+def _left_out(
+    root: type[Section], data: Mapping[str, Any], whole: bool, prefix: str = ""
+) -> Iterator[str]:
+    """Keys that have no value in tables, with ``whole`` also in tables of models that lack."""
+    keys, chosen = dict(root.keys_for(data)), data.get(root.selector)
+    default = keys.get(root.selector)
+    if isinstance(default, Option) and (model := root.model_named(chosen or default.default)):
+        keys |= model.case_options
+    for name, field in keys.items():
+        if not isinstance(field, Table):
+            if data.get(name) is None:
+                yield f"{prefix}{name}"
+        elif name in data or (field.default == "empty" and (whole or not field.kind.selector)):
+            yield from _left_out(field.kind, table_in(data, name), whole, f"{prefix}{name}.")
+
+
+def as_computed(case: BaseCase, stored: Stored) -> BaseCase:
+    """Case with the defaults with which another version computed its stored result."""
+    then = json.loads(stored.loads[0].data.attrs.get("defaults", "{}"))
+    now = json.loads(json.dumps(defaults_of(case) if then else {}))
+    for key in [key for key in then if key in now and not same(now[key], then[key])]:
+        with suppress(InputError):  # it has no effect in this case
+            case = case.replace({key: then[key]})
+    return case
 
 
 def figures_of_load(summary: Mapping[str, float], load: str = "") -> Figures:
