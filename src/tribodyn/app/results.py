@@ -31,7 +31,7 @@ _FIRST = (
 #: Ends of the keys of figures of machines that are displayed as cards.
 _OF_MACHINE = (
     *("machine.input_power", "machine.output_torque", "mesh_frequency"),
-    *("ratio", "planet_speed", "machine.clock_frequency"),
+    *(".ratio", "planet_speed", "machine.clock_frequency", ".transverse_contact_ratio"),
 )
 _CONFIG = {
     "displaylogo": False,

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import Any
 
 import pytest
 
 import tribodyn as td
 from tribodyn.errors import collected
+from tribodyn.model import NO_OPTIONS
 from tribodyn.study import Case, MachineCase
 from tribodyn.study.machine.run import balanced_machine, rehearse_machine
 from tribodyn.study.pipeline.cautions import case_cautions, mesh_cautions
@@ -65,11 +67,17 @@ def test_films_that_do_not_separate_the_flanks_are_said_once_with_all_meshes(nam
 
 
 def pair_and_machine(
-    pinion: dict[str, Any], wheel: dict[str, Any], point: dict[str, str], **dynamics: Any
+    pinion: dict[str, Any],
+    wheel: dict[str, Any],
+    point: dict[str, str],
+    *,
+    geometry: Mapping[str, Any] = NO_OPTIONS,
+    models: Mapping[str, Any] = NO_OPTIONS,
+    **dynamics: Any,
 ) -> tuple[Case, MachineCase]:
     """Two gears as a pair that only turns, and as a machine of rigid shafts."""
-    module, names = {"normal_module": "3 mm"}, ("pinion", "wheel")
-    models: dict[str, Any] = {**MODELS, "stiffness": {"model": "potential-energy"}}
+    module, names = {"normal_module": "3 mm", **geometry}, ("pinion", "wheel")
+    models = {"stiffness": {"model": "potential-energy"}, "friction": MODELS["friction"], **models}
     gears = dict(zip(names, (pinion, wheel), strict=True))
     shafts = zip(names, ("in", "out"), strict=True)
     pair = Case(

@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from tests.unit.study.test_cautions_of_meshes import pair_and_machine
 from tests.unit.study.test_machine_run import GEARED
 
 import tribodyn as td
@@ -57,6 +58,41 @@ def test_forces_of_a_pair() -> None:
     same(figures, expected)
     square = figures["rms_mesh_force"] ** 2 - figures["mean_mesh_force"] ** 2
     assert figures["dynamic_factor_rms"] ** 2 == pytest.approx(1.0 + square / mean.item() ** 2)
+
+
+#: Figures of a pair that its mesh in a machine has not, by the first words of their names.
+OF_LUMPED = (
+    "rms_mesh_force", "mean_dynamic", "rms_dynamic", "peak_to_peak_dynamic", "dynamic_trans",
+    "mesh_damping", "rms_friction", "rms_film", "rms_asperity", "mean_friction_power", "gear_power",
+    "mesh_natural", "resonance", "natural_frequency", "iso_mesh", "gear_body",
+    "mean_static_transmission_error", "peak_to_peak_static_transmission_error",
+    "static_transmission_error_harmonic", "steps_per", "omega", "steady_state", "step_error",
+    "input_power", "efficiency", "oil_temperature",
+)  # fmt: skip
+
+
+@pytest.mark.parametrize("helix", [{}, {"helix_angle": "12 deg"}])
+def test_a_mesh_of_a_machine_has_the_figures_of_its_pair(helix: dict[str, str]) -> None:
+    gear = {"face_width": "20 mm", "modification": {"tip_relief": "10 um"}, "roughness_ra": "1 um"}
+    parts = {"teeth": 20, **gear}, {"teeth": 41, **gear, "mass": "1.5 kg"}
+    point = {"speed": "1500 rpm", "torque": "90 N*m"}
+    oil = {"lubricant": {"name": "ISO VG 100", "temperature": "60 degC"}, "film": {"model": "moes"}}
+    cases = pair_and_machine(*parts, point, geometry=helix, models=oil, backlash="0.1 mm")
+    of_pair, of_machine = (td.run(case).summary() for case in cases)
+    left = {key for key in of_pair if not key.startswith(OF_LUMPED)}
+    assert left <= {key.removeprefix("meshes.m.") for key in of_machine}
+    for key in left:
+        moving = key.startswith("dynamic_factor") or key.endswith("mesh_force")
+        expected = pytest.approx(of_pair[key], rel=1e-2 if moving else 1e-4, abs=1e-12)
+        assert of_machine[f"meshes.m.{key}"] == expected, key
+
+
+def test_a_hypoid_mesh_has_the_geometry_of_its_pair() -> None:
+    case = td.load_case("hypoid-axle")
+    blank = geometry(case.pair("axle", case.operating_point))
+    figures = kinematic_figures(case)
+    assert {key: figures[f"meshes.axle.{key}"] for key in blank} == pytest.approx(blank)
+    assert figures["meshes.axle.pitch_angle_pinion"] > 0.0
 
 
 def test_forces_of_a_machine() -> None:

@@ -238,7 +238,10 @@ def without_spread(
             continue
         numbered = isinstance(value, list | tuple) and any(map(_has_spread, value))
         items = {str(place): each for place, each in enumerate(value, 1)} if numbered else {}
-        if inner := value if isinstance(value, Mapping) else dict(named_rows(value)) or items:
+        rows = dict(listed := named_rows(value))
+        if len(rows) < len(listed):
+            continue  # rows with one name are refused
+        if inner := value if isinstance(value, Mapping) else rows or items:
             values, inside, wrong = without_spread(inner, f"{key}.")
             middles[name] = values if isinstance(value, Mapping) else list(values.values())
             spreads |= inside

@@ -4,26 +4,30 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from tribodyn.arrays.memory import machine_memory
 from tribodyn.errors import ComputationError, InputError, ModelWarning, Problem, warn
 from tribodyn.machine import machine_structure
 from tribodyn.study.machine.motion import phase_names
-from tribodyn.study.machine.pair_cases import inputs_under, read_teeth, teeth_under
+from tribodyn.study.machine.pair_cases import TeethUnder, inputs_under, read_teeth, teeth_under
 from tribodyn.study.machine.summary import geometry_figures
+from tribodyn.study.pipeline.assembly import geometry
 from tribodyn.study.pipeline.cautions import (
     MeshWarning,
     case_cautions,
     teeth_cautions,
     warn_of_meshes,
 )
+from tribodyn.study.pipeline.preview import operating_figures
+from tribodyn.study.pipeline.summary import PARTS
 from tribodyn.study.planetary.machine_stages import motion_of_stage
 
 if TYPE_CHECKING:
     from tribodyn.machine import Machine
     from tribodyn.machine.graph.clock import Phases
+    from tribodyn.study.case.case import Case
     from tribodyn.study.machine.case import MachineCase
     from tribodyn.study.machine.tables import SolverTable
 
@@ -130,11 +134,8 @@ def warn_of_motion(solver: SolverTable, machine: Machine) -> PhaseCost | None:
 
 def warn_of_gears(case: MachineCase) -> None:
     """Warn of gears whose teeth are computed, as those of a pair are warned of, by their names."""
-    firsts = {case.tooth_group(name): name for name in reversed(case.meshes_with_teeth)}
     listed: dict[str, MeshWarning] = {}
-    for name in reversed(firsts.values()):
-        under = teeth_under(case, name, case.operating_point)
-        pair, _ = read_teeth(case, name, under)
+    for name, pair, under in computed_pairs(case):
         names = dict(zip(("pinion", "wheel"), under.names, strict=True))
         for each in (*case_cautions(pair, case), *teeth_cautions(pair)):
             words = re.split(r"(?<![\w.])(pinion|wheel)\b", each.message)
@@ -209,11 +210,32 @@ def warn_of_steps(
     warn("long-period", f"{period}. Each motion takes {cost}. {remedy}")
 
 
+def shape_figures(case: MachineCase) -> dict[str, float]:
+    """Gears and oil of the meshes with computed teeth, of planets those of the first."""
+    values: dict[str, float] = {}
+    for name, pair, _ in computed_pairs(case):
+        figures = {**geometry(pair), **operating_figures(pair)}
+        names = (key for key in figures if key in PARTS["meshes"]["of_pairs"])
+        values |= {f"meshes.{name}.{key}": float(figures[key]) for key in names}
+    return values
+
+
+def computed_pairs(case: MachineCase) -> Iterator[tuple[str, Case, TeethUnder]]:
+    """Iterate over meshes with computed teeth and their pairs, of planets the first."""
+    firsts = {case.tooth_group(name): name for name in reversed(case.meshes_with_teeth)}
+    for name in reversed(firsts.values()):
+        under = teeth_under(case, name, case.operating_point)
+        speed, torque = under.operation
+        pair, _ = read_teeth(case, name, under)
+        yield name, pair.replace({"operation.speed": speed, "operation.torque": torque}), under
+
+
 def kinematic_figures(case: MachineCase) -> dict[str, float]:
     """Speeds, torques and power of shafts and meshes, in SI by dotted key."""
     machine = case.machine()
     flow, run = machine.kinematics, machine.operation
     values: dict[str, float | None] = {
+        **shape_figures(case),
         "machine.clock_frequency": machine.clock.frequency,
         "machine.input_power": abs(run.speed * run.torque),
         "machine.output_torque": abs(flow.shafts[run.output].torque),

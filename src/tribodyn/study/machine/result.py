@@ -300,6 +300,11 @@ class MachineResult(ResultOfCase):
     def _sensors(self) -> Sensors:
         return sensors_of(self.case)
 
+    def _shape_figures(self) -> Mapping[str, float]:
+        from tribodyn.study.machine.first_look import shape_figures
+
+        return shape_figures(self.case)
+
     def _rated_meshes(self) -> Iterable[RatedMesh]:
         from tribodyn.study.machine.rated_meshes import rated_loads, rated_meshes
 

@@ -11,7 +11,7 @@ import numpy as np
 
 from tribodyn.machine.graph.directions import center_distance, working_pressure_angle
 from tribodyn.machine.plane_law import mean_in_space
-from tribodyn.study.pipeline.summary import MEASURES
+from tribodyn.study.pipeline.summary import MEASURES, mesh_figures
 from tribodyn.study.pipeline.summary_figures import Figures, figure_of, split_key
 from tribodyn.study.planetary.machine_stages import stage_figures
 
@@ -89,15 +89,16 @@ def _of_mesh(result: LoadResult, name: str) -> Mapping[str, float | None]:
     column = motion.mesh.index(name)
     force, error = motion.mesh_force[:, column], motion.transmission_error[:, column]
     table, balance = result.tables.get(name), result.static.meshes[name]
-    mean = float(motion.mean(force))
+    mean, alternating = float(motion.mean(force)), float(motion.rms(force))
     return {
         "mesh_frequency": load.mesh_frequency,
         "static_mesh_force": balance.force,
         "mean_mesh_force": mean,
-        "alternating_rms_mesh_force": float(motion.rms(force)),
+        "alternating_rms_mesh_force": alternating,
         "peak_mesh_force": float(force.max()),
         "minimum_mesh_force": float(force.min()),
         "dynamic_factor_peak": peak_over_mean(force, mean),
+        "dynamic_factor_rms": math.hypot(mean, alternating) / mean if mean > 0.0 else None,
         "contact_loss_share": float(motion.mean(motion.open[:, column])),
         "transmission_error_peak_to_peak": float(np.ptp(error)),
         **_mounting(balance),
@@ -158,14 +159,10 @@ def _of_table(result: LoadResult, name: str, table: Any) -> dict[str, float | No
 def table_figures(table: MeshTable) -> dict[str, float | None]:
     """Figures of computed teeth."""
     film = table.central_film if table.minimum_film is None else table.minimum_film
-    sliced = table.face_load_factor
     return {
-        **({} if sliced is None else {"face_load_factor": sliced}),
-        "mean_mesh_stiffness": table.mean_mesh_stiffness,
+        **mesh_figures(table),
         "static_transmission_error_peak_to_peak": float(np.ptp(table.transmission_error_at_rest)),
         "contact_ratio": table.contact_ratio_under_load,
-        "mean_friction_coefficient": table.mean_friction_coefficient,
-        "maximum_hertz_pressure": float(np.nanmax(table.hertz_pressure)),
         "minimum_film_thickness": (
             None if film is None else float(np.fmin.reduce(film[table.in_contact]))
         ),

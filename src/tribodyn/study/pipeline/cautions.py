@@ -67,7 +67,9 @@ def warn_of_meshes(mesh_warnings: Iterable[MeshWarning]) -> None:
     for each in mesh_warnings:
         message = each.warning.message
         model = re.sub(r"[-+]?\d[\d.e+-]*", "#", message)
-        if _part(each):
+        if not each.load:
+            model = message  # of one gear
+        elif _part(each):
             model = message.partition(":")[0]
         groups.setdefault((each.warning.code, model), []).append(each)
     for (code, _), group in groups.items():

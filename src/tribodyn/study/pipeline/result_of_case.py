@@ -88,9 +88,13 @@ class ResultOfCase(ABC):
 
         return case_rating(self._rated_meshes(), self._rated_parts())
 
+    def _shape_figures(self) -> Mapping[str, float]:
+        """Figures of the gears of a machine, which all loads share."""
+        return {}
+
     @cached_property
     def _summary(self) -> Figures:
-        figures = Figures()
+        figures = Figures(self._shape_figures())
         for number, (name, load) in enumerate(self.loads.items()):
             prefix = f"load_cases.{name.removeprefix('load_cases.')}." if number else ""
             rated = self._rated_figures.get(name, {})

@@ -74,6 +74,9 @@ _TABLE = tomllib.loads(
 #: Figures of each kind of part of a machine, and those of a pair that fit on a screen.
 PARTS: dict[str, dict[str, Any]] = _TABLE.pop("parts")
 CHIEF: list[str] = _TABLE.pop("chief")
+for _part in PARTS.values():
+    _part.setdefault("of_pairs", [])
+    _part["of_pairs"] += [n for topic in _part.get("of_pairs_by_topic", ()) for n in _TABLE[topic]]
 #: All figures of :meth:`tribodyn.Result.summary` and ``tribodyn check`` by name.
 SUMMARY: dict[str, SummaryFigure] = {
     name: summary_entry(name, quantity, meaning, topic)
@@ -126,7 +129,7 @@ def summary_figure(
         raise InputError(f'part = "{part}"', Argument("part"), why, "Choose one, or leave it out")
     key = f"{part}.{name}" if part else name
     figures: dict[str, Any] = PARTS[part]["figures"] if part else SUMMARY
-    of_package = name in figures or (part and name in PARTS[part].get("of_pairs", ()))
+    of_package = name in figures or (part and name in PARTS[part]["of_pairs"])
     if of_package and key not in MEASURES.names():
         why = "A figure of the package keeps its meaning"
         raise InputError(f'"{key}" is a figure', Argument("name"), why, "Choose another name")
@@ -147,9 +150,8 @@ def summarize(result: Result) -> dict[str, float]:
     values: dict[str, Any] = {
         **geometry(result.case),
         **operating_figures(result.case),
-        **_mesh_figures(result.mesh),
+        **mesh_figures(result.mesh),
         **_static_error_figures(result),
-        **_film_figures(result.mesh),
         "mesh_damping": result.damping.mesh,
         **moving,
         **_line_of_action(moving),
@@ -175,7 +177,8 @@ def summarize(result: Result) -> dict[str, float]:
     return {n: float(values[n]) for n in SUMMARY if values.get(n) is not None}
 
 
-def _mesh_figures(mesh: MeshTable) -> dict[str, Any]:
+def mesh_figures(mesh: MeshTable) -> dict[str, Any]:
+    """Figures of teeth at rest and their films."""
     return {
         "mesh_frequency": mesh.mesh_frequency,
         "static_mesh_force": mesh.total_normal_force,
@@ -189,6 +192,8 @@ def _mesh_figures(mesh: MeshTable) -> dict[str, Any]:
         "mean_friction_coefficient": mesh.mean_friction_coefficient,
         "mean_asperity_friction_coefficient": mesh.mean_asperity_friction_coefficient,
         **_pressure(mesh),
+        **_error_parts(mesh),
+        **_film_figures(mesh),
     }
 
 

@@ -80,14 +80,14 @@ def figure_of(key: str) -> SummaryFigure:
     table = PARTS[kind]
     name = table.get("deprecated", {}).get(name, name)
     topic = (f"{load}: " if load else "") + table["topic"].format(part)
-    if name in table.get("of_pairs", ()):
+    if name in table["of_pairs"]:
         return replace(SUMMARY[name], name=key, topic=topic)
     return summary_entry(key, *table["figures"][name], topic)
 
 
 def part_figures() -> dict[str, list[str]]:
     """Names of the figures of each kind of part."""
-    return {kind: [*table["figures"], *table.get("of_pairs", ())] for kind, table in PARTS.items()}
+    return {kind: [*table["figures"], *table["of_pairs"]] for kind, table in PARTS.items()}
 
 
 def is_figure(key: str) -> bool:
