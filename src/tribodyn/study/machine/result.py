@@ -16,6 +16,7 @@ from tribodyn.gear import Misalignment, MisalignmentStudy, misalignment_study
 from tribodyn.machine.static.supports import clearance_supports, without_clearance_supports
 from tribodyn.record import Parts
 from tribodyn.study.faults.sensors import sensors_of
+from tribodyn.study.machine.first_look import shape_figures
 from tribodyn.study.machine.housing_files import HOUSING, copy_housing
 from tribodyn.study.machine.modes import MeshOrder, mesh_orders
 from tribodyn.study.machine.motion import MachineMotion, machine_motion
@@ -301,8 +302,6 @@ class MachineResult(ResultOfCase):
         return sensors_of(self.case)
 
     def _shape_figures(self) -> Mapping[str, float]:
-        from tribodyn.study.machine.first_look import shape_figures
-
         return shape_figures(self.case)
 
     def _rated_meshes(self) -> Iterable[RatedMesh]:
