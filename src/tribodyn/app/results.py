@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 from dash import dcc, html
 
+from tribodyn.app.script import script_of
 from tribodyn.app.session import RUNS, TabSession
 from tribodyn.app.studies import STUDIES, offered
 from tribodyn.errors import InputError, TribodynError, collected
@@ -91,6 +92,7 @@ def rail(desk: TabSession) -> list[Any]:
     """Tabs of all views, and the list of runs."""
     name = getattr(desk.case, "kind", "Gear pair")
     views = [("pair", name), ("files", "Open and save"), ("studies", "Studies")]
+    views.append(("script", "Python"))
     tabs = [_tab(desk, view, text) for view, text in views]
     for job in desk.all_jobs():
         tabs.append(_tab(desk, f"job-{job.number}", [job.title, _mark(job)]))
@@ -378,12 +380,26 @@ def studies(desk: TabSession) -> list[Any]:
     return parts
 
 
+def script(desk: TabSession) -> list[Any]:
+    """What was done in this tab as a Python script."""
+    text = "What was done here, as a Python script; run it in the folder "
+    link = html.A("Download", href="script.py", download="tribodyn-page.py", className="link")
+    head = [
+        html.H3("As a Python script"),
+        html.P([text, html.Code(str(desk.folder.root)), ". ", link]),
+    ]
+    code = html.Pre(script_of(desk), id="script", tabIndex="0")
+    return [html.Section([*head, code], className="block")]
+
+
 def bench(desk: TabSession) -> list[Any]:
     """The current view, or the reason why it cannot be displayed."""
     if desk.view in ("files", "studies"):
         return files(desk) if desk.view == "files" else studies(desk)
     job = desk.job_in_view
     try:
+        if desk.view == "script":
+            return script(desk)
         return pair(desk) if job is None else result(desk, job)
     except TribodynError as error:
         return notice("This cannot be displayed", [str(problem) for problem in error.problems])

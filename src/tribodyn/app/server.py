@@ -21,6 +21,7 @@ from tribodyn.app.authentication import (
     headers,
 )
 from tribodyn.app.jobs import Jobs
+from tribodyn.app.script import script_of
 from tribodyn.app.session import TabSession, initial_case, number_of
 from tribodyn.app.workspace import Workspace
 from tribodyn.errors import InputError, TribodynError
@@ -83,6 +84,7 @@ class Page:
         application.config["MAX_CONTENT_LENGTH"] = LARGEST
         application.before_request(self._enter)
         application.add_url_rule("/desk/<desk>/report/<int:number>", view_func=self._report)
+        application.add_url_rule("/desk/<desk>/script.py", view_func=self._script)
         application.register_error_handler(RefusalError, _refused)
         style = str(text_of("report.css"))  # the page looks like the reports
         page = dash.Dash(
@@ -141,6 +143,11 @@ class Page:
         answer = flask.send_file(place)
         answer.headers["Content-Security-Policy"] = _OF_REPORT
         return answer
+
+    def _script(self, desk: str) -> flask.typing.ResponseReturnValue:
+        session = self._guard.desk(self._session(), desk)
+        with session.lock:
+            return flask.Response(script_of(session), mimetype="text/x-python")
 
     def _connect(self, page: dash.Dash) -> None:
         page.clientside_callback(ClientsideFunction("tribodyn", "render"), Input("form", "data"))
@@ -302,6 +309,7 @@ def _versions(desk: TabSession) -> dict[str, Any]:
             desk.topic,
             at,
             desk.notice_count if desk.view == "files" else 0,
+            jobs if desk.view == "script" else [],
             desk.study,
         ],
         "notice": desk.notice_count,

@@ -5,7 +5,7 @@ from __future__ import annotations
 import threading
 from collections.abc import Mapping
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 from tribodyn.app.case_form import CaseForm, key_label
 from tribodyn.app.jobs import Job, Jobs
@@ -41,6 +41,20 @@ _LONGEST = 10_000
 _BY = "form"
 
 
+class Edited(NamedTuple):
+    """A case that was opened, and the changes since, each a call of ``replace``."""
+
+    opened: Any
+    file: str  #: name in the folder; empty for a built-in or a new case
+    changes: tuple[Mapping[str, Any], ...] = ()
+
+    def follows(self, other: Edited | None) -> bool:
+        """Whether it is another state with further changes."""
+        if other is None or other.opened is not self.opened:
+            return False
+        return self.changes[: len(other.changes)] == other.changes
+
+
 class TabSession:
     """State of one tab; every request holds the lock while it reads or changes the state."""
 
@@ -58,12 +72,14 @@ class TabSession:
         self.notice_count = 0  #: notices so far
         self.edits = 0  #: changes of the form so far
         self._numbers: dict[str, int] = {}
+        self.edited: dict[int, Edited] = {}  #: cases of the jobs, as the script makes them
         self.take(case, name)
 
     def take(self, case: AnyCase, name: str) -> None:
         """Replace the case and clear the form."""
         self.case: AnyCase = case
         self.name = name
+        self._made, self._open_change, self._before = Edited(case, name), False, case
         if self.study and not offered(self.study, case):
             self.study = ""
         self.values = {  # with the meshes and sensors of this case
@@ -75,6 +91,27 @@ class TabSession:
         self.units: dict[str, str] = {}
         self.faults: list[dict[str, str]] = []
         self.edits += 1
+
+    def edits_of_case(self) -> Edited:
+        """The case in the form, as the script makes it."""
+        return self._made
+
+    def _change(self, changes: Mapping[str, Any]) -> None:
+        """Change the case; one step of the script takes edits as long as it gives the same case."""
+        with collected():
+            case = self.case.replace(changes, by=_BY)
+            steps = list(self._made.changes)
+            if self._open_change and steps:
+                try:
+                    merged = {**steps[-1], **changes}
+                    if self._before.replace(merged, by=_BY) == case:
+                        changes = merged
+                        steps.pop()
+                except InputError:
+                    pass
+        self._before = self._before if len(steps) < len(self._made.changes) else self.case
+        self._made = self._made._replace(changes=(*steps, dict(changes)))
+        self.case, self._open_change = case, True
 
     @property
     def form(self) -> CaseForm:
@@ -153,6 +190,7 @@ class TabSession:
         job = self.job(number)
         if job is not None:
             self.take(job.case, self.name)
+            self._made = self.edited[number]
             self.view = "pair"
             self.tell(f"This is the case of {job.title}.")
 
@@ -163,8 +201,7 @@ class TabSession:
         if not relief:
             return
         self._refuse_faults()
-        with collected():
-            self.case = self.case.replace(relief, by=_BY)
+        self._change(relief)
         self.edits += 1
         self.view = "pair"
         gears = list(dict.fromkeys(key.split(".")[1] for key in relief))
@@ -198,8 +235,7 @@ class TabSession:
         if self.faults:
             return
         try:
-            with collected():
-                self.case = self.case.replace(changes, by=_BY)
+            self._change(changes)
             self.typed = {}
         except InputError as error:
             for problem in error.problems:
@@ -272,6 +308,7 @@ class TabSession:
         if job is None:
             why = "Too many computations wait already"
             raise InputError("this cannot be computed now", "", why, "Stop one of them, or wait")
+        self.edited[job.number], self._open_change = self._made, False
         return job
 
     def overlay_runs(self) -> None:
@@ -283,7 +320,8 @@ class TabSession:
             raise InputError("two finished runs are needed", "", why, remedy)
         if self.overlay is not None:
             self.jobs.forget(self.overlay)
-        order = {"results": [str(j.result) for j in runs], "names": [j.title for j in runs]}
+        order = {"results": [str(j.result) for j in runs], "names": [j.title for j in runs],
+                 "numbers": [j.number for j in runs]}  # fmt: skip
         self.overlay = self._start("overlay", "Overlay", order)
         self.view = f"job-{self.overlay.number}"
 

@@ -29,7 +29,8 @@ _KINDS = {"friction-from-loss": "friction from losses"}
 MEASURED = ("gear_sets", "no_load_torque", "other_loss")
 
 
-def _varied(values: Values) -> Iterator[tuple[str, object]]:
+def varied(values: Values) -> Iterator[tuple[str, object]]:
+    """Keys of a sweep with their values."""
     for key, name in (("key", "values"), ("second_key", "second_values")):
         if values[key]:
             yield values[key], _read(name, values[name] or "", read_values)
@@ -43,7 +44,18 @@ def _read(name: str, text: str, read: Callable[[str], object]) -> Any:
         raise InputError(f'cannot read "{text}"', name, str(fault), f"Write {RANGE}") from None
 
 
-def _ends(name: str, text: str) -> tuple[str, str]:
+def in_values(name: str, text: str) -> Any:
+    """Range or list of a field."""
+    return _read(name, text, read_values)
+
+
+def in_range(name: str, text: str) -> Any:
+    """Both ends and the number of points of a field."""
+    return _read(name, text, read_range)
+
+
+def ends_in(name: str, text: str) -> tuple[str, str]:
+    """Both ends of a field without a number of points."""
     low, high, _ = _read(name, f"{text}:2", read_range)
     return low, high
 
@@ -72,7 +84,7 @@ def _sweep(case: Case, values: Values, progress: Progress, target: Path) -> Show
     from tribodyn.study.pipeline.summary_figures import in_words
     from tribodyn.study.studies.sweep import sweep
 
-    result = sweep(case, dict(_varied(values)), by="study", progress=progress)
+    result = sweep(case, dict(varied(values)), by="study", progress=progress)
     result.save(target)
     if not plot.machine_sweep.missing(result):
         figures = [figure_with_caption(plot.machine_sweep, result)]
@@ -136,47 +148,48 @@ def _friction_from_loss(case: Case, values: Values, progress: Progress) -> Study
     return of_studies.friction_report_data(losses, friction_from_power_loss(losses))
 
 
-def _torques(values: Values) -> list[str] | None:
+def torques_in(values: Values) -> list[str] | None:
+    """Torques of a study; None where its field is empty."""
     return _read("torque", values["torque"], read_list) if values["torque"] else None
 
 
 def _relief(case: Case, values: Values, progress: Progress) -> StudyReportData:
     progress.start("Tip relief")
-    how = _torques(values), values["gears"], values["mesh"]
+    how = torques_in(values), values["gears"], values["mesh"]
     return of_studies.relief_report_data(case, *how)
 
 
 def _lead(case: Case, values: Values, progress: Progress) -> StudyReportData:
     chosen = {name: values[name] for name in ("gear", "misalignment", "mesh")}
-    return of_studies.lead_report_data(case, _torques(values), progress, **chosen)
+    return of_studies.lead_report_data(case, torques_in(values), progress, **chosen)
 
 
 def _harris(case: Case, values: Values, progress: Progress) -> StudyReportData:
     progress.start("Static transmission error")
-    return of_studies.harris_report_data(case, _torques(values), values["mesh"])
+    return of_studies.harris_report_data(case, torques_in(values), values["mesh"])
 
 
 def _modes(case: Case, values: Values, progress: Progress) -> StudyReportData:
     from tribodyn.report.modes_report_data import any_modes_report_data
 
-    ends = _ends("speeds", values["speeds"]) if values["speeds"] else None
+    ends = ends_in("speeds", values["speeds"]) if values["speeds"] else None
     return any_modes_report_data(case, ends, progress)
 
 
 def _run_up(case: Case, values: Values, progress: Progress) -> StudyReportData:
-    ends, duration = _ends("speeds", values["speeds"]), values["duration"]
+    ends, duration = ends_in("speeds", values["speeds"]), values["duration"]
     return of_studies.run_up_report_data(case, ends, duration, progress=progress)
 
 
 def _continuation(case: Case, values: Values, progress: Progress) -> StudyReportData:
-    ends, step = _ends("ends", values["ends"]), values["longest_step"]
+    ends, step = ends_in("ends", values["ends"]), values["longest_step"]
     how = values["periods"], step, "study", progress, values["mesh"]
     return nonlinear.continuation_report_data(case, values["key"], ends, *how)
 
 
 def _basins(case: Case, values: Values, progress: Progress) -> StudyReportData:
     error, rate = (
-        _ends(name, values[name]) if values[name] else None
+        ends_in(name, values[name]) if values[name] else None
         for name in ("transmission_error", "rate")
     )
     how = values["points"], False, progress, values["mesh"]
