@@ -242,4 +242,8 @@ class PointEvaluator(RowEvaluator):
 
 def _stencil_derivative(shift: Array) -> Array:
     """Derivative weights of the Lagrange polynomial on -2..2 at ``shift``."""
-    return np.asarray(np.polynomial.polynomial.polyval(shift[..., None], _STENCIL_POWERS, False))
+    weights = np.broadcast_to(_STENCIL_POWERS[0], (*shift.shape, 5)).copy()
+    if (moved := shift != 0.0).any():
+        powers = np.polynomial.polynomial.polyval(shift[moved, None], _STENCIL_POWERS, False)
+        weights[moved] = powers
+    return weights

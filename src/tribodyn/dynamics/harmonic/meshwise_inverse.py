@@ -12,6 +12,7 @@ import math
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
+from scipy import fft
 
 from tribodyn.dynamics.harmonic.newton import State
 from tribodyn.types import Array, ComplexArray, Index
@@ -170,7 +171,7 @@ class _OnePhase:
         values = y.reshape(*self.shape, -1)
         axes = self._axes()
         lines = (
-            np.fft.fftn(values, axes=axes) if self.half is None else np.fft.rfftn(values, axes=axes)
+            fft.fftn(values, axes=axes) if self.half is None else fft.rfftn(values, axes=axes)
         )
         self._folded = np.moveaxis(lines, self.axis, -2).shape
         return np.moveaxis(lines, self.axis, -2).reshape(-1, *self._folded[-2:])
@@ -180,9 +181,9 @@ class _OnePhase:
         table = np.moveaxis(lines.reshape(self._folded), -2, self.axis)
         axes = self._axes()
         if self.half is None:
-            values = np.fft.ifftn(table, axes=axes).real
+            values = fft.ifftn(table, axes=axes).real
         else:
-            values = np.fft.irfftn(table, [self.shape[axis] for axis in axes], axes)
+            values = fft.irfftn(table, [self.shape[axis] for axis in axes], axes)
         return np.asarray(values.reshape(-1, lines.shape[-1]))
 
 

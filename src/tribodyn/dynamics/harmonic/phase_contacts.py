@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 from numpy.polynomial import legendre
+from scipy import fft
 
 from tribodyn.dynamics.harmonic.phase_grid import PhaseGrid
 from tribodyn.dynamics.harmonic.phase_rows import Mesh, PhaseRows
@@ -122,16 +123,16 @@ class Pieces:
         """Values at the points (q, c) of a motion on the grid (p, c)."""
         count = self.grid.shape[self.axis]
         table = np.moveaxis(values.reshape(*self.grid.shape, -1), self.axis, -2)
-        lines = np.fft.rfft(table, axis=-2)[..., : (count + 1) // 2, :]
-        fine = np.fft.irfft(lines, _REFINED * count, axis=-2) * _REFINED
+        lines = fft.rfft(table, axis=-2)[..., : (count + 1) // 2, :]
+        fine = fft.irfft(lines, _REFINED * count, axis=-2) * _REFINED
         return np.asarray(self._between @ fine.reshape(-1, values.shape[1]))
 
     def gather(self, values: Array) -> Array:
         """Motion on the grid (p, c) with the lines of values with their weights (q, c)."""
         count, others = self.grid.shape[self.axis], np.delete(self.grid.shape, self.axis)
         table = (self._between.T @ values).reshape(*others, _REFINED * count, -1)
-        lines = np.fft.rfft(table, axis=-2)[..., : (count + 1) // 2, :]
-        coarse = np.moveaxis(np.fft.irfft(lines, count, axis=-2) * count, -2, self.axis)
+        lines = fft.rfft(table, axis=-2)[..., : (count + 1) // 2, :]
+        coarse = np.moveaxis(fft.irfft(lines, count, axis=-2) * count, -2, self.axis)
         return np.asarray(coarse.reshape(self.grid.size, -1))
 
 

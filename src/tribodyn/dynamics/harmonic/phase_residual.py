@@ -174,15 +174,28 @@ class PhaseResidual(Residual):
         return [self.inverses[id(part)] for part in self.parts]
 
     def nearly(self, state: State) -> Callable[[Array], Array]:
-        """Product with an approximate inverse of the derivative: that of each part alone."""
-        inverses = self.inverses_at(state)
+        """Product with an approximate inverse of the derivative."""
+        return self.preconditioned(state)[1]
 
-        def product(right: Array) -> Array:
-            return self.joined(
-                [inverse(piece) for inverse, piece in zip(inverses, self.split(right), strict=True)]
-            )
+    def preconditioned(self, state: State) -> tuple[Callable[[Array], Array], ...]:
+        """The derivative after the inverses of the parts alone, one after the other, and these."""
+        # Each part feels the forces of those before it, which the derivative takes over.
+        inverses, changes = self.inverses_at(state), self.changes(state)
 
-        return product
+        def both(right: Array) -> tuple[list[Array], list[Array]]:
+            lines: list[ComplexArray | None] = [None] * len(self.parts)
+            motions, rest = [], []
+            for number, (part, piece) in enumerate(zip(self.parts, self.split(right), strict=True)):
+                felt = self.response(number, lines) if number else np.zeros(1)
+                motions.append(inverses[number](piece + felt))
+                lines[number] = part.grid.spectrum(changes[number](motions[-1]))
+                rest.append(motions[-1] - felt)
+            for number, left in enumerate(rest):
+                left -= self.response(number, lines)
+                lines[number] = None
+            return motions, rest
+
+        return lambda right: self.joined(both(right)[1]), lambda right: self.joined(both(right)[0])
 
     def correction(self, state: State, accuracy: float = LINEAR) -> tuple[Array, int]:
         """Newton step of a motion, and the number of products that it took."""

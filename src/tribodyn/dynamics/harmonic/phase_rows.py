@@ -77,12 +77,14 @@ class Mesh:
         }
         return nodes._replace(**slopes)
 
-    def at(self, turned: tuple[Array, Any], before: bool = False) -> tuple[Nodes, Index]:
+    def at(self, turned: tuple[Array, Any], before: bool = False) -> tuple[Nodes, Index | slice]:
         """Entries at the different mesh phases of points, and the row of each."""
         phase, rate = turned
+        # Phases of different rates are all different, and mostly those along a line.
+        few = len(phase) <= _CACHED or len(_different(phase[:_CACHED])[0]) < _CACHED
+        if np.ndim(rate) or not few:
+            return self.nodes(_rounded(phase), rate, before), slice(None)
         different, rows = _different(phase)
-        if np.ndim(rate):  # phases of different rates are all different
-            return self.nodes(different[rows], rate, before), np.arange(len(rows))
         key = different.tobytes(), rate, before
         nodes = self._nodes.get(key) or self.nodes(different, rate, before)
         if different.size <= _CACHED:
@@ -184,7 +186,7 @@ class PhaseRows:
         )  # fmt: skip
 
     def _joined(
-        self, parts: Sequence[tuple[dict[str, Array], Index]], axis: int
+        self, parts: Sequence[tuple[dict[str, Array], Index | slice]], axis: int
     ) -> dict[str, Array]:
         """Fields with a column for each contact or friction, from those of the meshes."""
         fields = {}
@@ -220,27 +222,32 @@ def vars_of(part: Nodes) -> dict[str, Array]:
     }
 
 
+def _rounded(phase: Array) -> Array:
+    """Phases without the rounding in which those of equal places differ."""
+    return np.asarray(np.round(phase / _SAME) * _SAME % 1.0)
+
+
 def _different(phase: Array) -> tuple[Array, Index]:
     """Different phases among phases (p,), and the number of each."""
-    values, rows = np.unique(np.round(phase / _SAME) * _SAME % 1.0, return_inverse=True)
+    values, rows = np.unique(_rounded(phase), return_inverse=True)
     return values, rows.reshape(-1)
 
 
 def _join(
-    pieces: list[tuple[Index, tuple[Array, Index]]], count: int, axis: int, filler: float
+    pieces: list[tuple[Index, tuple[Array, Index | slice]]], count: int, axis: int, filler: float
 ) -> Array:
     """Columns of all contacts from those of the meshes, filled up to the longest."""
-    values = [piece for _, (piece, _) in pieces]
-    shape = [max(sizes) for sizes in zip(*(piece.shape for piece in values), strict=True)]
-    shape[0] = 1 if all(len(piece) == 1 for piece in values) else len(pieces[0][1][1])
+    columns = [piece if len(piece) == 1 else piece[rows] for _, (piece, rows) in pieces]
+    if len(columns) == 1 and len(pieces[0][0]) == count:
+        return columns[0]
+    shape = [max(sizes) for sizes in zip(*(each.shape for each in columns), strict=True)]
     shape[axis] = count
     joined = np.full(shape, filler)
-    for numbers, (piece, rows) in pieces:
-        chosen = piece if len(piece) == 1 else piece[rows]
-        part: list[Any] = [slice(None), *map(slice, chosen.shape[1:])]
+    for (numbers, _), each in zip(pieces, columns, strict=True):
+        part: list[Any] = [slice(None), *map(slice, each.shape[1:])]
         for source, target in enumerate(numbers.tolist()):
             part[axis] = target
-            joined[tuple(part)] = np.take(chosen, source, axis)
+            joined[tuple(part)] = np.take(each, source, axis)
     return joined
 
 

@@ -9,7 +9,7 @@ coupled by the lines that both of their grids have.
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from functools import cached_property
+from functools import cached_property, partial
 from itertools import permutations
 from typing import Any, NamedTuple
 
@@ -139,22 +139,26 @@ class Residual:
         """Motions of parts, all by default, under the forces (p, s) of some, and the load."""
         lines = [None if force is None else part.grid.spectrum(force)
                  for part, force in zip(self.parts, forces, strict=True)]  # fmt: skip
-        motions = []
-        for to in range(len(self.parts)) if of is None else of:
-            part, driving = self.parts[to], lines[to]
-            if driving is None:
-                moved = np.zeros(part.receptances.shape[:2], dtype=complex)
-            else:
-                moved = (part.receptances @ driving[..., None])[..., 0]
-            if loaded:
-                moved[: len(part.loaded)] += part.loaded
-            for by, pushing in enumerate(lines):
-                if by != to and pushing is not None:
-                    link = self.links[to, by]
-                    pushed = pushing[link.of, :, None]
-                    moved[link.into] += (link.receptances @ pushed)[..., 0]
-            motions.append(part.grid.values(moved))
-        return motions
+        chosen = range(len(self.parts)) if of is None else of
+        return [self.response(to, lines, loaded) for to in chosen]
+
+    def response(
+        self, to: int, lines: Sequence[ComplexArray | None], loaded: bool = False
+    ) -> Array:
+        """Motion of a part under the lines of the forces of some, and the load."""
+        part, driving = self.parts[to], lines[to]
+        if driving is None:
+            moved = np.zeros(part.receptances.shape[:2], dtype=complex)
+        else:
+            moved = (part.receptances @ driving[..., None])[..., 0]
+        if loaded:
+            moved[: len(part.loaded)] += part.loaded
+        for by, pushing in enumerate(lines):
+            if by != to and pushing is not None:
+                link = self.links[to, by]
+                pushed = pushing[link.of, :, None]
+                moved[link.into] += (link.receptances @ pushed)[..., 0]
+        return part.grid.values(moved)
 
     def at(self, y: Array, closed: bool = False) -> State:
         """Evaluate a motion; ``closed`` fixes the springs to those that are closed at rest."""
@@ -172,14 +176,20 @@ class Residual:
         residual = self.joined([state.residual for state in states])
         return states[0]._replace(y=y, residual=residual, parts=tuple(states))
 
+    def changes(self, state: State) -> list[Callable[[Array], Array]]:
+        """Change of the forces of each part with its motion."""
+        return [
+            partial(force_change(part.structure, each), rate=part.rate)
+            for part, each in zip(self.parts, state.each, strict=True)
+        ]
+
     def derivative(self, state: State) -> Callable[[Array], Array]:
         """Product of the derivative of the residual with a motion."""
-        pairs = list(zip(self.parts, state.each, strict=True))
-        changes = [force_change(part.structure, each) for part, each in pairs]
+        changes = self.changes(state)
 
         def product(motion: Array) -> Array:
-            triples = zip(changes, self.split(motion), self.parts, strict=True)
-            forces = [change(piece, part.rate) for change, piece, part in triples]
+            pieces = zip(changes, self.split(motion), strict=True)
+            forces = [change(piece) for change, piece in pieces]
             return motion - self.joined(self.responses(forces))
 
         return product
@@ -192,18 +202,19 @@ class Residual:
         """Product with an approximate inverse of the derivative, if there is one."""
         return None
 
+    def preconditioned(self, state: State) -> tuple[Callable[[Array], Array], ...]:
+        """The derivative after an approximate inverse, and this; none without one."""
+        product, nearly = self.derivative(state), self.nearly(state)
+        return (product,) if nearly is None else (lambda x: product(nearly(x)), nearly)
+
     def correction(self, state: State, accuracy: float = LINEAR) -> tuple[Array, int]:
         """Newton step of a motion, and the number of products that it took."""
         if np.linalg.norm(state.residual, axis=1).max(initial=0.0) <= _ROUNDING * state.size:
             return -state.residual, 0  # rounding: a body that nothing holds would magnify it
         vectors = int(np.clip(_MEMORY // state.y.nbytes, _FEWEST, VECTORS))
-        product, nearly = self.derivative(state), self.nearly(state)
-        if nearly is None:
-            return solve_linear(product, -state.residual, accuracy, vectors)
-        solution, count = solve_linear(
-            lambda x: product(nearly(x)), -state.residual, accuracy, vectors
-        )
-        return nearly(solution), count
+        product, *nearly = self.preconditioned(state)
+        solution, count = solve_linear(product, -state.residual, accuracy, vectors)
+        return (nearly[0](solution) if nearly else solution), count
 
 
 class ClockResidual(Residual):
