@@ -170,11 +170,9 @@ class _OnePhase:
         """Lines (m, n, r) of values (p, r)."""
         values = y.reshape(*self.shape, -1)
         axes = self._axes()
-        lines = (
-            fft.fftn(values, axes=axes) if self.half is None else fft.rfftn(values, axes=axes)
-        )
+        lines = fft.fftn(values, axes=axes) if self.half is None else fft.rfftn(values, axes=axes)
         self._folded = np.moveaxis(lines, self.axis, -2).shape
-        return np.moveaxis(lines, self.axis, -2).reshape(-1, *self._folded[-2:])
+        return np.asarray(np.moveaxis(lines, self.axis, -2).reshape(-1, *self._folded[-2:]))
 
     def _values(self, lines: ComplexArray) -> Array:
         """Values (p, r) of lines (m, n, r)."""

@@ -57,9 +57,9 @@ class Solution(NamedTuple):
     krylov: int  #: products with the derivative
 
 
-def force_change(closed: Any, state: State) -> Callable[[Array, Callable[[Array], Array]], Array]:
-    """Change of the force on the closed structure with a motion, and a function for its rate."""
-    cell = state.cell
+def force_change(part: Any, state: State) -> Callable[[Array], Array]:
+    """Change of the force on the closed structure with the motion of a part on its grid."""
+    closed, cell = part.structure, state.cell
     if cell is None:
         stiffness = closed.contact_stiffness - state.law.stiffness
         damping = closed.contact_damping - state.law.damping
@@ -69,11 +69,11 @@ def force_change(closed: Any, state: State) -> Callable[[Array, Callable[[Array]
     spread: Any = breaks.spread(len(state.y)) if breaks.step.size else None
     gather: Any = None if spread is None else spread.T.tocsr()
 
-    def change(motion: Array, rate: Callable[[Array], Array]) -> Array:
+    def change(motion: Array) -> Array:
         sample = np.asarray if cell is None else cell.pieces.sample
         force = (stiffness @ sample(motion)[..., None])[..., 0]
         if damped:
-            force += (damping @ sample(rate(motion))[..., None])[..., 0]
+            force += (damping @ sample(part.rate(motion))[..., None])[..., 0]
         if cell is not None:
             force = cell.pieces.gather(force)
         if spread is not None:

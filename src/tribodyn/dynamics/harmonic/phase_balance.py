@@ -27,7 +27,7 @@ from tribodyn.dynamics.harmonic.phase_response import (
     phase_response,
     sum_lines,
 )
-from tribodyn.dynamics.harmonic.phase_rows import PhaseRows
+from tribodyn.dynamics.harmonic.phase_rows import PhaseRows, sampled_forces
 from tribodyn.dynamics.modal.closed_structure import ClosedStructure
 from tribodyn.dynamics.modal.contact_equations import close_contacts
 from tribodyn.errors import ComputationError, InputError, warn
@@ -47,6 +47,8 @@ _SMOOTH, _FALLING, _BROKEN = ((2e-7, _MANY),), 0.1, ((1e-5, 2**13), (2e-3, _MOST
 _BYTES = 1.5e3
 #: Step error that causes a warning; part of the largest change with which a phase is refined too.
 _LIMIT, _WORST = 1e-2, 0.2
+#: Part of the step error that the error of a motion on the way to finer grids may have.
+_NEARLY = 1e-3
 #: Damping added at first where Newton's method does not converge, over the critical damping at
 #: the highest mesh frequency, and the factors by which it is reduced; Newton steps with each.
 _ADDED, _TRIES = (0.3, 0.1, 0.03, 0.01, 0.003), 12
@@ -112,8 +114,8 @@ class _Search:
         refuse_disconnected(means)
         orbit_coordinates(means, float(frequency.max()))  # warns of forces that do not balance
         rest = at_rest(means)
-        structure, _ = close_contacts(means, rows.sampled_forces(), rest)
-        parts = parts_of(system, frequency, structure, rest)
+        structure, _ = close_contacts(means, sampled_forces(system), rest)
+        parts = parts_of(rows, structure, rest)
         return cls(rows, parts[0].structure, parts, rest.position)
 
     def residual(self, points: Points, prior: PhaseResidual | None = None) -> PhaseResidual:
@@ -225,23 +227,24 @@ def phase_balance(
     points = _first_points(search) if steps is None else _read_steps(steps, search)
     _refuse_large(search, points)
     points, residual, solution = search.first(points, start, tolerance, steps is None)
-    step_error = float("nan")
+    step_error, limit = float("nan"), tolerance
+    kept = points, residual, solution, step_error
     smooth = all(part.cell is None for part in solution.state.each)
     poor, before = np.zeros(np.shape(points), dtype=bool), np.zeros(np.shape(points))
-    while solution.error <= tolerance:
+    while solution.error <= limit:
         errors = search.changes(points, residual, solution.state)
         smooth &= bool(errors[poor].sum() <= _FALLING * before[poor].sum())
         step_error = float(errors.sum())
+        if solution.error <= tolerance:
+            kept = points, residual, solution, step_error
         poor, before = search.poor(points, errors, smooth), errors
         if steps is not None or not poor.any():
             break
-        more = doubled(points, poor)
-        finer = search.residual(more, residual)
+        points, limit = doubled(points, poor), max(tolerance, _NEARLY * step_error)
+        finer = search.residual(points, residual)
         start_y = residual.refined(solution.state.y, finer)
-        better = newton(finer, start_y, 0.01 * tolerance, patience=_PATIENCE)
-        if not better.error <= tolerance:
-            break
-        points, residual, solution = more, finer, better
+        residual, solution = finer, newton(finer, start_y, 0.01 * tolerance, patience=_PATIENCE)
+    points, residual, solution, step_error = kept
     converged = bool(solution.error <= tolerance)
     error = max(solution.error, float(np.finfo(float).eps))
     facts = {"error": error, "step_error": step_error, "converged": converged}

@@ -15,12 +15,11 @@ from typing import Any
 import numpy as np
 
 from tribodyn.dynamics.equations.orbit_coordinates import Rest
-from tribodyn.dynamics.equations.system import System
 from tribodyn.dynamics.harmonic.meshwise_inverse import MeshwiseInverse
 from tribodyn.dynamics.harmonic.newton import LINEAR, State
 from tribodyn.dynamics.harmonic.phase_contacts import PhaseContacts, axis_of
 from tribodyn.dynamics.harmonic.phase_grid import PhaseGrid
-from tribodyn.dynamics.harmonic.phase_rows import PhaseRows
+from tribodyn.dynamics.harmonic.phase_rows import Mesh, PhaseRows
 from tribodyn.dynamics.harmonic.residual import OnGrid, Residual
 from tribodyn.dynamics.modal.closed_structure import ClosedStructure
 from tribodyn.dynamics.modal.contact_equations import close_contacts
@@ -70,42 +69,25 @@ class Part:
         return OnGrid.of(self, grid, contacts, loaded, self.members, self.closed, self.floating)
 
 
-def parts_of(
-    system: System, frequency: Array, structure: ClosedStructure, rest: Rest
-) -> list[Part]:
+def parts_of(rows: PhaseRows, structure: ClosedStructure, rest: Rest) -> list[Part]:
     """Divide a system into the contacts that follow the same phases, and close them all."""
-    groups: dict[tuple[frozenset[int], int], list[int]] = {}
-    for number, contact in enumerate(system.contacts):
-        cycles = [contact.cycles, *(term.cycles for term in contact.turning)]
-        axes = frozenset(np.flatnonzero(np.any(np.array(cycles) != 0, axis=0)).tolist())
-        groups.setdefault((axes, axis_of(np.array(contact.cycles))), []).append(number)
+    groups: dict[tuple[frozenset[int], int], list[Mesh]] = {}
+    for mesh in rows.meshes:
+        groups.setdefault((mesh.axes, axis_of(mesh.cycles)), []).append(mesh)
     parts = []
-    for key, numbers in groups.items():
-        place = {number: at for at, number in enumerate(numbers)}
-        frictions = [
-            replace(each, contacts=tuple(place[j] for j in each.contacts))
-            for each in system.frictions
-            if each.contacts[0] in place
-        ]
-        contacts = [system.contacts[number] for number in numbers]
-        alone = replace(
-            system, contacts=contacts, frictions=frictions, force=np.zeros(system.size),
-            balance=None,
-        )  # fmt: skip
-        rows = PhaseRows.of(alone, frequency)
-        none = np.zeros((0, system.size))
-        resting = rest._replace(floating=rest.floating[numbers])
-        law, closed = close_contacts(rows.means, none, resting, structure.coordinates)
+    for key, meshes in groups.items():
+        some, members = rows.some(meshes), np.sort(np.concatenate([m.contacts for m in meshes]))
+        none = np.zeros((0, rows.system.size))
+        resting = rest._replace(floating=rest.floating[members])
+        law, closed = close_contacts(some.means, none, resting, structure.coordinates)
         means = law.along, law.push, law.contact_stiffness, law.contact_damping
-        parts.append(
-            Part(rows, np.array(numbers), *key, structure, *means, closed, resting.floating)
-        )
+        parts.append(Part(some, members, *key, structure, *means, closed, resting.floating))
     push, along = structure.push, structure.along
     stiffness, damping = (
         sum(push.T @ part.push @ getattr(part, name) @ part.along.T @ along for part in parts)
         for name in ("contact_stiffness", "contact_damping")
     )
-    joined = ClosedStructure(system, structure.coordinates, push, along, stiffness, damping)
+    joined = ClosedStructure(rows.system, structure.coordinates, push, along, stiffness, damping)
     return [replace(part, structure=joined) for part in parts]
 
 

@@ -6,7 +6,7 @@ alone, so that they are evaluated once at each different mesh phase and distribu
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import Any
@@ -15,8 +15,14 @@ import numpy as np
 
 from tribodyn.dynamics.equations.compiled import Compiled, sample_system
 from tribodyn.dynamics.equations.entry import entry_values
-from tribodyn.dynamics.equations.grid import PointEvaluator, RowEvaluator, build_grid, system_events
-from tribodyn.dynamics.equations.nodes import Nodes, evaluate_rows
+from tribodyn.dynamics.equations.grid import (
+    PointEvaluator,
+    RowEvaluator,
+    build_grid,
+    system_events,
+    unrepeated,
+)
+from tribodyn.dynamics.equations.nodes import Nodes, evaluate_rows, ramp_count
 from tribodyn.dynamics.equations.phases import Turning, phase_sum
 from tribodyn.dynamics.equations.system import System
 from tribodyn.dynamics.modal.contact_equations import Rows, jumping_events, project_rows
@@ -48,6 +54,7 @@ class Mesh:
     offset: float
     contacts: Index  #: their numbers in the system
     frictions: Index
+    axes: frozenset[int]  #: phases that they follow
     _nodes: dict[Any, Nodes] = field(default_factory=dict)  #: entries at few phases
 
     @property
@@ -99,7 +106,7 @@ class PhaseRows:
     system: System
     frequency: Array  #: of each phase [Hz]
     meshes: tuple[Mesh, ...]
-    mean: System  #: the system with one cycle of every mesh in a period, for mean values
+    means: Compiled  #: entries of every mesh over one cycle of its own, with checked functions
 
     @classmethod
     def of(cls, system: System, frequency: Array) -> PhaseRows:
@@ -111,29 +118,50 @@ class PhaseRows:
         clock |= {"turning_error": (), "turning_cycles": ()}
         contacts = [replace(contact, **clock) for contact in system.contacts]
         still = replace(system, force=np.zeros(system.size), contacts=contacts, lead=None)
-        meshes = tuple(
-            _mesh(still, cycles, offset, numbers) for (cycles, offset), numbers in groups.items()
-        )
         _check_turning(system)
-        rows = cls(system, frequency, meshes, still)
-        return replace(rows, mean=replace(still, force=rows.sampled_forces().mean(axis=0)))
+        meshes = []
+        for (cycles, offset), numbers in groups.items():
+            turns = [term.cycles for n in numbers for term in system.contacts[n].turning]
+            followed = np.any([np.atleast_1d(each) != 0 for each in (cycles, *turns)], axis=0)
+            axes = frozenset(np.flatnonzero(followed).tolist())
+            meshes.append(_mesh(still, cycles, offset, numbers, axes))
+        mean = replace(still, force=sampled_forces(system).mean(axis=0))
+        return cls(system, frequency, tuple(meshes), sample_system(mean, _STEPS))
 
-    @cached_property
-    def means(self) -> Compiled:
-        """Entries of every mesh over one cycle of its own, with checked functions."""
-        return sample_system(self.mean, _STEPS)
+    def some(self, meshes: Sequence[Mesh]) -> PhaseRows:
+        """The rows of some meshes, without external forces and their balance."""
+        contacts, frictions = (
+            np.sort(np.concatenate([getattr(mesh, name) for mesh in meshes]))
+            for name in ("contacts", "frictions")
+        )
+        still: dict[str, Any] = {"force": np.zeros(self.system.size), "balance": None}
+        alone = replace(_with_contacts(self.system, contacts, frictions), **still)
+        numbered = tuple(
+            replace(
+                mesh, contacts=np.searchsorted(contacts, mesh.contacts),
+                frictions=np.searchsorted(frictions, mesh.frictions),
+            )
+            for mesh in meshes
+        )  # fmt: skip
+        nodes = self.means.nodes
+        ramps = max(ramp_count("ramps", each) for each in alone.contacts)
+
+        def part(name: str) -> Array:
+            values = getattr(nodes, name)
+            numbers = frictions if name in _OF_FRICTIONS else contacts
+            chosen = unrepeated(values, values.ndim - 2)[:, :, numbers]
+            chosen = chosen[..., :ramps] if name.startswith("ramp") else chosen
+            return np.broadcast_to(chosen, (*values.shape[:2], *chosen.shape[2:]))
+
+        names = {*_OF_CONTACTS, *_OF_FRICTIONS} & {*Nodes._fields}
+        force = np.broadcast_to(0.0, nodes.force.shape)
+        nodes = nodes._replace(force=force, **{name: part(name) for name in names})
+        means = replace(self.means, system=alone, nodes=nodes)
+        return PhaseRows(alone, self.frequency, numbered, means)
 
     def force(self, points: Array) -> Array:
         """External force at points (p or 1, n)."""
-        if not callable(self.system.force):
-            return entry_values("force", self.system.force, np.zeros(1), self.system.size)
-        values = np.asarray(self.system.force(points), dtype=float)
-        return np.asarray(np.broadcast_to(values, (len(points), self.system.size)))
-
-    def sampled_forces(self) -> Array:
-        """External forces at some points of all phases (p or 1, n)."""
-        axes = [np.arange(_SAMPLED) / _SAMPLED] * self.system.phases
-        return self.force(np.stack(np.meshgrid(*axes), axis=-1).reshape(-1, len(axes)))
+        return force_at(self.system, points)
 
     def rate(self, cycles: Any) -> float:
         """Frequency of so many cycles over each phase [Hz]."""
@@ -251,18 +279,36 @@ def _join(
     return joined
 
 
-def _mesh(still: System, cycles: Any, offset: float, numbers: list[int]) -> Mesh:
+def _mesh(
+    still: System, cycles: Any, offset: float, numbers: list[int], axes: frozenset[int]
+) -> Mesh:
     """Mesh of some contacts of a system, in which each contact is on one cycle."""
-    place = {number: at for at, number in enumerate(numbers)}
-    chosen = [f for f, friction in enumerate(still.frictions) if friction.contacts[0] in place]
-    frictions = [
-        replace(still.frictions[f], contacts=tuple(place[j] for j in still.frictions[f].contacts))
-        for f in chosen
-    ]
-    contacts = [still.contacts[number] for number in numbers]
-    alone = replace(still, contacts=contacts, frictions=frictions, balance=None)
+    chosen = [f for f, each in enumerate(still.frictions) if each.contacts[0] in numbers]
+    alone = replace(_with_contacts(still, numbers, chosen), balance=None)
     counts = np.atleast_1d(np.asarray(cycles, dtype=float))
-    return Mesh(alone, counts, offset, np.array(numbers), np.array(chosen, dtype=np.int64))
+    return Mesh(alone, counts, offset, np.array(numbers), np.array(chosen, dtype=np.int64), axes)
+
+
+def _with_contacts(system: System, numbers: Iterable[int], chosen: Iterable[int]) -> System:
+    """A system with some of its contacts and frictions."""
+    place = {number: at for at, number in enumerate(numbers)}
+    each = [system.frictions[f] for f in chosen]
+    frictions = [replace(f, contacts=tuple(place[j] for j in f.contacts)) for f in each]
+    return replace(system, contacts=[system.contacts[n] for n in place], frictions=frictions)
+
+
+def force_at(system: System, points: Array) -> Array:
+    """External force of a system at points (p or 1, n)."""
+    if not callable(system.force):
+        return entry_values("force", system.force, np.zeros(1), system.size)
+    values = np.asarray(system.force(points), dtype=float)
+    return np.asarray(np.broadcast_to(values, (len(points), system.size)))
+
+
+def sampled_forces(system: System) -> Array:
+    """External forces at some points of all phases (p or 1, n)."""
+    axes = [np.arange(_SAMPLED) / _SAMPLED] * system.phases
+    return force_at(system, np.stack(np.meshgrid(*axes), axis=-1).reshape(-1, len(axes)))
 
 
 def _turning_values(term: Turning, phase: Array) -> tuple[Array, Array]:

@@ -9,7 +9,7 @@ coupled by the lines that both of their grids have.
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from functools import cached_property, partial
+from functools import cached_property
 from itertools import permutations
 from typing import Any, NamedTuple
 
@@ -178,10 +178,8 @@ class Residual:
 
     def changes(self, state: State) -> list[Callable[[Array], Array]]:
         """Change of the forces of each part with its motion."""
-        return [
-            partial(force_change(part.structure, each), rate=part.rate)
-            for part, each in zip(self.parts, state.each, strict=True)
-        ]
+        pairs = zip(self.parts, state.each, strict=True)
+        return [force_change(part, each) for part, each in pairs]
 
     def derivative(self, state: State) -> Callable[[Array], Array]:
         """Product of the derivative of the residual with a motion."""
