@@ -89,12 +89,13 @@ __all__ = ["ANY", "FILES", "LINES", "import_circles", "lines_of_code", "measures
 #: dynamics: idle gears float, whatever rounding does
 #: nonlinear, study: machines settle as long as their slowest mode decays
 #: study: machines warn, are stored and summed up as pairs are
+#: dynamics: motions over phases in less time
 LINES: dict[str, int] = {
     "__init__": 105,
     "__main__": 3,
     "aliases": 93,
     "analysis": 186,
-    "app": 2009,
+    "app": 2246,
     "arguments": 573,
     "arrays": 167,
     "cases": 1379,
@@ -105,7 +106,7 @@ LINES: dict[str, int] = {
     "contact": 422,
     "cookbook": 107,
     "drawing": 195,
-    "dynamics": 15498,
+    "dynamics": 15543,
     "ehl": 9588,
     "errors": 224,
     "exchange": 2202,
@@ -141,7 +142,7 @@ LINES: dict[str, int] = {
     "variants": 1049,
 }
 #: Modules of the package, and its annotations without a type.
-FILES, ANY = 711, 2244
+FILES, ANY = 712, 2261
 
 _NO_CODE = {
     tokenize.COMMENT, tokenize.NL, tokenize.NEWLINE, tokenize.INDENT, tokenize.DEDENT,

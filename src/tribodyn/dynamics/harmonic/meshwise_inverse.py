@@ -12,7 +12,6 @@ import math
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
-from scipy import fft
 
 from tribodyn.dynamics.harmonic.newton import State
 from tribodyn.types import Array, ComplexArray, Index
@@ -168,6 +167,8 @@ class _OnePhase:
 
     def _lines(self, y: Array) -> ComplexArray:
         """Lines (m, n, r) of values (p, r)."""
+        from scipy import fft
+
         values = y.reshape(*self.shape, -1)
         axes = self._axes()
         lines = fft.fftn(values, axes=axes) if self.half is None else fft.rfftn(values, axes=axes)
@@ -176,6 +177,8 @@ class _OnePhase:
 
     def _values(self, lines: ComplexArray) -> Array:
         """Values (p, r) of lines (m, n, r)."""
+        from scipy import fft
+
         table = np.moveaxis(lines.reshape(self._folded), -2, self.axis)
         axes = self._axes()
         if self.half is None:

@@ -14,7 +14,6 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 from numpy.polynomial import legendre
-from scipy import fft
 
 from tribodyn.dynamics.harmonic.phase_grid import PhaseGrid
 from tribodyn.dynamics.harmonic.phase_rows import Mesh, PhaseRows
@@ -121,6 +120,8 @@ class Pieces:
 
     def sample(self, values: Array) -> Array:
         """Values at the points (q, c) of a motion on the grid (p, c)."""
+        from scipy import fft
+
         count = self.grid.shape[self.axis]
         table = np.moveaxis(values.reshape(*self.grid.shape, -1), self.axis, -2)
         lines = fft.rfft(table, axis=-2)[..., : (count + 1) // 2, :]
@@ -129,6 +130,8 @@ class Pieces:
 
     def gather(self, values: Array) -> Array:
         """Motion on the grid (p, c) with the lines of values with their weights (q, c)."""
+        from scipy import fft
+
         count, others = self.grid.shape[self.axis], np.delete(self.grid.shape, self.axis)
         table = (self._between.T @ values).reshape(*others, _REFINED * count, -1)
         lines = fft.rfft(table, axis=-2)[..., : (count + 1) // 2, :]

@@ -12,7 +12,6 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-from scipy import fft
 
 from tribodyn.types import Array, ComplexArray, Index, Mask
 
@@ -59,12 +58,16 @@ class PhaseGrid:
 
     def spectrum(self, values: Array) -> ComplexArray:
         """Amplitudes of the lines of the half spectrum (k, ...) of values (p, ...)."""
+        from scipy import fft
+
         axes = tuple(range(len(self.shape)))
         lines = fft.rfftn(values.reshape(*self.shape, -1), axes=axes, norm="forward")
         return np.asarray(lines.reshape(-1, values.shape[1]), dtype=complex)
 
     def values(self, spectrum: ComplexArray) -> Array:
         """Values (p, c) of a half spectrum (k, c)."""
+        from scipy import fft
+
         lines, axes = spectrum.reshape(*self.half, -1), tuple(range(len(self.shape)))
         return np.asarray(fft.irfftn(lines, self.shape, axes, "forward").reshape(self.size, -1))
 
