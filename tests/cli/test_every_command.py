@@ -13,7 +13,7 @@ import pytest
 import tribodyn
 from tribodyn.cli import call
 from tribodyn.cli.app import COMMANDS
-from tribodyn.study import Case, MachineCase
+from tribodyn.study import MachineCase
 from tribodyn.study.studies.needs import KINDS, PARTS, STUDIES, kind_of, mesh_names, takes
 
 pytestmark = pytest.mark.filterwarnings("ignore::tribodyn.errors.ModelWarning")
@@ -43,7 +43,7 @@ def _reduced(name: str) -> Any:
         teeth = {f"meshes.{mesh}.stiffness": 5e8 for mesh in case.data.get("meshes", {})}
         films = _CHEAP if "planets" in case.data else {}  # others have no computed teeth left
         return case.replace({**teeth, **films})
-    if isinstance(case, Case) and case.gears.kind == "hypoid":
+    if case.lumped and case.gears.kind == "hypoid":
         return case.replace(_CHEAP)
     return case.replace({**_CHEAP, "stiffness.model": "iso6336", "dynamics.mesh_law": "stiffness"})
 
@@ -89,13 +89,13 @@ def place(tmp_path_factory: pytest.TempPathFactory) -> _Place:
 
 def _speed(name: str, factor: float = 1.0) -> str:
     case = tribodyn.load_case(name)
-    load = case.operation if isinstance(case, Case) else case.operating_point
+    load = case.operation if case.lumped else case.operating_point
     return f"{factor * load.speed * 30.0 / np.pi:.6g}"
 
 
 def _torque(name: str) -> str:
     case = tribodyn.load_case(name)
-    load = case.operation if isinstance(case, Case) else case.operating_point
+    load = case.operation if case.lumped else case.operating_point
     return f"{load.torque:.6g} N*m"
 
 
@@ -109,7 +109,7 @@ def _spread(name: str) -> list[str]:
 
 def _gear(name: str) -> list[str]:
     case = tribodyn.load_case(name)
-    return [] if isinstance(case, Case) else ["--gear", next(iter(case.gears))]
+    return [] if case.lumped else ["--gear", next(iter(case.gears))]
 
 
 def _mesh(name: str) -> list[str]:
@@ -118,14 +118,14 @@ def _mesh(name: str) -> list[str]:
 
 def _followed(name: str) -> list[str]:
     case = tribodyn.load_case(name)
-    return [] if isinstance(case, Case) else ["--mesh", next(iter(case.meshes))]
+    return [] if case.lumped else ["--mesh", next(iter(case.meshes))]
 
 
 def _sensor(name: str) -> str:
     case = tribodyn.load_case(name)
     if isinstance(case, MachineCase):
         return f"meshes.{next(iter(case.meshes))}.mesh_force"
-    return "mesh_force" if isinstance(case, Case) else "planet_1.sun_mesh_force"
+    return "mesh_force" if case.lumped else "planet_1.sun_mesh_force"
 
 
 #: Arguments of each command behind its name, for the place of the files and the name of a case.

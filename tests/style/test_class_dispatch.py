@@ -9,7 +9,7 @@ from source_tree import Module, modules, read
 
 #: Classes of cases and results of one kind.
 _KINDS = {
-    *("Case", "PartsCase", "MachineCase", "PlanetaryCase"),
+    *("Case", "PairCase", "PartsCase", "MachineCase", "PlanetaryCase"),
     *("Result", "PartsResult", "MachineResult", "PlanetaryResult"),
     *("LoadResult", "PlanetaryLoadResult", "StageResult"),
 }

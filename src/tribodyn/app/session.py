@@ -28,10 +28,8 @@ from tribodyn.units import UnitProblemError, format_quantity, parse, split
 from tribodyn.validated_files import plain_number
 
 if TYPE_CHECKING:
-    from tribodyn.study.case.case import Case
-    from tribodyn.study.machine.case import MachineCase
+    from tribodyn.study.machine.case import AnyCase
 
-    AnyCase = Case | MachineCase
 
 #: Greatest number of runs, and of studies, of a tab.
 RUNS = 6

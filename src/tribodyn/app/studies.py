@@ -30,8 +30,7 @@ from tribodyn.study.studies.range_syntax import toml_value
 if TYPE_CHECKING:
     from tribodyn.app.workspace import Workspace
     from tribodyn.progress import Progress
-    from tribodyn.study.case.case import Case
-    from tribodyn.study.machine.case import MachineCase
+    from tribodyn.study.machine.case import AnyCase
 
 #: Kinds of options whose values are checked before the study begins.
 _CHECKED = ("number", "integer", "choice")
@@ -83,7 +82,7 @@ def _time(unit: str, default: float, high: float, meaning: str) -> Option:
     return option
 
 
-def offered(kind: str, case: Case | MachineCase) -> bool:
+def offered(kind: str, case: AnyCase) -> bool:
     """Whether the page offers a study for a case."""
     return takes(kind, case) and (not NEEDS[kind].of_mesh or bool(study_meshes(kind, case)))
 
@@ -236,7 +235,7 @@ STUDIES: dict[str, Study] = {
 
 
 def compute(
-    kind: str, case: Case | MachineCase, texts: Mapping[str, str], progress: Progress, target: Path
+    kind: str, case: AnyCase, texts: Mapping[str, str], progress: Progress, target: Path
 ) -> Shown:
     """Check the typed values of a study, compute it and write its directory."""
     values = STUDIES[kind].read(texts)
@@ -250,7 +249,7 @@ def numeric_keys(options: Mapping[str, Option]) -> list[str]:
     return [key for key, option in options.items() if option.kind == "number"]
 
 
-def first_values(kind: str, case: Case | MachineCase) -> dict[str, str]:
+def first_values(kind: str, case: AnyCase) -> dict[str, str]:
     """Values to begin with: speeds about that of the case, the first mesh and sensor."""
     from tribodyn.units import convert
 
@@ -268,13 +267,13 @@ def first_values(kind: str, case: Case | MachineCase) -> dict[str, str]:
     return {**chosen, **first_names(kind, case)}
 
 
-def first_names(kind: str, case: Case | MachineCase) -> dict[str, str]:
+def first_names(kind: str, case: AnyCase) -> dict[str, str]:
     """Mesh and sensor that a study begins with: the first mesh, and its force."""
     listed = _listed(kind, case).items()
     return {k: next((n for n in names if "mesh_force" in n), names[0]) for k, names in listed}
 
 
-def _listed(kind: str, case: Case | MachineCase) -> dict[str, tuple[str, ...]]:
+def _listed(kind: str, case: AnyCase) -> dict[str, tuple[str, ...]]:
     """Names in the case that a study chooses from; a pair has but one mesh."""
     from tribodyn.study.faults.sensors import sensors_of
 
@@ -283,9 +282,7 @@ def _listed(kind: str, case: Case | MachineCase) -> dict[str, tuple[str, ...]]:
     return {**listed, **({"sensor": sensors_of(case).names} if kind == "recording" else {})}
 
 
-def form_of(
-    kind: str, values: Values, case: Case | MachineCase, keys: Sequence[str]
-) -> dict[str, Any]:
+def form_of(kind: str, values: Values, case: AnyCase, keys: Sequence[str]) -> dict[str, Any]:
     """The form of a study as data; ``keys`` of the case can vary."""
     study, fields = STUDIES[kind], []
     listed = {"key": keys, "second_key": keys, **_listed(kind, case)}

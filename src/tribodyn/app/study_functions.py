@@ -15,7 +15,7 @@ from tribodyn.study.studies.range_syntax import UnreadError, read_list, read_ran
 
 if TYPE_CHECKING:
     from tribodyn.progress import Progress
-    from tribodyn.study.case.case import Case
+    from tribodyn.study.case.pair import PairCase
 
 #: Values of a study by name: numbers and choices checked, others as text; None or empty: default.
 Values = Mapping[str, Any]
@@ -60,18 +60,18 @@ def ends_in(name: str, text: str) -> tuple[str, str]:
     return low, high
 
 
-def _points(case: Case, key: str, text: str) -> list[float] | None:
+def _points(case: PairCase, key: str, text: str) -> list[float] | None:
     """Parse torques or speeds like the keys of the case."""
     from tribodyn.study.studies.study_axes import points_of
 
     return points_of(case, key, _read(key, text, read_values), by="study") if text else None
 
 
-def _operation(case: Case, values: Values) -> dict[str, list[float] | None]:
+def _operation(case: PairCase, values: Values) -> dict[str, list[float] | None]:
     return {n: _points(case, f"operation.{n}", values[n] or "") for n in ("torque", "speed")}
 
 
-def shown(answer: StudyReportData, kind: str, case: Case, target: Path) -> Shown:
+def shown(answer: StudyReportData, kind: str, case: PairCase, target: Path) -> Shown:
     """Write the directory of a study, and return what the page shows of it."""
     save_study(_KINDS.get(kind, kind), case, target, answer)
     table = ["Table", list(answer.head), [list(row) for row in answer.rows]]
@@ -80,7 +80,7 @@ def shown(answer: StudyReportData, kind: str, case: Case, target: Path) -> Shown
     return parts if changes is None else {**parts, "relief": changes}
 
 
-def _sweep(case: Case, values: Values, progress: Progress, target: Path) -> Shown:
+def _sweep(case: PairCase, values: Values, progress: Progress, target: Path) -> Shown:
     from tribodyn.study.pipeline.summary_figures import in_words
     from tribodyn.study.studies.sweep import sweep
 
@@ -99,7 +99,7 @@ def _sweep(case: Case, values: Values, progress: Progress, target: Path) -> Show
     }
 
 
-def _bifurcation(case: Case, values: Values, progress: Progress, target: Path) -> Shown:
+def _bifurcation(case: PairCase, values: Values, progress: Progress, target: Path) -> Shown:
     from tribodyn.study.studies.bifurcation import Findings, bifurcation
 
     low, high, points = _read("values", values["values"], read_range)
@@ -124,7 +124,7 @@ def _bifurcation(case: Case, values: Values, progress: Progress, target: Path) -
     }
 
 
-def _recording(case: Case, values: Values, progress: Progress, target: Path) -> Shown:
+def _recording(case: PairCase, values: Values, progress: Progress, target: Path) -> Shown:
     from tribodyn.report.signal_report import recorded_motion, recording_report_data
 
     settings = {k: values[k] for k in ("duration", "sample_rate", "noise", "seed")}
@@ -139,7 +139,7 @@ def _recording(case: Case, values: Values, progress: Progress, target: Path) -> 
 WRITERS = {"sweep": _sweep, "bifurcation": _bifurcation, "recording": _recording}
 
 
-def _friction_from_loss(case: Case, values: Values, progress: Progress) -> StudyReportData:
+def _friction_from_loss(case: PairCase, values: Values, progress: Progress) -> StudyReportData:
     from tribodyn.losses import friction_from_power_loss
 
     progress.start("Friction coefficients")
@@ -153,41 +153,41 @@ def torques_in(values: Values) -> list[str] | None:
     return _read("torque", values["torque"], read_list) if values["torque"] else None
 
 
-def _relief(case: Case, values: Values, progress: Progress) -> StudyReportData:
+def _relief(case: PairCase, values: Values, progress: Progress) -> StudyReportData:
     progress.start("Tip relief")
     how = torques_in(values), values["gears"], values["mesh"]
     return of_studies.relief_report_data(case, *how)
 
 
-def _lead(case: Case, values: Values, progress: Progress) -> StudyReportData:
+def _lead(case: PairCase, values: Values, progress: Progress) -> StudyReportData:
     chosen = {name: values[name] for name in ("gear", "misalignment", "mesh")}
     return of_studies.lead_report_data(case, torques_in(values), progress, **chosen)
 
 
-def _harris(case: Case, values: Values, progress: Progress) -> StudyReportData:
+def _harris(case: PairCase, values: Values, progress: Progress) -> StudyReportData:
     progress.start("Static transmission error")
     return of_studies.harris_report_data(case, torques_in(values), values["mesh"])
 
 
-def _modes(case: Case, values: Values, progress: Progress) -> StudyReportData:
+def _modes(case: PairCase, values: Values, progress: Progress) -> StudyReportData:
     from tribodyn.report.modes_report_data import any_modes_report_data
 
     ends = ends_in("speeds", values["speeds"]) if values["speeds"] else None
     return any_modes_report_data(case, ends, progress)
 
 
-def _run_up(case: Case, values: Values, progress: Progress) -> StudyReportData:
+def _run_up(case: PairCase, values: Values, progress: Progress) -> StudyReportData:
     ends, duration = ends_in("speeds", values["speeds"]), values["duration"]
     return of_studies.run_up_report_data(case, ends, duration, progress=progress)
 
 
-def _continuation(case: Case, values: Values, progress: Progress) -> StudyReportData:
+def _continuation(case: PairCase, values: Values, progress: Progress) -> StudyReportData:
     ends, step = ends_in("ends", values["ends"]), values["longest_step"]
     how = values["periods"], step, "study", progress, values["mesh"]
     return nonlinear.continuation_report_data(case, values["key"], ends, *how)
 
 
-def _basins(case: Case, values: Values, progress: Progress) -> StudyReportData:
+def _basins(case: PairCase, values: Values, progress: Progress) -> StudyReportData:
     error, rate = (
         ends_in(name, values[name]) if values[name] else None
         for name in ("transmission_error", "rate")
@@ -196,7 +196,7 @@ def _basins(case: Case, values: Values, progress: Progress) -> StudyReportData:
     return nonlinear.basins_report_data(case, error, rate, *how)
 
 
-def _sobol(case: Case, values: Values, progress: Progress) -> StudyReportData:
+def _sobol(case: PairCase, values: Values, progress: Progress) -> StudyReportData:
     pairs = (("key", "tolerance"), ("second_key", "second_tolerance"))
     spread = {values[key]: values[tolerance] or "" for key, tolerance in pairs if values[key]}
     for key, tolerance in spread.items():

@@ -16,8 +16,7 @@ from typing import TYPE_CHECKING, Any
 from warnings import catch_warnings, simplefilter
 
 if TYPE_CHECKING:
-    from tribodyn.study.case.case import Case
-    from tribodyn.study.machine.case import MachineCase
+    from tribodyn.study.machine.case import AnyCase
 
 #: Shortest time between two messages about progress [s].
 _PAUSE = 0.15
@@ -104,10 +103,10 @@ def _carry_out(order: Mapping[str, Any], tell: Tell) -> None:
         tell(state="failed", problems=[f"{what}. This is a fault of tribodyn, not of the input."])
 
 
-def _case(order: Mapping[str, Any]) -> Case | MachineCase:
+def _case(order: Mapping[str, Any]) -> AnyCase:
     from tribodyn.study.machine.read import read_case
 
-    case: Case | MachineCase = read_case(order["case"], "case.toml")
+    case: AnyCase = read_case(order["case"], "case.toml")
     return case
 
 

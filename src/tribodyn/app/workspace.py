@@ -13,8 +13,7 @@ from tribodyn.study.machine.housing_files import copy_housing
 from tribodyn.study.machine.read import files_of, read_case
 
 if TYPE_CHECKING:
-    from tribodyn.study.case.case import Case
-    from tribodyn.study.machine.case import MachineCase
+    from tribodyn.study.machine.case import AnyCase
 
 #: Characters of a name, case files that are listed, and how deep the search goes.
 _LONGEST, _LISTED, _DEEP = 120, 200, 3
@@ -76,23 +75,23 @@ class Workspace:
         except InputError:
             return False
 
-    def load(self, name: str) -> Case | MachineCase:
+    def load(self, name: str) -> AnyCase:
         """Read a case file; files that it names have to be in the folder too."""
         place = self.inside(name, ".toml")
         if not place.is_file():
             raise InputError(f'there is no file "{name}"', "", "", "Choose one from the list")
         return self.read(read_text(place), place)
 
-    def read(self, text: str, place: Path) -> Case | MachineCase:
+    def read(self, text: str, place: Path) -> AnyCase:
         """Read a case from text as a file of the folder."""
         name = self.relative_name(place)
         for named in files_of(parse_toml(text, name)):
             if not (place.parent / named).resolve().is_relative_to(self.root):
                 raise self._outside(named)
-        case: Case | MachineCase = read_case(text, str(place))
+        case: AnyCase = read_case(text, str(place))
         return case
 
-    def save_case(self, case: Case | MachineCase, name: str, force: bool = False) -> Path:
+    def save_case(self, case: AnyCase, name: str, force: bool = False) -> Path:
         """Write a case file with the files of a housing; replace one only with ``force``."""
         from tribodyn.study.pipeline.save import write_file
 

@@ -21,7 +21,7 @@ from tribodyn.study.case.values import Plain
 from tribodyn.study.machine.read import kind_of_tables, read_case
 
 if TYPE_CHECKING:
-    from tribodyn.study.case.case_data import BaseCase
+    from tribodyn.study.case.case import Case
 
 
 def case_files() -> dict[str, Path]:
@@ -98,7 +98,7 @@ def cases(*, machines: bool = False) -> dict[str, str]:
     }
 
 
-def with_known_reasons(case: BaseCase) -> BaseCase:
+def with_known_reasons(case: Case) -> Case:
     """Drop reasons that a built-in case gives, word for word, for another value of the same key."""
     # A file with the origin of a built-in case began as its copy: compare it with that case.
     lines, kind = case.source.lines, type(case)
@@ -118,11 +118,11 @@ def with_known_reasons(case: BaseCase) -> BaseCase:
         return case
     bases = [{key: Plain(v) for key, v in model.stated.base.items()} for model in copied]
     copies = [kind(case.source, **{**data, "based_on": base}) for base in bases]
-    listed: list[BaseCase] = copies or [kind(case.source, **data)]
+    listed: list[Case] = copies or [kind(case.source, **data)]
     return min(listed, key=lambda copy: len(changed_keys(copy)))
 
 
-def _model_of(path: Path, case: BaseCase, plain: Mapping[str, str]) -> BaseCase | None:
+def _model_of(path: Path, case: Case, plain: Mapping[str, str]) -> Case | None:
     """Named case of the kind of another, if it has its origin or one of its reasons."""
     kind, origin, why = _beginning(path)
     is_source = (case.origin and case.origin == origin) or plain.items() & why.items()
@@ -130,7 +130,7 @@ def _model_of(path: Path, case: BaseCase, plain: Mapping[str, str]) -> BaseCase 
 
 
 @lru_cache(maxsize=64)
-def _beginning(path: Path) -> tuple[type[BaseCase] | None, str | None, dict[str, str]]:
+def _beginning(path: Path) -> tuple[type[Case] | None, str | None, dict[str, str]]:
     """Kind, origin and reasons of a named case; no kind where another package brings a bad one."""
     try:
         data = parse_toml(read_text(path), path.name)
@@ -140,16 +140,16 @@ def _beginning(path: Path) -> tuple[type[BaseCase] | None, str | None, dict[str,
 
 
 @lru_cache(maxsize=64)
-def _model(path: Path) -> BaseCase | None:
+def _model(path: Path) -> Case | None:
     """A named case, or None where another package brings one that is faulty."""
     try:
-        model: BaseCase = read_case(read_text(path), path.name, path.parent)
+        model: Case = read_case(read_text(path), path.name, path.parent)
         return model
     except InputError:
         return None
 
 
-def _of_another_value(case: BaseCase, key: str, models: list[BaseCase]) -> bool:
+def _of_another_value(case: Case, key: str, models: list[Case]) -> bool:
     """Whether built-in cases have the reason of a key, and none of them its value."""
     sources = [model for model in models if model.assumed.get(key) == case.assumed[key]]
     value = case.stated.marks[key]

@@ -14,8 +14,7 @@ from tribodyn.progress import SILENT, Progress
 from tribodyn.study.pipeline.store import MOTIONS, as_computed, read_stored, readable
 
 if TYPE_CHECKING:
-    from tribodyn.study import Case
-    from tribodyn.study.machine.case import MachineCase
+    from tribodyn.study.machine.case import AnyCase
 
 
 #: Endings of gearbox models of other programs.
@@ -34,7 +33,7 @@ def load_case(name_or_path: str | os.PathLike[str]) -> Any:
 
     Returns
     -------
-    Case or MachineCase
+    Case
         A machine, where the file has ``[meshes.NAME]`` or ``[planets.NAME]``; a REXS model of
         another program is one of both.
 
@@ -107,12 +106,12 @@ def _not_found(name: str, path: Path, names: list[str]) -> Problem:
     return Problem("no built-in case and no file has this name", name, why, remedy)
 
 
-def run(case: Case | MachineCase | str | os.PathLike[str], progress: Progress = SILENT) -> Any:
+def run(case: AnyCase | str | os.PathLike[str], progress: Progress = SILENT) -> Any:
     """Compute a case: a gear pair, a machine of several shafts, or a planetary stage.
 
     Parameters
     ----------
-    case : Case, MachineCase, str or path
+    case : Case, str or path
         From :func:`tribodyn.load_case`, or what that function takes.
     progress : Progress
         Reports the steps of the run; silent by default.

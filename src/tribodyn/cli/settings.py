@@ -22,8 +22,7 @@ from tribodyn.errors import (
 from tribodyn.study.studies.range_syntax import UnreadError, read_range, read_values, toml_value
 
 if TYPE_CHECKING:
-    from tribodyn.study.case.case import Case
-    from tribodyn.study.machine.case import MachineCase
+    from tribodyn.study.machine.case import AnyCase
 
 
 Output = Path | None
@@ -181,11 +180,11 @@ def changed_case(name_or_path: str, settings: Sequence[str], study: str) -> Any:
     return case
 
 
-def changed_any_case(name_or_path: str, settings: Sequence[str]) -> Case | MachineCase:
+def changed_any_case(name_or_path: str, settings: Sequence[str]) -> AnyCase:
     """Load the case of a gear pair, a machine or a planetary stage and change values."""
     from tribodyn.cases.load import load_changed_case
 
-    case: Case | MachineCase = load_changed_case(name_or_path, read_changes(settings), by="--set")
+    case: AnyCase = load_changed_case(name_or_path, read_changes(settings), by="--set")
     return case
 
 

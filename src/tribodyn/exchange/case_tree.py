@@ -17,8 +17,8 @@ from tribodyn.units import ZERO_CELSIUS
 
 if TYPE_CHECKING:
     from tribodyn.machine import Machine
-    from tribodyn.study.case.case import Case
-    from tribodyn.study.machine.case import MachineCase
+    from tribodyn.study.case.pair import PairCase
+    from tribodyn.study.machine.case import AnyCase, MachineCase
 
 #: Key of a modification, kind of component, attributes of its amount, attribute of its length.
 _FORMS: tuple[tuple[str, str, tuple[str, ...], str], ...] = (
@@ -45,7 +45,7 @@ _TO_MM, _TO_DEG, _TO_RPM = 1e3, 180.0 / math.pi, 30.0 / math.pi
 Point = tuple[float, ...]
 
 
-def tree_of(case: Case | MachineCase) -> ModelTree:
+def tree_of(case: AnyCase) -> ModelTree:
     """REXS model of a pair of cylindrical gears or of a machine, with the complete case in it."""
     tree = _CaseTree(case)
     if not case.lumped:
@@ -61,14 +61,14 @@ def tree_of(case: Case | MachineCase) -> ModelTree:
 class _CaseTree(ModelTree):
     """Model with the gear unit and its casing, to which parts of a case are added."""
 
-    def __init__(self, case: Case | MachineCase) -> None:
+    def __init__(self, case: AnyCase) -> None:
         super().__init__()
         text = case.to_toml()
         self.unit = self.add("gear_unit", case.title, [(WHOLE_CASE, "none", text)])
         self.casing = self.add("gear_casing", "Casing")
         self.relate("assembly", assembly=self.unit, part=self.casing)
 
-    def add_pair(self, case: Case) -> None:
+    def add_pair(self, case: PairCase) -> None:
         """Add the gears of a pair, each on a shaft."""
         shafts = [self.add_shaft(f"Shaft of the {name}") for name in GEARS]
         gears = [
@@ -114,7 +114,11 @@ class _CaseTree(ModelTree):
         self.add_loads(shafts[case.ends[0]], shafts[case.ends[1]], loads)
 
     def add_gears(
-        self, case: MachineCase, machine: Machine, shafts: dict[str, int], pairs: dict[str, Case]
+        self,
+        case: MachineCase,
+        machine: Machine,
+        shafts: dict[str, int],
+        pairs: dict[str, PairCase],
     ) -> dict[str, int]:
         """Add the gears of a machine; numbers by name."""
         numbers: dict[str, int] = {}
@@ -186,7 +190,7 @@ class _CaseTree(ModelTree):
         self.relate("reference", origin=part, referenced=number)
 
     def add_gear(
-        self, shaft: int, name: str, case: Case, role: str, place: Iterable[Attribute] = ()
+        self, shaft: int, name: str, case: PairCase, role: str, place: Iterable[Attribute] = ()
     ) -> int:
         """Add a gear of a pair with its flanks, tool, material and modifications."""
         gear, options = case.gear_pair.gears[role], case.gears.by_name[role]
@@ -276,7 +280,7 @@ class _CaseTree(ModelTree):
         self.relate("assembly", assembly=self.unit, part=number)
         self.relate("side", assembly=number, inner_part=shaft, outer_part=self.casing)
 
-    def add_oil(self, case: Case) -> None:
+    def add_oil(self, case: PairCase) -> None:
         """Add the oil of a pair."""
         oil = case.lubricant_properties
         if case.lubricant is None or oil is None:

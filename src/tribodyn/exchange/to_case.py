@@ -19,7 +19,7 @@ from tribodyn.exchange.gearbox import (
 from tribodyn.exchange.machine_parts import part_name
 from tribodyn.exchange.rexs_file import WHOLE_CASE, model_of
 from tribodyn.lubricant import Lubricant
-from tribodyn.study.case.case import Case
+from tribodyn.study.case.pair import PairCase
 from tribodyn.study.case.read import parse_toml
 from tribodyn.study.machine.read import kind_of_tables, read_case
 
@@ -53,7 +53,7 @@ def case_from_rexs(
     load_case: int | None = None,
     *,
     changes: dict[str, Any] | None = None,
-) -> Case:
+) -> PairCase:
     """Case of an external stage of a gearbox model under one load.
 
     Parameters
@@ -81,7 +81,7 @@ def case_from_rexs(
     return _case(model, model.stage(stage), model.load(load_case), dict(changes or {}))
 
 
-def _case(model: GearboxModel, stage: Stage, load: Load, changes: dict[str, Any]) -> Case:
+def _case(model: GearboxModel, stage: Stage, load: Load, changes: dict[str, Any]) -> PairCase:
     _require_external(model, stage)
     if "lubricant.temperature" in changes:  # the viscosity of the file depends on it
         load = replace(load, oil_temperature=_kelvin(changes["lubricant.temperature"]))
@@ -112,7 +112,7 @@ def _case(model: GearboxModel, stage: Stage, load: Load, changes: dict[str, Any]
     title = f"Stage {stage.id}: {stage.gear_1.name or 'gear 1'}, {stage.gear_2.name or 'gear 2'}"
     origin = f"REXS {model.version} file of {model.application or 'an unnamed program'}"
     assumed = {key: note for key, note in notes.items() if key not in changes}
-    return Case(title=title, origin=origin, **nested(data), assumed=assumed)
+    return PairCase(title=title, origin=origin, **nested(data), assumed=assumed)
 
 
 def _kelvin(value: Any) -> float:
@@ -291,7 +291,7 @@ def oil_values(model: GearboxModel, load: Load) -> tuple[dict[str, Any], dict[st
     return {}, {}
 
 
-def _updated(model: GearboxModel, case: Case, file_values: dict[str, Any]) -> Case:
+def _updated(model: GearboxModel, case: PairCase, file_values: dict[str, Any]) -> PairCase:
     """Case stored in the file, with the changes that another program has made since."""
     written = GearboxModel(model_of(tree_of(case).model, "the case in the file"))
     before, _ = pair_values(written, written.stage(), written.load())

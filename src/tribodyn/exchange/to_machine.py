@@ -23,10 +23,9 @@ from tribodyn.exchange.to_case import (
     shared_models,
     teeth_table,
 )
-from tribodyn.study.case.case import Case
 from tribodyn.study.case.section import flat_keys
 from tribodyn.study.case.user_input import Source, plain
-from tribodyn.study.machine.case import MachineCase
+from tribodyn.study.machine.case import AnyCase, MachineCase
 from tribodyn.study.machine.read import read_case
 from tribodyn.study.machine.unused_keys import changed_machine
 from tribodyn.types import Array
@@ -140,7 +139,7 @@ def stage_from_rexs(
     return machine_from_rexs(model, load_case, changes=changes, by=by)
 
 
-def case_from_model(model: GearboxModel, changes: dict[str, Any], by: str) -> Case | MachineCase:
+def case_from_model(model: GearboxModel, changes: dict[str, Any], by: str) -> AnyCase:
     """Case of a REXS file: the one that tribodyn stored in it, or that of its stages."""
     if model.file.stored_case and _stored_machine(model) is None:
         case = case_from_rexs(model)
@@ -152,9 +151,7 @@ def _stored_machine(model: GearboxModel) -> MachineCase | None:
     """Machine that tribodyn stored in the file, with the changes made since."""
     if not model.file.stored_case:
         return None
-    stored: Case | MachineCase = read_case(
-        model.file.stored_case, model.path, Path(model.path).parent
-    )
+    stored: AnyCase = read_case(model.file.stored_case, model.path, Path(model.path).parent)
     if stored.lumped:
         return None
     written = GearboxModel(model_of(tree_of(stored).model, "the case in the file"))

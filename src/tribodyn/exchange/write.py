@@ -21,8 +21,7 @@ from tribodyn.study.case.section import flat_keys
 from tribodyn.study.machine.housing_files import copy_housing
 
 if TYPE_CHECKING:
-    from tribodyn.study.case.case import Case
-    from tribodyn.study.machine.case import MachineCase
+    from tribodyn.study.machine.case import AnyCase
 
 _WRITERS = {
     ".rexs": ModelTree.as_xml,
@@ -31,14 +30,12 @@ _WRITERS = {
 }
 
 
-def write_rexs(
-    case: Case | MachineCase, path: str | PathLike[str], *, force: bool = False
-) -> tuple[str, ...]:
+def write_rexs(case: AnyCase, path: str | PathLike[str], *, force: bool = False) -> tuple[str, ...]:
     """Write a case as a REXS 1.4 model: a pair of gears, or a machine with its planetary stages.
 
     Parameters
     ----------
-    case : Case or MachineCase
+    case : Case
         Case of cylindrical gears.
     path : path
         File to write: ``.rexs`` is XML, ``.rexsj`` JSON, ``.rexsz`` XML in a zip. The files of a
@@ -79,7 +76,7 @@ def write_rexs(
     return omitted
 
 
-def _omitted(case: Case | MachineCase, tree: ModelTree) -> tuple[str, ...]:
+def _omitted(case: AnyCase, tree: ModelTree) -> tuple[str, ...]:
     """Keys whose stated values the model lacks without the stored case, or their tables."""
     model = GearboxModel(model_of(tree.model, "the model"))
     if not case.lumped:

@@ -28,12 +28,12 @@ from tribodyn.study.machine.tables import OperationTable
 from tribodyn.study.studies.needs import PAIRS, kind_of
 
 if TYPE_CHECKING:
-    from tribodyn.study.case.case import Case
-    from tribodyn.study.machine.case import MachineCase
+    from tribodyn.study.case.pair import PairCase
+    from tribodyn.study.machine.case import AnyCase, MachineCase
 
 
 def any_modes_report_data(
-    case: Case | MachineCase, ends: object, progress: Progress = SILENT
+    case: AnyCase, ends: object, progress: Progress = SILENT
 ) -> StudyReportData:
     """Natural modes of a pair or a machine; ``ends`` limits the speeds."""
     if kind_of(case) in PAIRS:
@@ -73,7 +73,7 @@ def _diagram_speeds(ends: Any) -> Any:
 
 
 def _pair_modes_report_data(
-    case: Case, ends: object, progress: Progress = SILENT
+    case: PairCase, ends: object, progress: Progress = SILENT
 ) -> StudyReportData:
     """Natural frequencies and critical speeds; ``ends`` limits the speeds [rad/s]."""
     from tribodyn.dynamics import natural_modes

@@ -17,8 +17,7 @@ if TYPE_CHECKING:
     from tribodyn.analysis import Basins, LyapunovExponents
     from tribodyn.dynamics import Branch
     from tribodyn.study import CaseSensitivity
-    from tribodyn.study.case.case import Case
-    from tribodyn.study.machine.case import MachineCase
+    from tribodyn.study.machine.case import AnyCase
 
 #: Rows of the table of a branch.
 _ROWS = 60
@@ -30,7 +29,7 @@ _VERDICTS = {
 
 
 def lyapunov_report_data(
-    case: Case | MachineCase,
+    case: AnyCase,
     cycles: int = 1000,
     transient: int = 300,
     progress: Progress = SILENT,
@@ -68,7 +67,7 @@ def _exponent_statements(spectrum: LyapunovExponents) -> list[str]:
 
 
 def basins_report_data(
-    case: Case | MachineCase,
+    case: AnyCase,
     transmission_error: Any = None,
     rate: Any = None,
     points: int = 31,
@@ -136,7 +135,7 @@ def _basin_statements(plane: Basins) -> list[str]:
 
 
 def continuation_report_data(
-    case: Case | MachineCase,
+    case: AnyCase,
     over: str,
     between: tuple[object, object],
     periods: int = 1,
@@ -212,7 +211,7 @@ def _branch_statements(branch: Branch, axis: Axis) -> list[str]:
 
 
 def sobol_report_data(
-    case: Case | MachineCase,
+    case: AnyCase,
     figures: Sequence[str] | None = None,
     size: int = 64,
     seed: int = 0,

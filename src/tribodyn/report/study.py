@@ -26,8 +26,8 @@ from tribodyn.study.pipeline.summary_figures import figure_of, in_words
 
 if TYPE_CHECKING:
     from tribodyn.analysis import Bifurcation
-    from tribodyn.study import Case, Sweep
-    from tribodyn.study.machine.case import MachineCase
+    from tribodyn.study import Sweep
+    from tribodyn.study.machine.case import AnyCase
 
 #: Most rows of the table; the data files contain all rows.
 _ROWS = 400
@@ -125,7 +125,7 @@ def _sweep_table(sweep: Sweep, names: Sequence[str]) -> tuple[list[str], list[li
 @with_old_names
 def write_bifurcation_report(
     diagram: Bifurcation,
-    case: Case,
+    case: AnyCase,
     path: str | os.PathLike[str],
     *,
     lead: str,
@@ -183,7 +183,7 @@ def _verdict_cards(diagram: Bifurcation) -> list[tuple[str, str]]:
 
 @with_old_names
 def write_study_report(
-    case: Case | MachineCase | None,
+    case: AnyCase | None,
     path: str | os.PathLike[str],
     *,
     kind: str,
@@ -198,7 +198,7 @@ def write_study_report(
 
     Parameters
     ----------
-    case : Case or None
+    case : Case, optional
         The case; None for a study of measurements alone.
     path
         As :func:`write_report` takes it.

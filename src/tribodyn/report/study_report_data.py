@@ -23,8 +23,8 @@ if TYPE_CHECKING:
     from tribodyn.drawing import Drawing
     from tribodyn.losses import FrictionFromLoss, GearboxLosses, PowerLossTable
     from tribodyn.nonlinear.bifurcation import Bifurcation
-    from tribodyn.study.case.case import Case
-    from tribodyn.study.machine.case import MachineCase
+    from tribodyn.study.case.pair import PairCase
+    from tribodyn.study.machine.case import AnyCase
     from tribodyn.study.studies.bifurcation import Findings
     from tribodyn.study.studies.levels import MachineLevels
 
@@ -47,7 +47,7 @@ class StudyReportData(NamedTuple):
     head: Sequence[str]
     rows: Sequence[Sequence[str]]
     facts: dict[str, Any]  #: in SI
-    best: Case | MachineCase | None = None  #: resulting case, such as the optimum
+    best: AnyCase | None = None  #: resulting case, such as the optimum
     table_file: str = ""  #: name of a file of the table
 
 
@@ -68,7 +68,7 @@ def _title(picture: Picture) -> str:
 
 def save_study(
     kind: str,
-    case: Case | MachineCase | None,
+    case: AnyCase | None,
     target: Path,
     report: StudyReportData,
     force: bool = False,
@@ -97,7 +97,7 @@ def save_study(
 
 
 def save_bifurcation(
-    diagram: Bifurcation, case: Case, findings: Findings, target: Path, force: bool = False
+    diagram: Bifurcation, case: PairCase, findings: Findings, target: Path, force: bool = False
 ) -> None:
     """Write case, data set and report of a bifurcation diagram to a directory."""
     from tribodyn.validated_files import write_dataset
@@ -118,7 +118,7 @@ def save_bifurcation(
 
 
 def harris_report_data(
-    case: Case | MachineCase, torque: Sequence[object] | None, mesh: str | None = None
+    case: AnyCase, torque: Sequence[object] | None, mesh: str | None = None
 ) -> StudyReportData:
     """Static transmission error over the torque."""
     from tribodyn.study.studies.static import harris_map
@@ -138,7 +138,7 @@ def harris_report_data(
 
 
 def relief_report_data(
-    case: Case | MachineCase, torque: Sequence[object] | None, gears: str, mesh: str | None = None
+    case: AnyCase, torque: Sequence[object] | None, gears: str, mesh: str | None = None
 ) -> StudyReportData:
     """Tip relief with the least transmission error, and the case with it."""
     from tribodyn.study.studies.static import optimize_tip_relief
@@ -163,7 +163,7 @@ def relief_report_data(
 
 
 def lead_report_data(
-    case: Case | MachineCase, torque: Sequence[Any] | None, progress: Progress, **values: Any
+    case: AnyCase, torque: Sequence[Any] | None, progress: Progress, **values: Any
 ) -> StudyReportData:
     """Crowning and lead slope that spread the load most evenly, and the case with them."""
     from tribodyn.study.studies.static import optimize_lead
@@ -182,7 +182,7 @@ def lead_report_data(
 
 
 def run_up_report_data(
-    case: Case | MachineCase,
+    case: AnyCase,
     ends: Any,
     duration: float,
     down: bool = False,
@@ -238,7 +238,7 @@ def _levels_report_data(run: MachineLevels) -> StudyReportData:
 
 
 def losses_report_data(
-    case: Case | MachineCase,
+    case: AnyCase,
     torque: object = None,
     speed: object = None,
     progress: Progress = SILENT,
@@ -287,7 +287,7 @@ def _losses(gearbox: GearboxLosses) -> tuple[list[str], list[list[str]]]:
 
 
 def film_report_data(
-    case: Case | MachineCase,
+    case: AnyCase,
     torque: object = None,
     speed: object = None,
     progress: Progress = SILENT,
@@ -339,7 +339,7 @@ MEASUREMENT: dict[str, Option] = {
 
 def measured_losses(
     file: str,
-    case: Case | MachineCase | None,
+    case: AnyCase | None,
     mesh: str | None,
     options: Mapping[str, float],
 ) -> PowerLossTable:

@@ -10,6 +10,7 @@ from tribodyn.arguments import guarded
 if TYPE_CHECKING:
     from tribodyn.cases.papers.friction_experiment import friction_experiment
     from tribodyn.study.case.case import Case
+    from tribodyn.study.case.pair import PairCase
     from tribodyn.study.faults.clock import TurningClock, turning_clock
     from tribodyn.study.faults.recording_set import RecordingSet, record_set
     from tribodyn.study.faults.recording_verdict import Finding, RecordingVerdict, judge_recordings
@@ -85,6 +86,7 @@ __all__ = [
     "MeshRating",
     "MeshSpectrum",
     "NotchRating",
+    "PairCase",
     "PartsCase",
     "PeriodicSamples",
     "PlanetaryCase",
@@ -140,9 +142,8 @@ __all__ = [
 
 #: Public names by the module that they are taken from.
 _NAMES = {
-    "case.case": "Case",
     "machine.read": "read_case",
-    "machine.case": "MachineCase PartsCase PlanetaryCase",
+    "machine.case": "Case MachineCase PairCase PartsCase PlanetaryCase",
     "machine.load_cases": "LoadCase",
     "faults.clock": "TurningClock turning_clock",
     "faults.recording_set": "RecordingSet record_set",

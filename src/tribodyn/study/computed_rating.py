@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     import xarray
 
     from tribodyn.mesh import MeshTable
-    from tribodyn.study.case.case import Case
+    from tribodyn.study.case.pair import PairCase
     from tribodyn.study.rating import MeshRating, RatedMesh
 
 
@@ -28,7 +28,7 @@ if TYPE_CHECKING:
 _REFERENCE_LOAD = 3e5
 
 
-def load_sharing_factor(case: Case, table: MeshTable) -> float:
+def load_sharing_factor(case: PairCase, table: MeshTable) -> float:
     """Greatest load of a tooth pair over that of flanks without modification or deviation."""
     from tribodyn.mesh.build import teeth_under_load
     from tribodyn.mesh.face_lines import by_pair, slice_count

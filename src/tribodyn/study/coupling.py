@@ -31,10 +31,10 @@ from tribodyn.types import Array
 if TYPE_CHECKING:
     from tribodyn.dynamics import Response
     from tribodyn.mesh import MeshTable
-    from tribodyn.study.case.case import Case
+    from tribodyn.study.case.pair import PairCase
 
 #: Takes a case and its mesh; returns the case updated by the mesh, such as with warmer oil.
-Follow = Callable[["Case", "MeshTable"], "Case"]
+Follow = Callable[["PairCase", "MeshTable"], "PairCase"]
 
 #: Distance of two samples below which they coincide [mesh cycles].
 _PHASE_TOLERANCE = 1e-9
@@ -88,7 +88,7 @@ class Coupling(Record):
 class PairTeeth:
     """The teeth of a pair under its load, whose oil may follow from its mesh."""
 
-    case: Case
+    case: PairCase
     progress: Progress = SILENT
     follow: Follow | None = None
     mesh_source: Callable[[], MeshTable] | None = None  #: of a study that has the loads and films
@@ -180,7 +180,7 @@ def mesh_under_load(
     )
 
 
-def _loading(kind: str, case: Case, mesh: MeshTable, progress: Progress) -> Array:
+def _loading(kind: str, case: PairCase, mesh: MeshTable, progress: Progress) -> Array:
     """Return the force of all pairs that results from a mesh, over its nominal force."""
     if kind == "static":
         return balanced_load(case, mesh)
@@ -193,7 +193,7 @@ def _loading(kind: str, case: Case, mesh: MeshTable, progress: Progress) -> Arra
     return force_at_knots(mesh, response) / mesh.total_normal_force
 
 
-def balanced_load(case: Case, mesh: MeshTable) -> Array:
+def balanced_load(case: PairCase, mesh: MeshTable) -> Array:
     """Return the static force of all pairs with friction, over that without friction.
 
     With the torque of one gear prescribed, the force balances that torque; with both prescribed,
@@ -244,7 +244,7 @@ def force_at_knots(mesh: MeshTable, response: Response) -> Array:
     return forces
 
 
-def _viscosity_change(before: Case, after: Case) -> float:
+def _viscosity_change(before: PairCase, after: PairCase) -> float:
     viscous_before, viscous_after = before.film_lubricant, after.film_lubricant
     if viscous_before is None or viscous_after is None:
         return 0.0

@@ -17,7 +17,7 @@ from tribodyn.study.processes import in_background
 
 if TYPE_CHECKING:
     from tribodyn.dynamics import System
-    from tribodyn.study.case.case import Case
+    from tribodyn.study.case.pair import PairCase
 
 #: Whether a first run may start a process; compiling processes start none themselves.
 allowed = True
@@ -33,7 +33,7 @@ _JOBS = {
 
 
 @contextmanager
-def compile_in_parallel(case: Case, study: str = "run") -> Iterator[bool]:
+def compile_in_parallel(case: PairCase, study: str = "run") -> Iterator[bool]:
     """Compile in parallel what a study needs inside the block; yield whether there is anything."""
     jobs = _missing_jobs(case, study) if allowed and processors() > 1 else []
     with ExitStack() as stack:
@@ -52,7 +52,7 @@ def _interruptibly(busy: Callable[[], bool]) -> bool:
     return busy()
 
 
-def _missing_jobs(case: Case, study: str = "run") -> Sequence[str]:
+def _missing_jobs(case: PairCase, study: str = "run") -> Sequence[str]:
     """Return the jobs of a study that are not cached."""
     from tribodyn.dynamics._engine.marching import march_block
     from tribodyn.dynamics.time.engines import ENGINES

@@ -24,8 +24,7 @@ from tribodyn.types import Array
 
 if TYPE_CHECKING:
     from tribodyn.machine import Machine
-    from tribodyn.study.case.case import Case
-    from tribodyn.study.machine.case import MachineCase
+    from tribodyn.study.machine.case import AnyCase
 
 _TURN = 2.0 * math.pi
 
@@ -86,7 +85,7 @@ class KinematicFrequencies(Record):
         return sorted(close, key=lambda line: abs(line.frequency - frequency))
 
 
-def kinematic_frequencies(case: Case | MachineCase, *, sidebands: int = 1) -> KinematicFrequencies:
+def kinematic_frequencies(case: AnyCase, *, sidebands: int = 1) -> KinematicFrequencies:
     """Frequencies that follow from speeds, numbers of teeth and bearings of a case.
 
     Parameters

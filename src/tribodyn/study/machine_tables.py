@@ -8,7 +8,7 @@ from dataclasses import replace
 from typing import Any
 
 from tribodyn.model import REQUIRED, Option, choice, integer, number, numbers, text
-from tribodyn.study.case.case_data import CaseData
+from tribodyn.study.case.pair import PairCase
 from tribodyn.study.case.rating_tables import BearingCatalogue, PartRating, RatingTable
 from tribodyn.study.case.section import NamedTables, Section, Table, table
 from tribodyn.study.case.sections import Losses, ShaftData
@@ -164,7 +164,7 @@ class MachineTables(Section):
     """All tables of a case of a machine."""
 
     title: str | None = text(None, meaning="one line that names this case", example='"My gearbox"')
-    origin: str | None = CaseData.fields["origin"]  # type: ignore[assignment]
+    origin: str | None = PairCase.fields["origin"]  # type: ignore[assignment]
     shafts: Section = _parts(ShaftTable, "a shaft")
     bearings: Section = _parts(BearingTable, "a bearing")
     gears: Section = _parts(GearTable, "a gear")
@@ -180,6 +180,6 @@ class MachineTables(Section):
 
 
 MachineTables.fields["load_cases"].kind.listed = True  # type: ignore[union-attr]
-MachineTables.fields |= {name: CaseData.fields[name] for name in SHARED}
+MachineTables.fields |= {name: PairCase.fields[name] for name in SHARED}
 MachineTables.fields["losses"] = table(MachineLosses, "power losses of other parts", "none")
 MachineTables.fields["rating"] = table(MachineRating, "load capacity of gears and parts", "none")

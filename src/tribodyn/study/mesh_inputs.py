@@ -20,8 +20,8 @@ if TYPE_CHECKING:
     from tribodyn.gear import CylindricalPair, HypoidFlanks, Misalignment
     from tribodyn.mesh.sharing import ToothContact
     from tribodyn.mesh.table_file import TableFile
-    from tribodyn.study.case.case import Case
     from tribodyn.study.case.gears import Gears
+    from tribodyn.study.case.pair import PairCase
     from tribodyn.study.case.sections import Dynamics
 
 #: Name of the mesh of a pair of gears.
@@ -132,7 +132,7 @@ def _sum(first: Misalignment, second: Misalignment) -> Misalignment:
     return type(first)(**sums)
 
 
-def mesh_inputs(case: Case) -> MeshInputs:
+def mesh_inputs(case: PairCase) -> MeshInputs:
     """What the teeth of the mesh of a pair are computed from."""
     contact = None if case.mesh_table is not None else contact_settings(case)
     teeth: Any = case.spur_pair
@@ -151,7 +151,7 @@ def mesh_inputs(case: Case) -> MeshInputs:
     )
 
 
-def model_settings(case: Case) -> dict[str, Any]:
+def model_settings(case: PairCase) -> dict[str, Any]:
     """Material, oil, stiffness and film of a case, as arguments of the mesh functions."""
     return {
         "material": case.material_properties,
@@ -164,7 +164,7 @@ def model_settings(case: Case) -> dict[str, Any]:
     }
 
 
-def contact_settings(case: Case) -> ToothContact:
+def contact_settings(case: PairCase) -> ToothContact:
     """Settings of the tooth contact of a case."""
     from tribodyn.mesh.sharing import ToothContact
 

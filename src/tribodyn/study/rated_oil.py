@@ -14,7 +14,7 @@ from tribodyn.study.case.to_models import lubricant
 from tribodyn.units import ZERO_CELSIUS
 
 if TYPE_CHECKING:
-    from tribodyn.study.case.case import Case
+    from tribodyn.study.case.pair import PairCase
     from tribodyn.study.case.sections import LubricantData
 
 #: Base oils of data sheets by their names in ratings; others count as mineral.
@@ -63,7 +63,7 @@ def _at_its_temperature(oil: GearOil, data: LubricantData) -> GearOil:
     )
 
 
-def gear_oil(case: Case) -> GearOil:
+def gear_oil(case: PairCase) -> GearOil:
     """Oil of a case as ratings need it, with its viscosities at 40 and 100 degC."""
     data, rating = case.lubricant, case.rating
     assert data is not None

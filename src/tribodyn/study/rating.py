@@ -37,7 +37,7 @@ if TYPE_CHECKING:
     import xarray
 
     from tribodyn.mesh import MeshTable
-    from tribodyn.study.case.case import Case
+    from tribodyn.study.case.pair import PairCase
     from tribodyn.study.pipeline.result import Result
 
 #: K_gamma of planetary stages by the number of planets, without a computation.
@@ -348,7 +348,7 @@ class CaseRating:
         }
 
 
-def conditions_of(case: Case, planets: int) -> dict[str, Any]:
+def conditions_of(case: PairCase, planets: int) -> dict[str, Any]:
     """Conditions of ``[rating]``; planets share the load unevenly."""
     rating = case.rating
     assert rating is not None
@@ -377,7 +377,7 @@ class RatedMesh:
 
     load: str
     mesh: str
-    case: Case  #: of its pair
+    case: PairCase  #: of its pair
     gears: tuple[str, str]
     #: speed [rad/s] and torque [N*m] of the pinion, negative where the other flanks carry
     operation: tuple[float, float]

@@ -20,8 +20,8 @@ from tribodyn.types import Array
 from tribodyn.validated_files import write_dataset
 
 if TYPE_CHECKING:
-    from tribodyn.study.case.case import Case
-    from tribodyn.study.machine.case import MachineCase
+    from tribodyn.study.case.pair import PairCase
+    from tribodyn.study.machine.case import AnyCase
 
 Columns = Mapping[str, list[Any]]
 
@@ -51,7 +51,7 @@ class Job(NamedTuple):
     """Input for the computation of a chunk, which is sent to a worker."""
 
     kind: str
-    case: Case | MachineCase
+    case: AnyCase
     keep: tuple[str, ...]  #: figures to store; all if it is empty
     columns: Columns
 
@@ -117,7 +117,7 @@ def _reason(error: Exception) -> str:
     return str(Problem(what, why="This is an error in tribodyn, not in the input"))
 
 
-def _summaries(case: Case | MachineCase, columns: Columns, progress: Progress) -> Part:
+def _summaries(case: AnyCase, columns: Columns, progress: Progress) -> Part:
     """Every figure of the summary of each member."""
     from tribodyn.study.studies.sweep import points_under
 
@@ -132,7 +132,7 @@ def _summaries(case: Case | MachineCase, columns: Columns, progress: Progress) -
     return Part(figures, [point.failed for point in points], warned)
 
 
-def _motions(case: Case, columns: Columns, progress: Progress) -> Part:
+def _motions(case: PairCase, columns: Columns, progress: Progress) -> Part:
     """Period, size and verdict of the steady motion of each member, integrated in batches."""
     # Lanes differ in real numbers; another number of teeth or another law makes a new case.
     fixed = [key for key, values in columns.items() if not isinstance(values[0], float)]
@@ -155,7 +155,7 @@ def _motions(case: Case, columns: Columns, progress: Progress) -> Part:
 
 
 def _marched(
-    case: Case, values: Mapping[str, Array], count: int, progress: Progress
+    case: PairCase, values: Mapping[str, Array], count: int, progress: Progress
 ) -> dict[str, Array]:
     from tribodyn.dynamics._engine.blocks import marching_on
     from tribodyn.nonlinear.parameter_map import SCALES, map_survey, stepped, surveyed

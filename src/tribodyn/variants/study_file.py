@@ -20,11 +20,10 @@ from tribodyn.cases.load import load_case
 from tribodyn.errors import InputError, Problem, did_you_mean
 from tribodyn.model import REQUIRED, Option, choice, integer, number, text
 from tribodyn.nonlinear.parameter_map import SCALES
-from tribodyn.study.case.case import Case
 from tribodyn.study.case.read import key_lines, parse_toml, read_text
 from tribodyn.study.case.user_input import Source, unsound
 from tribodyn.study.case.values import FaultError, read_value, written
-from tribodyn.study.machine.case import MachineCase
+from tribodyn.study.machine.case import AnyCase
 from tribodyn.study.pipeline.summary_figures import in_order
 from tribodyn.study.studies.range_syntax import UnreadError, read_values, toml_value
 from tribodyn.study.studies.study_axes import Axis, member_value, read_axis
@@ -91,7 +90,7 @@ class Study:
     ----------
     title : str
         One line.
-    case : Case or MachineCase
+    case : Case
         With the values that all members share.
     compute : str
         Kind of computation: ``"summary"`` or ``"motions"``.
@@ -108,7 +107,7 @@ class Study:
     """
 
     title: str
-    case: Case | MachineCase
+    case: AnyCase
     compute: str
     keep: tuple[str, ...]
     chunk: int
@@ -252,7 +251,7 @@ class _Reader:
             self.put("keep", Problem(f'there is no figure "{name}"', "", why, remedy))
         return tuple(in_order(filter(has_figure, names), figures))
 
-    def _case(self, name: str | None) -> Case | MachineCase | None:
+    def _case(self, name: str | None) -> AnyCase | None:
         """The case with the values that all members share."""
         if name is None:
             return None
@@ -260,7 +259,7 @@ class _Reader:
             try:
                 case: Any = load_case(name if name in all_files() else self.folder / name)
                 changes = self._keys("set", self.data)
-                changed: Case | MachineCase = case.replace(changes, by="set") if changes else case
+                changed: AnyCase = case.replace(changes, by="set") if changes else case
                 return changed
             except InputError:
                 raise
@@ -278,7 +277,7 @@ class _Reader:
             return _flat(table)
         return {}
 
-    def _grid(self, case: Case | MachineCase, free: Any) -> tuple[Layout | None, Mapping[str, Any]]:
+    def _grid(self, case: AnyCase, free: Any) -> tuple[Layout | None, Mapping[str, Any]]:
         axes: list[Axis] = []
         for key, entry in self._keys("axes", self.data).items():
             with self._errors(f"axes.{key}"):
@@ -292,7 +291,7 @@ class _Reader:
         grid = None if self.faults else Grid(tuple(axes))
         return grid, {"axes": [axis.key for axis in axes]}
 
-    def _sampled(self, case: Case | MachineCase) -> tuple[Layout | None, Mapping[str, Any]]:
+    def _sampled(self, case: AnyCase) -> tuple[Layout | None, Mapping[str, Any]]:
         table = self.data["samples"]
         if not isinstance(table, dict):
             self.put("samples", Problem(written(table), "", "It is a table", "Write [samples]"))
@@ -313,7 +312,7 @@ class _Reader:
         return None, {}
 
     def _listed(
-        self, case: Case | MachineCase, path: str | None, free: Any
+        self, case: AnyCase, path: str | None, free: Any
     ) -> tuple[Layout | None, Mapping[str, Any]]:
         key = "table" if path is not None else "cases"
         rows: list[tuple[str, dict[str, Any]]] = []
@@ -374,15 +373,15 @@ def _flat(table: Mapping[str, object], prefix: str = "") -> dict[str, Any]:
     return flat
 
 
-def _axis(case: Case | MachineCase, key: str, entry: object) -> Axis:
+def _axis(case: AnyCase, key: str, entry: object) -> Axis:
     return read_axis(case, key, entry, "axes")
 
 
-def _value(case: Case | MachineCase, key: str, entry: object) -> Any:
+def _value(case: AnyCase, key: str, entry: object) -> Any:
     return member_value(case, key, entry, "cases")
 
 
-def _unit(case: Case | MachineCase, key: str) -> str:
+def _unit(case: AnyCase, key: str) -> str:
     spec = None if key in SCALES else case.option_of(key)
     return spec.unit if spec else ""
 

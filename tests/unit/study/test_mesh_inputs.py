@@ -14,7 +14,7 @@ from tribodyn.errors import InputError, ModelWarning
 from tribodyn.gear import Misalignment
 from tribodyn.machine import Machine
 from tribodyn.progress import SILENT
-from tribodyn.study.case.case import Case
+from tribodyn.study.case.pair import PairCase
 from tribodyn.study.machine.case import MachineCase
 from tribodyn.study.machine.pair_cases import inputs_under
 from tribodyn.study.machine.run import run_load
@@ -65,15 +65,15 @@ def test_a_run_reads_no_case_and_checks_no_machine(
     constructed = []
 
     def counted(kind: type) -> None:
-        plain = kind.__dict__["__init__" if kind is Case else "__post_init__"]
+        plain = kind.__dict__["__init__" if kind is PairCase else "__post_init__"]
 
         def wrapper(self: object, *args: object, **values: object) -> None:
             constructed.append(kind)
             plain(self, *args, **values)
 
-        monkeypatch.setattr(kind, "__init__" if kind is Case else "__post_init__", wrapper)
+        monkeypatch.setattr(kind, "__init__" if kind is PairCase else "__post_init__", wrapper)
 
-    counted(Case)
+    counted(PairCase)
     counted(Machine)
     run_load(case, case.operating_point, SILENT, [])
     assert not constructed

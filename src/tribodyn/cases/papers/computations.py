@@ -22,7 +22,7 @@ from tribodyn.study.pipeline.tooth_contact import mesh_of
 if TYPE_CHECKING:
     from tribodyn.mesh import MeshTable
     from tribodyn.mesh.build import LoadedMesh
-    from tribodyn.study.case.case import Case
+    from tribodyn.study.case.pair import PairCase
     from tribodyn.study.pipeline.result import Result
 
 Figures = Mapping[str, float]
@@ -42,7 +42,7 @@ _HARMONICS = 22
 _NEURONS = {"acceleration": 11, "mesh_force": 10}
 
 
-def loads_of(case: Case) -> str:
+def loads_of(case: PairCase) -> str:
     """Return the values that determine loads and films of a mesh, as text."""
     values = [(key, str(value)) for key, value in case.values() if not key.startswith(_AFTER)]
     return str([(k, v) for k, v in values if k[:9] != "dynamics." or k == "dynamics.mesh_law"])
@@ -55,7 +55,7 @@ class Meshes:
         self._loaded: dict[str, LoadedMesh] = {}
         self._locks: dict[str, Lock] = {}
 
-    def loaded(self, case: Case) -> LoadedMesh:
+    def loaded(self, case: PairCase) -> LoadedMesh:
         """Loads and films of a pair with computed teeth; threads wait for equal ones."""
         from tribodyn.mesh.build import loaded_mesh
 
@@ -68,7 +68,7 @@ class Meshes:
                 )
         return self._loaded[key]
 
-    def table(self, case: Case) -> MeshTable:
+    def table(self, case: PairCase) -> MeshTable:
         """Mesh table of a case."""
         if case.spur_pair is None:
             return mesh_of(case)
@@ -76,7 +76,7 @@ class Meshes:
 
 
 @COMPUTATIONS.register("check")
-def _check(case: Case, meshes: Meshes) -> Figures:
+def _check(case: PairCase, meshes: Meshes) -> Figures:
     """Return numbers of the case, its geometry, operating point and oil; bodies of spur gears."""
     values = dict(case.values())
     numbers = {
@@ -97,7 +97,7 @@ def _check(case: Case, meshes: Meshes) -> Figures:
     return {**numbers, **geometry(case), **oil, **turning, **_spur_pair(case)}
 
 
-def _spur_pair(case: Case) -> dict[str, float]:
+def _spur_pair(case: PairCase) -> dict[str, float]:
     """Solid bodies of spur gears, and their contact at the pitch point."""
     from tribodyn.contact import effective_modulus
 
@@ -117,7 +117,7 @@ def _spur_pair(case: Case) -> dict[str, float]:
 
 
 @COMPUTATIONS.register("mesh")
-def _mesh(case: Case, meshes: Meshes) -> Figures:
+def _mesh(case: PairCase, meshes: Meshes) -> Figures:
     """Friction: mean, change over a mesh cycle, and at five places of the path of spur gears."""
     with locate_errors(case), collected():
         mesh = meshes.table(case)
@@ -129,7 +129,7 @@ def _mesh(case: Case, meshes: Meshes) -> Figures:
     return figures | _friction_places(case, mesh)
 
 
-def _friction_places(case: Case, mesh: MeshTable) -> dict[str, float]:
+def _friction_places(case: PairCase, mesh: MeshTable) -> dict[str, float]:
     """Friction of spur gears at both ends, in single contact, in the recess, at the pitch point."""
     if case.spur_pair is None:
         return {}
@@ -150,7 +150,7 @@ def _friction_places(case: Case, mesh: MeshTable) -> dict[str, float]:
 
 
 @COMPUTATIONS.register("run")
-def _run(case: Case, meshes: Meshes) -> Figures:
+def _run(case: PairCase, meshes: Meshes) -> Figures:
     """The summary of a run, and of both gears the acceleration in both directions together."""
     mesh_source = None if case.spur_pair is None else lambda: meshes.table(case)
     result = computed(case, mesh_source=mesh_source)
@@ -188,7 +188,7 @@ def _accelerations(result: Result) -> dict[str, float]:
 
 @COMPUTATIONS.register("line-contact")
 def _line_contact(
-    case: Case, meshes: Meshes, *, torque: float, speed: float, source_domain: bool = False
+    case: PairCase, meshes: Meshes, *, torque: float, speed: float, source_domain: bool = False
 ) -> Figures:
     """Film of a pair with the full load at the pitch point, at a torque [N*m] and speed [rpm]."""
     from tribodyn.contact import effective_modulus
@@ -235,7 +235,7 @@ def _line_contact(
 
 @COMPUTATIONS.register("stability")
 def _stability(
-    case: Case, meshes: Meshes, *, over: str, between: list[str], points: int, steps: int
+    case: PairCase, meshes: Meshes, *, over: str, between: list[str], points: int, steps: int
 ) -> Figures:
     """Return where along a key the motion loses period 1, and the step of that integration."""
     from tribodyn.study.studies.bifurcation import bifurcation
@@ -255,7 +255,7 @@ def _stability(
 
 
 @COMPUTATIONS.register("rig")
-def _rig(case: Case, meshes: Meshes, *, slave: str = "QJ 308") -> Figures:
+def _rig(case: PairCase, meshes: Meshes, *, slave: str = "QJ 308") -> Figures:
     """Return the motor torque of a back-to-back rig."""
     from tribodyn.study.studies.losses import rig_power_flow
 
@@ -266,7 +266,7 @@ def _rig(case: Case, meshes: Meshes, *, slave: str = "QJ 308") -> Figures:
 
 
 @COMPUTATIONS.register("modes")
-def _modes(case: Case, meshes: Meshes) -> Figures:
+def _modes(case: PairCase, meshes: Meshes) -> Figures:
     """Return natural frequencies, and energy shares of the mode nearest the fifth mesh harmonic."""
     from tribodyn.dynamics import natural_modes
     from tribodyn.study.pipeline.assembly import whole_system
@@ -286,7 +286,7 @@ def _modes(case: Case, meshes: Meshes) -> Figures:
 
 @COMPUTATIONS.register("networks")
 def _networks(
-    case: Case,
+    case: PairCase,
     meshes: Meshes,
     *,
     over: Literal["time", "cycle"],
@@ -320,7 +320,7 @@ def _networks(
 
 @COMPUTATIONS.register("arithmetic")
 def _arithmetic(
-    case: Case, meshes: Meshes, *, first: float, second: float, level: float = 0.95
+    case: PairCase, meshes: Meshes, *, first: float, second: float, level: float = 0.95
 ) -> Figures:
     """Return what follows from two printed numbers alone."""
     from scipy.stats import norm
@@ -338,7 +338,7 @@ def _arithmetic(
 
 
 @COMPUTATIONS.register("seal")
-def _seal(case: Case, meshes: Meshes) -> Figures:
+def _seal(case: PairCase, meshes: Meshes) -> Figures:
     """Factor of the loss of a seal over diameter squared and speed."""
     from tribodyn.losses import seal_loss
 
@@ -346,14 +346,16 @@ def _seal(case: Case, meshes: Meshes) -> Figures:
 
 
 @COMPUTATIONS.register("xu")
-def _xu(case: Case, meshes: Meshes) -> Figures:
+def _xu(case: PairCase, meshes: Meshes) -> Figures:
     """Constants of the regression of Xu and Kahraman as published."""
     from tribodyn.friction.xu import CONSTANTS
 
     return {f"b{number}": value for number, value in enumerate(CONSTANTS, 1)}
 
 
-def figures_of(name: str, case: Case, meshes: Meshes, arguments: Mapping[str, object]) -> Figures:
+def figures_of(
+    name: str, case: PairCase, meshes: Meshes, arguments: Mapping[str, object]
+) -> Figures:
     """Figures of a computation, those that are numbers."""
     figures = COMPUTATIONS[name](case, meshes, **arguments)
     return {key: float(value) for key, value in figures.items() if math.isfinite(value)}

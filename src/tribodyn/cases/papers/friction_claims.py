@@ -95,7 +95,7 @@ class FrictionExperiment(Sweep):
 
     Parameters
     ----------
-    case : Case
+    case : PairCase
         The case that was varied.
     axes : tuple of Axis
         Driving gear, torque that is held, and friction by name.

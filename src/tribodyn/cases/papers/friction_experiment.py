@@ -32,7 +32,7 @@ from tribodyn.study.studies.study_axes import Axis, ends_of
 from tribodyn.study.studies.sweep import compute_points, pair_source
 
 if TYPE_CHECKING:
-    from tribodyn.study.case.case import Case
+    from tribodyn.study.case.pair import PairCase
 
 #: Laws that are compared; ``constant`` takes COEFFICIENTS, and the mean of MIXED at each roughness.
 LAWS = ("none", "constant", "benedict-kelly", "xu-2007", "mixed", "mixed-ehl", "ehl")
@@ -48,7 +48,7 @@ _KEYS = ("gears.driver", "operation.torque_balance", "friction")
 
 @with_old_names
 def friction_experiment(
-    case: Case,
+    case: PairCase,
     *,
     roughness: Sequence[Any] | None = None,
     laws: Sequence[str] = LAWS,
@@ -61,7 +61,7 @@ def friction_experiment(
 
     Parameters
     ----------
-    case : Case
+    case : PairCase
         From :func:`tribodyn.load_case`; a pair of computed teeth with its oil.
     roughness : sequence of float or str, optional
         Composite roughnesses: floats in m, or text with a unit; by default seven from 0.1 to
@@ -124,7 +124,7 @@ def friction_experiment(
     return FrictionExperiment(base, axes, points, rubbing)
 
 
-def _roughnesses(case: Case, values: Sequence[object]) -> tuple[float, ...]:
+def _roughnesses(case: PairCase, values: Sequence[object]) -> tuple[float, ...]:
     if isinstance(values, str) or not len(values):
         remedy = 'Write, for example, ["0.4 um", "0.8 um"]'
         raise InputError(
@@ -141,7 +141,7 @@ def _laws(names: Sequence[str]) -> tuple[str, ...]:
     return tuple(dict.fromkeys((NONE, *names)))
 
 
-def _with_film(case: Case, laws: Sequence[str]) -> Case:
+def _with_film(case: PairCase, laws: Sequence[str]) -> PairCase:
     """Return the case with the film that the laws need and a composite roughness."""
     from tribodyn.ehl import FILM_MODELS
     from tribodyn.friction import LAWS as LAW_REGISTRY
@@ -164,7 +164,7 @@ def _with_film(case: Case, laws: Sequence[str]) -> Case:
     return case.replace({**changes, **cleared, **rough})
 
 
-def _loaded(base: Case, progress: Progress) -> Meshes:
+def _loaded(base: PairCase, progress: Progress) -> Meshes:
     """Compute loads and films of the pair for each driving gear."""
     meshes = Meshes()
 
@@ -178,7 +178,7 @@ def _loaded(base: Case, progress: Progress) -> Meshes:
 
 
 def _list_frictions(
-    base: Case,
+    base: PairCase,
     meshes: Meshes,
     laws: Sequence[str],
     heights: Sequence[float],
@@ -202,7 +202,7 @@ def _list_frictions(
     return frictions
 
 
-def _same_coefficients(base: Case, meshes: Meshes, smooth: Rubbing, rough: Rubbing) -> bool:
+def _same_coefficients(base: PairCase, meshes: Meshes, smooth: Rubbing, rough: Rubbing) -> bool:
     """Whether two frictions have the same coefficients; False if a law cannot be applied."""
     try:
         with collected():
@@ -215,7 +215,7 @@ def _same_coefficients(base: Case, meshes: Meshes, smooth: Rubbing, rough: Rubbi
     return bool(np.array_equal(coefficients, others))
 
 
-def _case_with(base: Case, friction: Rubbing, meshes: Meshes, driver: str) -> Case:
+def _case_with(base: PairCase, friction: Rubbing, meshes: Meshes, driver: str) -> PairCase:
     changes = {_KEYS[0]: driver, "gears.composite_roughness": friction.roughness}
     if friction.as_mixed:
         mixed = base.replace({**changes, "friction.law": MIXED})

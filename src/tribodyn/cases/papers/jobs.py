@@ -18,7 +18,7 @@ from tribodyn.study.studies.runner import run_each
 from tribodyn.units import shown_in
 
 if TYPE_CHECKING:
-    from tribodyn.study.case.case import Case
+    from tribodyn.study.case.pair import PairCase
 
 #: A computation: its name, the case, and as text the changes of the case and its arguments.
 Request = tuple[str, str, str, str]
@@ -58,13 +58,13 @@ class Jobs:
 
     @staticmethod
     @cache
-    def _changed(name: str, changes: str) -> Case:
+    def _changed(name: str, changes: str) -> PairCase:
         # TOML has no null: an empty text removes a value, as --set KEY= does.
         items = json.loads(changes).items()
-        case: Case = load_case(name)
+        case: PairCase = load_case(name)
         return case.replace({key: None if v == "" else v for key, v in items})
 
-    def case(self, request: Request) -> Case:
+    def case(self, request: Request) -> PairCase:
         """Case of a computation."""
         return self._changed(request[1], request[2])
 

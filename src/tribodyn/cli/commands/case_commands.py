@@ -13,8 +13,7 @@ from tribodyn.errors import InputError
 from tribodyn.units import UnitProblemError, parse
 
 if TYPE_CHECKING:
-    from tribodyn.study.case.case import Case
-    from tribodyn.study.machine.case import MachineCase
+    from tribodyn.study.machine.case import AnyCase, MachineCase
 
 
 def cases(*, json: Flag = False) -> None:
@@ -205,7 +204,7 @@ def new(
         tell(f"Edit it, then: tribodyn check {path}")
 
 
-def _new_text(source: Case | MachineCase | None, kind: str = "") -> str:
+def _new_text(source: AnyCase | None, kind: str = "") -> str:
     """Text of a case file with all values of a case, or to be filled in."""
     from tribodyn.study.case.reference import start_toml
     from tribodyn.study.parts_reference import start_of

@@ -27,7 +27,7 @@ from tribodyn.study.studies.needs import require
 
 if TYPE_CHECKING:
     from tribodyn.losses import RigPowerFlow
-    from tribodyn.study.case.case import Case
+    from tribodyn.study.case.pair import PairCase
 
 Text = str | None
 _EXAMPLES = {"torque": "50,150,300 N*m", "speed": "400..3500 rpm:8"}
@@ -90,7 +90,7 @@ def losses(
     finish("losses", ready, target, answer, at, warnings)
 
 
-def _values(case: Case, name: str, text: Text) -> list[float] | None:
+def _values(case: PairCase, name: str, text: Text) -> list[float] | None:
     """Return torques or speeds of an option, checked like the key of the case."""
     from tribodyn.study.studies.study_axes import points_of
 
@@ -106,7 +106,7 @@ def _values(case: Case, name: str, text: Text) -> list[float] | None:
         raise InputError(problems) from None
 
 
-def _slave(case: Case, rig: Text) -> Case | None:
+def _slave(case: PairCase, rig: Text) -> PairCase | None:
     if rig is None:
         return None
     require("losses --rig", case, "--rig")
@@ -114,7 +114,7 @@ def _slave(case: Case, rig: Text) -> Case | None:
     return case.replace(bearings, by="--rig")
 
 
-def _rig(case: Case, slave: Case, facts: dict[str, Any]) -> RigPowerFlow:
+def _rig(case: PairCase, slave: PairCase, facts: dict[str, Any]) -> RigPowerFlow:
     """Power flow of the rig; its figures are added to the facts."""
     from tribodyn.study.studies.losses import rig_power_flow
 

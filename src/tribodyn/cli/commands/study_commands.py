@@ -14,8 +14,7 @@ if TYPE_CHECKING:
     from tribodyn.errors import ModelWarning
     from tribodyn.progress import Progress
     from tribodyn.report.study_report_data import StudyReportData
-    from tribodyn.study.case.case import Case
-    from tribodyn.study.machine.case import MachineCase
+    from tribodyn.study.machine.case import AnyCase
 
 
 def answer(
@@ -33,7 +32,7 @@ def answer(
 
 def finish(
     kind: str,
-    case: Case | MachineCase | None,
+    case: AnyCase | None,
     target: Path,
     results: StudyReportData,
     at: Place,

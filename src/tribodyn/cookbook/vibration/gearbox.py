@@ -8,7 +8,7 @@ Read on: machines, dynamics
 
 import tribodyn as td
 
-case = td.study.MachineCase(
+case = td.Case(
     gears={
         "z1": {"shaft": "in", "teeth": 23, "face_width": "30 mm"},
         "z2": {"shaft": "middle", "teeth": 57, "face_width": "30 mm"},

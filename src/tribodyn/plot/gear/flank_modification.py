@@ -29,7 +29,7 @@ if TYPE_CHECKING:
 #: Points along the profile and along the face.
 _POINTS = 201
 #: Further classes with a gear pair.
-_OTHERS = ("Case", "HarrisMap", "TipReliefOptimum", "ComprehensiveStiffness")
+_OTHERS = ("PairCase", "HarrisMap", "TipReliefOptimum", "ComprehensiveStiffness")
 
 
 def _perfect(pair: SpurPair) -> str:

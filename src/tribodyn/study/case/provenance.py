@@ -30,7 +30,8 @@ from tribodyn.study.case.user_input import Stated, UserInput, si_value
 from tribodyn.study.case.values import FaultError, Plain, unmarked, written
 
 if TYPE_CHECKING:
-    from tribodyn.study.case.case_data import BaseCase, CaseData
+    from tribodyn.study.case.case import Case
+    from tribodyn.study.case.pair import PairCase
 
 
 #: Relative tolerance for equal values.
@@ -110,7 +111,7 @@ def _read(
     return values, problems
 
 
-def read_stated(case: BaseCase, data: Mapping[str, Any]) -> tuple[Stated, KeyedProblems]:
+def read_stated(case: Case, data: Mapping[str, Any]) -> tuple[Stated, KeyedProblems]:
     """Read recorded values and their problems; those of parts that are gone stay as typed."""
     table, base = data.get("assumed", {}), data.get("based_on", {})
     if not isinstance(base, Mapping):
@@ -141,7 +142,7 @@ def _flat(table: Mapping[str, Any], prefix: str = "") -> dict[str, Any]:
 
 
 def settled(
-    case: BaseCase, reasons: Mapping[str, str], inputs: UserInput, stated: Stated
+    case: Case, reasons: Mapping[str, str], inputs: UserInput, stated: Stated
 ) -> tuple[Stated, set[str]]:
     """Return records valid for the effective values, and keys whose reason is outdated."""
     # A reason without a recorded value refers to the value given with it.
@@ -276,13 +277,13 @@ class Assumption:
         return f"{self.key} = {self.value} ({self.kind}): {self.reason}"
 
 
-def _model_of(case: CaseData, path: list[str]) -> Model | None:
+def _model_of(case: PairCase, path: list[str]) -> Model | None:
     """Return the model that a table of the case names."""
     section = vars(case).get(path[0]) if len(path) == 1 else None
     return section.chosen if isinstance(section, Section) else None
 
 
-def _bored(case: CaseData, default: Any) -> Any:
+def _bored(case: PairCase, default: Any) -> Any:
     """Return the reference of deflection: the rim where a gear has no bore and is no ring."""
     if case.gears.kind != "spur":
         return default
@@ -291,7 +292,7 @@ def _bored(case: CaseData, default: Any) -> Any:
     return "rim" if default == "bore" and not all(supported) else default
 
 
-def effective_values(case: CaseData) -> dict[str, Any]:
+def effective_values(case: PairCase) -> dict[str, Any]:
     """Return all effective values by dotted key, with defaults filled in."""
     values, kind = in_force(case), case.gears.kind
     values |= {key: None for key in values if is_idle(key, kind)}
@@ -307,12 +308,12 @@ def effective_values(case: CaseData) -> dict[str, Any]:
     return values
 
 
-def effective(case: BaseCase) -> dict[str, Any]:
+def effective(case: Case) -> dict[str, Any]:
     """Return all effective values by dotted key."""
     return dict(case._effective)
 
 
-def default_of(case: CaseData, key: str) -> Any:
+def default_of(case: PairCase, key: str) -> Any:
     """Return the default of a key for this case; None if it is derived."""
     *path, name = key.split(".")
     section = section_at(tuple(path))
@@ -330,14 +331,14 @@ def default_of(case: CaseData, key: str) -> Any:
     return _bored(case, standard) if key == "stiffness.reference" else standard
 
 
-def changed_keys(case: BaseCase) -> tuple[str, ...]:
+def changed_keys(case: Case) -> tuple[str, ...]:
     """Return the keys whose values differ from the initial values of the case."""
     if case._changed is None:
         case._changed = _keys_that_changed(case)
     return case._changed
 
 
-def _keys_that_changed(case: BaseCase) -> tuple[str, ...]:
+def _keys_that_changed(case: Case) -> tuple[str, ...]:
     values, base = effective(case), case.stated.base
     if any(values.get(key) is None for key in base):
         derived = case._derived_values()
@@ -346,7 +347,7 @@ def _keys_that_changed(case: BaseCase) -> tuple[str, ...]:
     return _in_order(case, differing(before, values) - set(_TEXT_KEYS))
 
 
-def _defaults_before(case: BaseCase, keys: Iterable[str]) -> dict[str, Any]:
+def _defaults_before(case: Case, keys: Iterable[str]) -> dict[str, Any]:
     """Return the initial defaults of keys that were given later."""
     inputs, base = case.user_input, case.stated.base
     return {
@@ -356,12 +357,12 @@ def _defaults_before(case: BaseCase, keys: Iterable[str]) -> dict[str, Any]:
     }
 
 
-def _in_order(case: BaseCase, changed: Set[str]) -> tuple[str, ...]:
+def _in_order(case: Case, changed: Set[str]) -> tuple[str, ...]:
     keys = dict.fromkeys((*case._effective, *case.stated.base))
     return tuple(key for key in keys if key in changed)
 
 
-def changed_after(before: BaseCase, case: BaseCase, numbers: Mapping[str, Any]) -> None:
+def changed_after(before: Case, case: Case, numbers: Mapping[str, Any]) -> None:
     """Set the changed keys of a case that differs from another only in some numbers."""
     base = case.stated.base
     if any(case._effective.get(key) is None for key in base):
@@ -371,7 +372,7 @@ def changed_after(before: BaseCase, case: BaseCase, numbers: Mapping[str, Any]) 
     case._changed = _in_order(case, changed)
 
 
-def _marked(case: BaseCase, key: str, value: Any, changed: tuple[str, ...]) -> str:
+def _marked(case: Case, key: str, value: Any, changed: tuple[str, ...]) -> str:
     """Return the provenance of a value marked in ``[assumed]``."""
     reason = case.assumed[key]
     if reason != DEFAULT_MARK:
@@ -386,7 +387,7 @@ def _marked(case: BaseCase, key: str, value: Any, changed: tuple[str, ...]) -> s
     return f"assumed: marked as default in the file, while this version has {current} for this case"
 
 
-def _derived_from(case: CaseData, key: str) -> str:
+def _derived_from(case: PairCase, key: str) -> str:
     spec = case.option_of(key)
     is_usual = key == "dynamics.backlash" and has_usual_backlash(case)
     return USUAL_GEARS if is_usual else spec.basis if spec else ""
@@ -400,7 +401,7 @@ def _follows(case: Any, key: str) -> bool:
     return bool(_derived_from(case, key)) and chosen and not is_idle(key, case.gears.kind)
 
 
-def provenance(case: BaseCase) -> dict[str, str]:
+def provenance(case: Case) -> dict[str, str]:
     """Return the provenance of every effective value."""
     origins, changed, inputs = {}, changed_keys(case), case.user_input
     for key, value in effective(case).items():
@@ -413,7 +414,7 @@ def provenance(case: BaseCase) -> dict[str, str]:
     return origins
 
 
-def assumptions(case: CaseData) -> tuple[Assumption, ...]:
+def assumptions(case: PairCase) -> tuple[Assumption, ...]:
     """List everything that the user did not state: assumed values and defaults."""
     values, derived, rows = effective(case), derived_values(case), []
     for key, origin in provenance(case).items():
@@ -429,7 +430,7 @@ def assumptions(case: CaseData) -> tuple[Assumption, ...]:
     return (*rows, *_heights(case), *_oil_assumptions(case))
 
 
-def _heights(case: CaseData) -> Iterator[Assumption]:
+def _heights(case: PairCase) -> Iterator[Assumption]:
     """Yield the rms roughness of flanks given as Ra."""
     for name, gear in (("pinion", case.gears.pinion), ("wheel", case.gears.wheel)):
         key = f"gears.{name}.roughness_rms"
@@ -439,7 +440,7 @@ def _heights(case: CaseData) -> Iterator[Assumption]:
             yield Assumption(key, spec.show(gear.rms), "assumed", reason)
 
 
-def _oil_assumptions(case: CaseData) -> list[Assumption]:
+def _oil_assumptions(case: PairCase) -> list[Assumption]:
     """Return the assumptions of the oil library about the oil of a case."""
     oil = case.lubricant_properties
     if oil is None:
@@ -447,7 +448,7 @@ def _oil_assumptions(case: CaseData) -> list[Assumption]:
     return [Assumption("lubricant", oil.name, "assumed", reason) for reason in oil.assumptions]
 
 
-def derived_values(case: CaseData) -> dict[str, float]:
+def derived_values(case: PairCase) -> dict[str, float]:
     """Return all values that are derived because the case does not give them."""
     from tribodyn.gear import default_relief_length, mass_properties
 
@@ -469,7 +470,7 @@ def derived_values(case: CaseData) -> dict[str, float]:
     return _absent_from_case(case, values)
 
 
-def _solid_cone_properties(case: CaseData) -> dict[str, float]:
+def _solid_cone_properties(case: PairCase) -> dict[str, float]:
     """Return masses and inertias of a hypoid pair."""
     if case.hypoid_flanks is None:
         return {}
@@ -480,6 +481,6 @@ def _solid_cone_properties(case: CaseData) -> dict[str, float]:
     }
 
 
-def _absent_from_case(case: CaseData, values: dict[str, float]) -> dict[str, float]:
+def _absent_from_case(case: PairCase, values: dict[str, float]) -> dict[str, float]:
     case_values = dict(case.values())
     return {key: value for key, value in values.items() if case_values.get(key, value) is None}

@@ -13,7 +13,7 @@ from tribodyn.study.case.section import NamedTables, Section, table
 
 if TYPE_CHECKING:
     from tribodyn.rating import GearMaterial, ShaperCutter, SpectrumLoad
-    from tribodyn.study.case.case_data import CaseData
+    from tribodyn.study.case.pair import PairCase
     from tribodyn.study.case.sections import LubricantData
 
 _STRENGTH = "strengths of metals in N/mm2; guards against a wrong unit"
@@ -257,7 +257,7 @@ class NotchTable(Section):
     )
 
 
-def gear_material(case: CaseData, role: str) -> GearMaterial:
+def gear_material(case: PairCase, role: str) -> GearMaterial:
     """Strength of the material of a gear; Eh MQ where it names none."""
     from tribodyn.rating import GearMaterial
 
@@ -274,7 +274,7 @@ def gear_material(case: CaseData, role: str) -> GearMaterial:
     )
 
 
-def shaper_cutter(case: CaseData, role: str) -> ShaperCutter | None:
+def shaper_cutter(case: PairCase, role: str) -> ShaperCutter | None:
     """Cutter that made a gear; None where its case has none."""
     from tribodyn.rating import ShaperCutter
 
@@ -320,7 +320,7 @@ def history_problems(rating: Any, speed: float | None) -> Iterator[tuple[str, Pr
                 yield f"rating.{key}", problem
 
 
-def _wear_problems(case: CaseData) -> Iterator[tuple[str, Problem]]:
+def _wear_problems(case: PairCase) -> Iterator[tuple[str, Problem]]:
     assert case.rating is not None
     if case.rating.wear_coefficient is None:
         return
@@ -360,7 +360,7 @@ def _viscosity_problems(oil: LubricantData, at_40: float | None) -> Iterator[tup
             yield "rating.kinematic_viscosity_at_40", Problem(what, "", why, remedy)
 
 
-def rating_problems(case: CaseData) -> Iterator[tuple[str, Problem]]:
+def rating_problems(case: PairCase) -> Iterator[tuple[str, Problem]]:
     """Problems of materials and of the rating, by dotted key."""
     names = [] if case.materials is None else [n for n in vars(case.materials) if n[0] != "_"]
     if case.rating is None:

@@ -16,7 +16,7 @@ from tribodyn.study.case.user_input import Note, Source
 from tribodyn.validated_files import read_bytes
 
 if TYPE_CHECKING:
-    from tribodyn.study.case.case_data import BaseCase
+    from tribodyn.study.case.case import Case
 
 _SPACE = " \t\r"
 
@@ -204,7 +204,7 @@ def source_of(text: str, name: str) -> Source:
 
 
 @contextmanager
-def unchanged_files(case: BaseCase) -> Iterator[None]:
+def unchanged_files(case: Case) -> Iterator[None]:
     """Raise if a file that the case names changes while the block runs."""
     files = case._named_files()
     before = {key: _state(path) for key, path in files.items()}

@@ -8,13 +8,13 @@ from functools import lru_cache
 from importlib.resources import files
 
 from tribodyn.model import Model, Option
-from tribodyn.study.case.case import Case
+from tribodyn.study.case.pair import PairCase
 from tribodyn.study.case.section import Section, Table, section_at
 
 
 def case_keys() -> Iterator[tuple[str, Option, str]]:
     """Iterate over all keys of the case file."""
-    yield from walk(Case, ())
+    yield from walk(PairCase, ())
 
 
 def walk(section: type[Section], path: tuple[str, ...]) -> Iterator[tuple[str, Option, str]]:
@@ -65,7 +65,7 @@ def start_toml(
     place = files("tribodyn.study.case").joinpath("texts", f"{name}.toml")
     text = place.read_text(encoding="utf-8")
     lines: list[str] = []
-    section: type[Section] | None = Case
+    section: type[Section] | None = PairCase
     for line in text.splitlines():
         pair, _, note = line.partition("  # ")
         if line.startswith("["):
@@ -98,7 +98,7 @@ def _limits(spec: Option) -> str:
 
 def _models() -> Iterator[tuple[str, Model]]:
     """Iterate over all models that a case can name, with the key that selects each."""
-    for table, field in Case.fields.items():
+    for table, field in PairCase.fields.items():
         section = field.kind if isinstance(field, Table) else None
         for model in section.section_keys().models.values() if section else ():
             yield f"{table}.{section.selector}", model  # type: ignore[union-attr]

@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from tribodyn.losses import Gearbox, ShaftParts
     from tribodyn.lubricant import Lubricant
     from tribodyn.mesh.table_file import TableFile
-    from tribodyn.study.case.case_data import CaseData
+    from tribodyn.study.case.pair import PairCase
 
 #: Play of usual gears on the line of action [m], and the most over the normal module.
 USUAL_BACKLASH, _MODULES = 0.1e-3, 0.1
@@ -83,7 +83,7 @@ def usual_backlash(gears: Gears, dynamics: Dynamics, pair: SpurPair) -> float | 
     return None if is_linear or dynamics.backlash is not None or pair.backlash >= play else play
 
 
-def has_usual_backlash(case: CaseData) -> bool:
+def has_usual_backlash(case: PairCase) -> bool:
     """Return whether the teeth are thinned for a usual backlash that the case does not give."""
     has_play = case.dynamics.backlash is not None or case.gears.kind != "spur"
     return not has_play and case.gear_pair.pinion.tooth_thinning > 0.0
@@ -182,7 +182,7 @@ def material(data: MaterialData) -> Material:
     return Material(data.youngs_modulus, data.poissons_ratio, data.density)
 
 
-def thermal_contact_coefficients(case: CaseData) -> tuple[float, float]:
+def thermal_contact_coefficients(case: PairCase) -> tuple[float, float]:
     """Return the thermal contact coefficient ``sqrt(k rho c)`` of each flank."""
     from tribodyn.friction import STEEL_BODIES
 
@@ -242,7 +242,7 @@ def shaft_parts(data: Any) -> ShaftParts:
     return ShaftParts(**{**vars(data), "bearing": data.bearing and BEARINGS[data.bearing]})
 
 
-def _gearbox_losses(case: CaseData) -> object:
+def _gearbox_losses(case: PairCase) -> object:
     """Compute the losses of the case without those of its teeth, to find input errors."""
     from tribodyn.losses import gearbox_losses
 
@@ -252,7 +252,7 @@ def _gearbox_losses(case: CaseData) -> object:
     return case.gearbox and gearbox_losses(gears, case.gearbox, 0.0, **point, lubricant=oil)
 
 
-def mesh_law_of(case: CaseData) -> MeshForce:
+def mesh_law_of(case: PairCase) -> MeshForce:
     """Return the mesh law of a case: stiffness, tangent of the force law, or force law."""
     return mesh_law(case.dynamics, case.mesh_table, case.spur_pair, case.stiffness.model)
 
@@ -306,7 +306,7 @@ def _key(problem: Problem, section: str) -> str:
     return f"{section}.{place.gear}.{place.name}" if place.gear else f"{section}.{place.name}"
 
 
-def _key_in(case: CaseData, problem: Problem) -> str:
+def _key_in(case: PairCase, problem: Problem) -> str:
     """Return the key of the case that a problem refers to; empty if undetermined."""
     place = problem.where
     if isinstance(place, ModelOption):
@@ -331,7 +331,7 @@ def _key_in(case: CaseData, problem: Problem) -> str:
 
 
 @contextmanager
-def locate_errors(case: CaseData) -> Iterator[None]:
+def locate_errors(case: PairCase) -> Iterator[None]:
     """Add file, line and key to the input errors raised inside the block."""
     try:
         yield
@@ -379,7 +379,7 @@ def no_gear_pair(kind: str) -> Problem:
     return Problem(what, "gears.kind", _NO_PAIR_REASONS[kind], remedy)
 
 
-def contact_models(case: CaseData) -> tuple[str, str]:
+def contact_models(case: PairCase) -> tuple[str, str]:
     """Return the names of the stiffness and the film model of the tooth contact."""
     from tribodyn.mesh.hypoid.film import ELLIPTICAL
 
@@ -390,7 +390,7 @@ def contact_models(case: CaseData) -> tuple[str, str]:
     return str(stiffness), str(case.film.model)
 
 
-def backlash(case: CaseData) -> float:
+def backlash(case: PairCase) -> float:
     """Return the backlash on the line of action that results from the teeth [m]."""
     flanks = case.hypoid_flanks
     if flanks is not None:
@@ -400,7 +400,7 @@ def backlash(case: CaseData) -> float:
     return 0.0 if case.gears.kind == "table" else case.gear_pair.backlash
 
 
-def _table_problems(case: CaseData) -> list[tuple[str, Problem]]:
+def _table_problems(case: PairCase) -> list[tuple[str, Problem]]:
     """Find problems of a mesh table and of its use in the case."""
     problems = _faults("gears.table", lambda: case.mesh_table)
     table = None if problems else case.mesh_table
@@ -418,7 +418,7 @@ def _table_problems(case: CaseData) -> list[tuple[str, Problem]]:
     return problems
 
 
-def _trial(case: CaseData, table: TableFile, coefficient: float | None) -> object:
+def _trial(case: PairCase, table: TableFile, coefficient: float | None) -> object:
     return table.table(
         teeth=case.gears.pinion.teeth,
         driver=case.gears.driver,
@@ -428,7 +428,7 @@ def _trial(case: CaseData, table: TableFile, coefficient: float | None) -> objec
     )
 
 
-def friction_of_table(case: CaseData) -> float | None:
+def friction_of_table(case: PairCase) -> float | None:
     """Return the coefficient that replaces those of a mesh table; None to use the table."""
     return case.friction.coefficient if case.friction.law == "constant" else None
 
@@ -444,7 +444,7 @@ def gear_problems(gears: Gears) -> list[tuple[str, Problem]]:
     return _faults("gears", lambda: gear_pair(gears))
 
 
-def case_problems(case: CaseData) -> list[tuple[str, Problem]]:
+def case_problems(case: PairCase) -> list[tuple[str, Problem]]:
     """Find physical contradictions in a formally valid case."""
     if case.gears.kind == "table":
         return _table_problems(case) or _fault_problems(case) or list(rating_problems(case))
@@ -460,7 +460,7 @@ def case_problems(case: CaseData) -> list[tuple[str, Problem]]:
     return problems if case.gears.kind == "hypoid" else problems + _bores(case)
 
 
-def _fault_problems(case: CaseData) -> list[tuple[str, Problem]]:
+def _fault_problems(case: PairCase) -> list[tuple[str, Problem]]:
     """Find faults that are incomplete or that this pair cannot have."""
     from tribodyn.study.faults.section import check_fault, fault_problems
 
@@ -471,7 +471,7 @@ def _fault_problems(case: CaseData) -> list[tuple[str, Problem]]:
     return problems
 
 
-def chosen_options(case: CaseData, section: str) -> dict[str, Any]:
+def chosen_options(case: PairCase, section: str) -> dict[str, Any]:
     """Return the effective options of the model of a table, by argument name."""
     model, values = getattr(case, section).chosen, case._effective
     arguments = {
@@ -482,7 +482,7 @@ def chosen_options(case: CaseData, section: str) -> dict[str, Any]:
     return {name: value for name, value in arguments.items() if value is not None}
 
 
-def _bores(case: CaseData) -> list[tuple[str, Problem]]:
+def _bores(case: PairCase) -> list[tuple[str, Problem]]:
     """Find gears without a bore where the deflection is measured against it."""
     model = case.stiffness.model
     if case.stiffness.reference != "bore":

@@ -30,7 +30,8 @@ from tribodyn.study.case.user_input import Note
 from tribodyn.study.case.values import Plain, in_unit, unmarked, written
 
 if TYPE_CHECKING:
-    from tribodyn.study.case.case_data import BaseCase, CaseData
+    from tribodyn.study.case.case import Case
+    from tribodyn.study.case.pair import PairCase
 
 Place = tuple[str, ...]
 Rows = list[tuple[Place, Any]]
@@ -44,13 +45,13 @@ _MARKS_NOTE = """
 """
 
 
-def case_text(case: BaseCase, *, comments: bool = False) -> str:
+def case_text(case: Case, *, comments: bool = False) -> str:
     """Text of the file as it was read; with the meanings of all keys if asked, or from Python."""
     is_read = bool(case.source.comments) and not comments
     return (_Writer if is_read else _Commentator)(case).text()
 
 
-def every_value(case: CaseData) -> dict[str, Any]:
+def every_value(case: PairCase) -> dict[str, Any]:
     """Tables with all values of a pair; of keys without a value None."""
     values, kind = effective(case), case.gears.kind
 
@@ -71,7 +72,7 @@ def every_value(case: CaseData) -> dict[str, Any]:
 class _Writer:
     """Writer of tables in their order, with what the file has above and behind each key."""
 
-    def __init__(self, case: BaseCase) -> None:
+    def __init__(self, case: Case) -> None:
         self._case, self._changed = case, changed_keys(case)
         self._notes: Mapping[str, Note] = case.source.comments
         self._tables = with_values(case.data, case._spread)
@@ -189,7 +190,7 @@ class _Writer:
 class _Commentator(_Writer):
     """Writer of tables with the meanings of their keys; what has no value is a comment."""
 
-    def __init__(self, case: BaseCase) -> None:
+    def __init__(self, case: Case) -> None:
         super().__init__(case)
         self._notes, self._origins = {}, provenance(case)
         self._derived = case._derived_values()
@@ -252,7 +253,7 @@ def _example(option: Option) -> str:
     return f'"{option.names()[0]}"' if option.names is not None else option.example or '"..."'
 
 
-def _owners(case: BaseCase, place: Place) -> str:
+def _owners(case: Case, place: Place) -> str:
     """Name the models that have an option which the model of the case lacks."""
     section = section_at(place[:-1], case.root)
     owners = section.section_keys().owners.get(place[-1], []) if section else []
@@ -310,7 +311,7 @@ def written_value(value: Any, option: Option | None) -> str:
     return json.dumps(value, ensure_ascii=False) if isinstance(value, str) else repr(value)
 
 
-def case_rows(case: BaseCase) -> list[tuple[str, str, str]]:
+def case_rows(case: Case) -> list[tuple[str, str, str]]:
     """Return key, value with unit, and provenance of every effective value."""
     origins, derived = provenance(case), case._derived_values()
     values = {key: derived.get(key, value) for key, value in effective(case).items()}
@@ -328,7 +329,7 @@ def _value_text(spec: Option | None, value: Any) -> str:
     return spec.show(value)
 
 
-def case_table(case: BaseCase) -> str:
+def case_table(case: Case) -> str:
     """Format the case as a table with units, one row for each effective value."""
     rows = case_rows(case)
     widths = [max(len(row[column]) for row in rows) for column in range(2)]

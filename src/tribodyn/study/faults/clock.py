@@ -35,7 +35,7 @@ from tribodyn.study.machine.motion import Unit, unit_of
 
 if TYPE_CHECKING:
     from tribodyn.machine import Machine
-    from tribodyn.study.case.case import Case
+    from tribodyn.study.case.pair import PairCase
     from tribodyn.study.machine.case import MachineCase
 
 #: Mesh cycles of the longest motion: beyond it the samples need more memory than a notebook has.
@@ -86,18 +86,18 @@ class TurningClock(NamedTuple):
         return f"{text}{cost}" if self.phases is None else f"{text}. {self.phases}"
 
 
-def varies_over_turns(case: Case) -> bool:
+def varies_over_turns(case: PairCase) -> bool:
     """Whether teeth of a gear differ, or torques or speeds vary over the turns."""
     pair = case.spur_pair
     return case.faults is not None or (pair is not None and pair.teeth_differ)
 
 
-def turning_clock(case: Case) -> TurningClock:
+def turning_clock(case: PairCase) -> TurningClock:
     """Find the period of the motion with the faults of a case, without computing anything.
 
     Parameters
     ----------
-    case : Case
+    case : PairCase
         Of a cylindrical or hypoid pair, with its faults.
 
     Returns
@@ -128,14 +128,14 @@ def turning_clock(case: Case) -> TurningClock:
 class PairTurns:
     """What turns with the gears of a pair, and what drives them."""
 
-    case: Case
+    case: PairCase
     teeth: dict[str, int]  #: of pinion and wheel
     faults: tuple[Fault, ...]  #: of teeth that differ
     waves: tuple[Turn, ...]  #: errors that all teeth share
     excited: tuple[ShaftExcitation, ...]
 
     @classmethod
-    def of(cls, case: Case) -> PairTurns:
+    def of(cls, case: PairCase) -> PairTurns:
         """Divide the faults of a case."""
         from tribodyn.study.faults.section import excitations, gear_faults, require_teeth
 

@@ -64,7 +64,7 @@ def impossible_faults(case: MachineCase) -> KeyedProblems:
         checks: list[Callable[[], object]] = [
             partial(_check_gear_fault, case, fault, mesh)
             for mesh in case.meshes
-            if fault.gear is not None and gear_of(case, fault) in case._names(mesh)
+            if fault.gear is not None and gear_of(case, fault) in case._gears_of(mesh)
         ]
         if fault.planet is not None:
             checks.insert(0, partial(_check_planet, case, fault))

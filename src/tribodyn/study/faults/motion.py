@@ -34,7 +34,7 @@ if TYPE_CHECKING:
     from tribodyn.machine.graph.clock import Phases
     from tribodyn.machine.mesh import Turn
     from tribodyn.mesh import MeshFriction, MeshTable
-    from tribodyn.study.case.case import Case
+    from tribodyn.study.case.pair import PairCase
     from tribodyn.study.pipeline.assembly import Damping
     from tribodyn.study.pipeline.result import Result
     from tribodyn.study.pipeline.run import PreparedRun
@@ -62,7 +62,7 @@ class TurningMotion(PeriodicMotion, Record):
         "pinion_teeth": Labels(()),
         "wheel_teeth": Labels(()),
     }
-    case: Case
+    case: PairCase
     table: MeshTable
     repeats_after: int  #: mesh cycles
     teeth: TurningMesh  #: of the teeth that differ, without the errors that turn with the gears
@@ -192,7 +192,7 @@ class _Errors(NamedTuple):
 
 
 def turning_mesh_of(
-    case: Case, table: MeshTable | None = None, faults: Sequence[Fault] | None = None
+    case: PairCase, table: MeshTable | None = None, faults: Sequence[Fault] | None = None
 ) -> TurningMesh:
     """Force law over whole turns with the faults of a case, or others; hypoid ones by table."""
     from tribodyn.faults import turning_mesh
@@ -213,7 +213,9 @@ def turning_system(result: Result | PreparedRun, mesh: TurningMesh) -> System:
     return turning_system_of(result.case, result.mesh, result.damping, mesh)
 
 
-def turning_system_of(case: Case, table: MeshTable, damping: Damping, mesh: TurningMesh) -> System:
+def turning_system_of(
+    case: PairCase, table: MeshTable, damping: Damping, mesh: TurningMesh
+) -> System:
     """The structure of a case with the mesh over whole turns as its contact."""
     from tribodyn.study.mesh_inputs import mesh_inputs
     from tribodyn.study.pipeline.assembly import structure_of
@@ -261,7 +263,7 @@ def _over(turns: PairTurns, system: System, mesh: TurningMesh, phases: Phases) -
 
 
 def driven_system(
-    case: Case, table: MeshTable, damping: Damping, turns: PairTurns, mesh: TurningMesh
+    case: PairCase, table: MeshTable, damping: Damping, turns: PairTurns, mesh: TurningMesh
 ) -> DrivenSystem:
     """The system on the clock of all that repeats, with the excitation of its shafts."""
     from tribodyn.faults import drive
@@ -384,7 +386,7 @@ def _over_phases(
     return _Found(response, lead, speed, _errors_of(case, contact, terms))
 
 
-def _errors_of(case: Case, contact: Contact, terms: list[tuple[Any, Any, int]]) -> _Errors:
+def _errors_of(case: PairCase, contact: Contact, terms: list[tuple[Any, Any, int]]) -> _Errors:
     """Transmission error of a contact with these errors."""
     if not callable(contact.direction):
         return _Errors(0.5 * case.backlash, np.asarray(contact.direction))

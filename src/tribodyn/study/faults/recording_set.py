@@ -28,9 +28,8 @@ from tribodyn.study.studies.study_axes import Axis, read_axes
 
 if TYPE_CHECKING:
     from tribodyn.measurement import Recording
-    from tribodyn.study.case.case import Case
     from tribodyn.study.faults.turning import PeriodicMotion
-    from tribodyn.study.machine.case import MachineCase
+    from tribodyn.study.machine.case import AnyCase
 
 #: Files of a set: description, labels, and recordings of one variant.
 CARD, LABELS, PART = "card.json", "labels.csv", "variant-{:05d}.h5"
@@ -81,7 +80,7 @@ class RecordingSet:
 
 
 def record_set(
-    case: Case | MachineCase,
+    case: AnyCase,
     folder: str | os.PathLike[str],
     over: Mapping[str, Any],
     *,
@@ -99,7 +98,7 @@ def record_set(
 
     Parameters
     ----------
-    case : Case or MachineCase
+    case : Case
         With ``[faults.NAME]``. Load cases besides ``[operation]`` are left out.
     folder : str or path
         Where they are stored. The same call goes on where an interrupted one ended.
@@ -175,9 +174,7 @@ def record_set(
     return _finished(place, card, axes, points, next(filter(None, units), {}))
 
 
-def _card(
-    case: Case | MachineCase, axes: tuple[Axis, ...], settings: dict[str, Any]
-) -> dict[str, Any]:
+def _card(case: AnyCase, axes: tuple[Axis, ...], settings: dict[str, Any]) -> dict[str, Any]:
     """Description of a set, with a digest of everything that it depends on."""
     from tribodyn import __version__
 
@@ -223,9 +220,7 @@ def _seed(seed: int, variant: int, draw: int) -> int:
     return int.from_bytes(hashlib.sha256(text).digest()[:4], "big") % 10**9
 
 
-def _recorder(
-    case: Case | MachineCase, sensor: str
-) -> Callable[[float, float, Scatter], Recording]:
+def _recorder(case: AnyCase, sensor: str) -> Callable[[float, float, Scatter], Recording]:
     """Function of duration, rate and scatter that samples the motion of a case."""
     from tribodyn.study.machine.run import run_machine
     from tribodyn.study.pipeline.run import prepare_run
@@ -240,7 +235,7 @@ def _recorder(
 
 
 def _write(
-    part: Path, case: Case | MachineCase, sampling: Mapping[str, Any], draws: list[Scatter]
+    part: Path, case: AnyCase, sampling: Mapping[str, Any], draws: list[Scatter]
 ) -> Mapping[str, str]:
     """Compute the motion of one variant and write all its recordings; return their units."""
     import h5py

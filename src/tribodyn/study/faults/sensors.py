@@ -17,8 +17,7 @@ from tribodyn.types import Array, ComplexArray
 
 if TYPE_CHECKING:
     from tribodyn.machine import Machine
-    from tribodyn.study.case.case import Case
-    from tribodyn.study.machine.case import MachineCase
+    from tribodyn.study.machine.case import AnyCase
 
 _AXES = {"x": (1.0, 0.0, 0.0), "y": (0.0, 1.0, 0.0), "z": (0.0, 0.0, 1.0)}
 #: Signals of a mesh.
@@ -202,7 +201,7 @@ def seat_accelerance(data: Any) -> Callable[[Array], ComplexArray] | None:
     return accelerance
 
 
-def sensors_of(case: Case | MachineCase) -> Sensors:
+def sensors_of(case: AnyCase) -> Sensors:
     """Sensors of the parts of a case, or of the coordinates of its lumped structure."""
     if not case.lumped:
         return MachineSensors(case.machine(), seat_accelerance(case.motion))

@@ -17,7 +17,7 @@ from tribodyn.types import Array
 
 if TYPE_CHECKING:
     from tribodyn.mesh import MeshTable
-    from tribodyn.study.case.case import Case
+    from tribodyn.study.case.pair import PairCase
 
 #: Places on the used flank.
 _PLACES = 41
@@ -35,7 +35,7 @@ class Wear(Record):
         Place on the used flank, 0 at its lowest point and 1 at the tip.
     depth_pinion, depth_wheel : (k, p) array
         Depth of wear [m].
-    case : Case
+    case : PairCase
         The case with the worn flanks of the last step.
     """
 
@@ -43,7 +43,7 @@ class Wear(Record):
     place: Array = quantity("place", unit="1", axis=True)
     depth_pinion: Array = quantity("turns", "place", unit="m")
     depth_wheel: Array = quantity("turns", "place", unit="m")
-    case: Case
+    case: PairCase
 
     def __repr__(self) -> str:
         """One line."""
@@ -55,7 +55,7 @@ class Wear(Record):
 
 
 def wear(
-    case: Case,
+    case: PairCase,
     coefficient: float,
     turns: float,
     *,
@@ -66,7 +66,7 @@ def wear(
 
     Parameters
     ----------
-    case : Case
+    case : PairCase
         Of a cylindrical pair with teeth whose deflection is computed.
     coefficient : float
         Wear coefficient: volume over load and sliding distance [m^2/N]; mild wear of steel in
@@ -127,7 +127,7 @@ def wear(
     return Wear(np.asarray(each * np.arange(steps + 1)), place, pinion, wheel, worn)
 
 
-def _stated(case: Case, name: str) -> Array:
+def _stated(case: PairCase, name: str) -> Array:
     """Depth of wear that a case begins with."""
     modification = getattr(case.gears, name).modification
     stated = modification.wear_depth if modification is not None else None
@@ -136,7 +136,7 @@ def _stated(case: Case, name: str) -> Array:
     return np.asarray(np.interp(at, np.linspace(0.0, 1.0, depth.size), depth))
 
 
-def _worn(case: Case, depths: list[Array]) -> Case:
+def _worn(case: PairCase, depths: list[Array]) -> PairCase:
     changes = {
         f"gears.{name}.modification.wear_depth": depth.tolist()
         for name, depth in zip(GEARS, depths, strict=True)
@@ -145,7 +145,7 @@ def _worn(case: Case, depths: list[Array]) -> Case:
         return case.replace(changes)
 
 
-def _rates(case: Case, coefficient: float) -> list[Array]:
+def _rates(case: PairCase, coefficient: float) -> list[Array]:
     """Depth that each flank loses in a turn of its gear, over the places (p,) [m]."""
     from tribodyn.study.pipeline.tooth_contact import mesh_of
 

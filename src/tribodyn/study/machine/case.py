@@ -5,7 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from copy import deepcopy
 from functools import cached_property, partial
-from typing import TYPE_CHECKING, Any, ClassVar, Literal
+from inspect import Parameter, Signature
+from typing import Any, ClassVar, Literal
 
 import numpy as np
 
@@ -24,12 +25,12 @@ from tribodyn.machine import (
 )
 from tribodyn.machine.plane_law import with_exchanged_gears
 from tribodyn.study.case.case import Case
-from tribodyn.study.case.case_data import BaseCase
+from tribodyn.study.case.pair import PairCase
 from tribodyn.study.case.provenance import Assumption, reason_faults
 from tribodyn.study.case.section import Section, choices, table_in
 from tribodyn.study.case.sections import LubricantData, heat_problems
-from tribodyn.study.case.user_input import Source, UserInput, unsound, values_in_si
-from tribodyn.study.case.values import KeyedProblems, correct_keys, read_table, with_typed_keys
+from tribodyn.study.case.user_input import Source, UserInput, values_in_si
+from tribodyn.study.case.values import KeyedProblems, read_table, with_typed_keys
 from tribodyn.study.faults.machine_section import impossible_faults, machine_fault_problems
 from tribodyn.study.machine.assumptions import default_assumptions, stated_assumptions
 from tribodyn.study.machine.housing_files import read_housing
@@ -58,6 +59,7 @@ from tribodyn.study.machine.read_parts import (
     read_rated_parts,
     read_shaft,
     solver_problems,
+    unknown_gears,
 )
 from tribodyn.study.machine.tables import GROUPS, MeshDynamics
 from tribodyn.study.machine.unused_keys import changed_machine, unknown_part_key, unused_keys
@@ -73,9 +75,6 @@ from tribodyn.study.planetary.machine_stages import (
     stage_mesh,
 )
 
-if TYPE_CHECKING:
-    pass
-
 #: Tables in which problems of parts are placed.
 _PLACED = (*GROUPS, "planets", "operation", "housing", "lubricant")
 #: Keys of a mesh that its object takes as they are.
@@ -85,27 +84,14 @@ _OF_MESH = (
 
 
 @with_old_names
-class MachineCase(BaseCase):
+class MachineCase(Case):
     """A machine under its load cases: frozen, checked, in SI.
 
-    Created by :func:`tribodyn.load_case` from a file with ``[meshes.NAME]`` and ``[gears.NAME]``,
-    or from nested keywords: a float is SI, text carries its unit.
-
-    Parameters
-    ----------
-    source : Source, optional
-        Where the values come from; then a bare number for a dimension is refused.
-    **data : object
-        The tables of the case file.
-
-    Raises
-    ------
-    InputError
-        Listing every problem with the part that has it, the limit and the remedy.
+    Created as any :class:`tribodyn.Case`, from tables with ``[meshes.NAME]`` and ``[gears.NAME]``.
 
     Examples
     --------
-    >>> case = MachineCase(
+    >>> case = Case(
     ...     gears={"z1": {"shaft": "in", "teeth": 27, "face_width": "50 mm"},
     ...            "z2": {"shaft": "out", "teeth": 51, "face_width": "50 mm"}},
     ...     meshes={"first": {"gears": ["z1", "z2"], "normal_module": "4.5 mm",
@@ -116,18 +102,16 @@ class MachineCase(BaseCase):
     """
 
     lumped: ClassVar[Literal[False]] = False  #: its parts vibrate
+    groups = ("shafts", "meshes", "bearings", "planets")
     root = MachineTables
+    fields: ClassVar[dict[str, Any]] = {}  # its attributes are parts
     gears: dict[str, Gear]
     couplings: dict[str, Coupling]
     operating_point: LoadCase
     load_cases: tuple[LoadCase, ...]  #: of ``[[load_cases]]``
 
     def __init__(self, source: Source | None = None, /, **data: Any) -> None:
-        origin = source or Source()
-        if problems := list(unsound(data)):
-            raise InputError(origin.place(problems))
-        data, misspelt, typed_keys = correct_keys(data, MachineTables)
-        stated, faults, problems = self._take(source, for_each_planet(deepcopy(data)))
+        stated, faults, misspelt, problems, typed_keys = self._take(source, data)
         problems += misspelt
         ready = completed(self.data)
         tables: Any = self._read_tables(ready, problems)
@@ -144,8 +128,8 @@ class MachineCase(BaseCase):
         self.bearings: dict[str, Bearing] = each_part(groups["bearings"], read_bearing, problems)
         self._mesh_dynamics: dict[str, Any] = {}
         self._stage_of: dict[str, tuple[CaseStage, str]] = {}
-        self._pairs: dict[str, Case] = {}
-        self._teeth: dict[tuple[object, ...], tuple[Case, MeshInputs]] = {}
+        self._pairs: dict[str, PairCase] = {}
+        self._teeth: dict[tuple[object, ...], tuple[PairCase, MeshInputs]] = {}
         self._machines: dict[tuple[float, float], Machine] = {}
         self._mesh_tables = each_part(groups["meshes"], self._read_mesh, problems)
         if not groups["meshes"] and "planets" not in self.data:
@@ -163,11 +147,12 @@ class MachineCase(BaseCase):
         if loads is not None:
             self.ends, self.operating_point, self.load_cases = loads
         if problems:
-            raise InputError(origin.place(with_typed_keys(problems, typed_keys)))
+            raise InputError(self._source.place(with_typed_keys(problems, typed_keys)))
         self.implied_shafts = add_shafts(self.shafts, self.gears, stages, tables.material)
         if problems := machine_fault_problems(self):
-            raise InputError(origin.place(problems))
-        self._check_meshes()
+            raise InputError(self._source.place(problems))
+        if problems := unknown_gears({n: self._gears_of(n) for n in self._mesh_tables}, self.gears):
+            raise InputError(self._source.place(problems))
         try:
             self._add_stages(stages)
             self._checked_machine(self.operating_point)
@@ -178,8 +163,12 @@ class MachineCase(BaseCase):
         except InputError as error:
             raise InputError(self._located(error)) from None
         if problems := [*self._impossible(), *faults]:
-            raise InputError(origin.place(problems))
+            raise InputError(self._source.place(problems))
         self._settle(stated)
+
+    @staticmethod
+    def _completed(data: dict[str, Any]) -> dict[str, Any]:
+        return for_each_planet(deepcopy(data))
 
     def _impossible(self) -> KeyedProblems:
         """Problems of faults, losses and spreads that the parts do not allow."""
@@ -238,7 +227,7 @@ class MachineCase(BaseCase):
             stage = CaseStage(name, table, self.data, planets, self.gears, self.source)
             self.stages[name] = stage = stage.with_forms()
             self.gears |= stage.gears
-        linked = [self.gears[g].shaft for mesh in self._mesh_tables for g in self._names(mesh)]
+        linked = [self.gears[g].shaft for mesh in self._mesh_tables for g in self._gears_of(mesh)]
         linked += [shaft for coupling in self.couplings.values() for shaft in coupling.shafts]
         for stage in self.stages.values():
             self._stage_of |= {mesh: (stage, role) for mesh, role in stage.mesh_roles().items()}
@@ -269,19 +258,6 @@ class MachineCase(BaseCase):
             self._mesh_dynamics[name] = read_table(MeshDynamics, law, key, {}, problems)
         return table
 
-    def _check_meshes(self) -> None:
-        """Refuse meshes whose gears do not exist."""
-        problems: KeyedProblems = []
-        for name in self._mesh_tables:
-            names = self._names(name)
-            missing = [gear for gear in names if gear not in self.gears]
-            for gear in missing:
-                why, remedy = f"Known: {', '.join(self.gears)}", "Add the gear, or correct the name"
-                problem = Problem(f'there is no gear "{gear}"', "", why, remedy)
-                problems.append((f"meshes.{name}.gears", problem))
-        if problems:
-            raise InputError(self.source.place(problems))
-
     def _located(self, error: TribodynError) -> list[Problem]:
         """Problems of a machine with the lines of its parts."""
         source = self.source
@@ -292,7 +268,7 @@ class MachineCase(BaseCase):
             for problem in error.problems
         ]
 
-    def _names(self, mesh: str) -> tuple[str, str]:
+    def _gears_of(self, mesh: str) -> tuple[str, str]:
         if mesh in self._stage_of:
             stage, role = self._stage_of[mesh]
             return stage.machine_names(mesh, role)
@@ -300,7 +276,7 @@ class MachineCase(BaseCase):
         return first, second
 
     def _pinion_and_wheel(self, mesh: str) -> tuple[str, str]:
-        return pinion_and_wheel(self._names(mesh), self.gears)
+        return pinion_and_wheel(self._gears_of(mesh), self.gears)
 
     @property
     def assumptions(self) -> tuple[Assumption, ...]:
@@ -409,14 +385,14 @@ class MachineCase(BaseCase):
             if (law := self._mesh_dynamics.get(name)) is not None:
                 values |= constant_law(law)
             values |= fields
-            return Mesh.hypoid(self._names(name), blank, apex=(apex[0], apex[1]), **values)
+            return Mesh.hypoid(self._gears_of(name), blank, apex=(apex[0], apex[1]), **values)
         values = {k: getattr(table, k) for k in _OF_MESH}
         values["pressure_angle"] = table.normal_pressure_angle
         if (law := self._mesh_dynamics.get(name)) is not None:
             values |= constant_law(law)
         if table.center_distance is None and table.stiffness is None:
             values["center_distance"] = self._pair_of(name).gear_pair.center_distance
-        return self._exchanged(Mesh(self._names(name), **{**values, **fields}))
+        return self._exchanged(Mesh(self._gears_of(name), **{**values, **fields}))
 
     def _exchanged(self, mesh: Mesh) -> Mesh:
         """Mesh whose contacts were those of its pinion and its wheel."""
@@ -425,7 +401,7 @@ class MachineCase(BaseCase):
             return mesh
         return with_exchanged_gears(mesh, internal=self.gears[wheel].is_ring)
 
-    def _pair_of(self, mesh: str) -> Case:
+    def _pair_of(self, mesh: str) -> PairCase:
         """Pair of cylindrical gears, at any speed and torque."""
         if mesh not in self._pairs:
             names = self._pinion_and_wheel(mesh)
@@ -433,7 +409,7 @@ class MachineCase(BaseCase):
             self._pairs[mesh] = pair_case(*parts, driver=names[0], operation=(1.0, 1.0))
         return self._pairs[mesh]
 
-    def pair(self, mesh: str, load: LoadCase, misalignment: float | Misalignment = 0.0) -> Case:
+    def pair(self, mesh: str, load: LoadCase, misalignment: float | Misalignment = 0.0) -> PairCase:
         """Pair of a mesh under a load case, as a case of its own.
 
         Its pinion is the gear with fewer teeth.
@@ -464,12 +440,12 @@ class MachineCase(BaseCase):
         pair, _ = read_teeth(self, mesh, under)
         return pair.replace({"operation.speed": speed, "operation.torque": torque})
 
-    def mesh_pairs(self) -> Iterator[tuple[str, Case, tuple[str, str]]]:
+    def mesh_pairs(self) -> Iterator[tuple[str, PairCase, tuple[str, str]]]:
         """Iterate over the meshes with computed teeth.
 
         Yields
         ------
-        tuple of str, Case and (str, str)
+        tuple of str, PairCase and (str, str)
             Key of the table of the mesh, its pair of gears as a case, and names of both gears.
         """
         for mesh in self.meshes_with_teeth:
@@ -479,6 +455,20 @@ class MachineCase(BaseCase):
                 yield stage.key, pair, stage.names_of(role)
                 continue
             yield f"meshes.{mesh}", pair, names
+
+    def density(self, gear: str) -> float:
+        """Density of one gear [kg/m^3]: its own, or that of the material.
+
+        Parameters
+        ----------
+        gear : str
+            Name of the gear.
+
+        Returns
+        -------
+        float
+        """
+        return float(self.gears[gear].density)
 
     def tooth_group(self, mesh: str) -> str:
         """Name that meshes with equal teeth share: those of all planets with one member.
@@ -496,5 +486,12 @@ class MachineCase(BaseCase):
         return mesh if stage is None else f"{stage.key}.{role}"
 
 
+MachineCase.__signature__ = Signature(
+    [
+        Parameter("source", Parameter.POSITIONAL_ONLY, default=None),
+        Parameter("data", Parameter.VAR_KEYWORD),
+    ]
+)
 #: Names of an earlier version: a planetary stage is a machine, the one case of named parts.
 PlanetaryCase = PartsCase = MachineCase
+AnyCase = PairCase | MachineCase

@@ -19,9 +19,9 @@ from tribodyn.types import Array
 from tribodyn.validated_files import read_bytes
 
 if TYPE_CHECKING:
-    from tribodyn.study.case.case_data import BaseCase
+    from tribodyn.study.case.case import Case
 
-Kind = TypeVar("Kind", bound="BaseCase")
+Kind = TypeVar("Kind", bound="Case")
 Point = tuple[int, int]
 _MATRICES = {"stiffness": "K", "mass": "M", "damping": "C"}
 #: Before the names of the files of the housing in the folder of a result.

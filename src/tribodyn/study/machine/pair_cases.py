@@ -12,8 +12,8 @@ from tribodyn.errors import Argument, InputError, Problem
 from tribodyn.gear import Misalignment
 from tribodyn.machine.graph.part_checks import gear_hand
 from tribodyn.study.case import gears
-from tribodyn.study.case.case import Case
 from tribodyn.study.case.hypoid import blank_of
+from tribodyn.study.case.pair import PairCase
 from tribodyn.study.case.rating_tables import HISTORY, PartRating
 from tribodyn.study.case.sections import Operation
 from tribodyn.study.case.to_models import usual_backlash
@@ -115,7 +115,9 @@ def pinion_and_wheel(names: Sequence[str], gears: Mapping[str, Gear]) -> tuple[s
     return (first, second) if teeth[0] <= teeth[1] else (second, first)
 
 
-def with_forms(gears: Mapping[str, Gear], names: tuple[str, str], pair: Case) -> dict[str, Gear]:
+def with_forms(
+    gears: Mapping[str, Gear], names: tuple[str, str], pair: PairCase
+) -> dict[str, Gear]:
     """Pinion and wheel with the tooth forms and the densities of their pair."""
     return {
         name: replace(gears[name], form=getattr(pair.gear_pair, role), density=pair.density(role))
@@ -138,7 +140,7 @@ def pair_case(
     operation: tuple[float, float],
     hand: str = "",
     misalignment: float | Misalignment = 0.0,
-) -> Case:
+) -> PairCase:
     """Case of the pair of a mesh; hand (of hypoid teeth side), speed and torque of its pinion."""
     group, _, mesh = table.partition(".")
     refuse_idle(data, mesh, operation[1], source)
@@ -179,13 +181,13 @@ def pair_case(
     }
     places = origin.name, origin.find, origin.replaced
     keyed = PairSource(*places, mesh, names, frozenset(mesh_keys), group)
-    case = Case(keyed, **tables)
+    case = PairCase(keyed, **tables)
     if case.gears.kind == "spur":
         # Shafts deflect and misalign the flanks, by amounts that are not known yet.
         play = usual_backlash(case.gears, case.dynamics, case.gear_pair)
         if play is not None:
             tables["dynamics"] = {**tables["dynamics"], "backlash": Plain(play)}
-            case = Case(keyed, **tables)
+            case = PairCase(keyed, **tables)
     return case
 
 
@@ -219,7 +221,7 @@ def temperatures_of(load: LoadCase) -> dict[str, float]:
 
 def read_pair(
     case: MachineCase, mesh: str, under: TeethUnder, misalignment: float | Misalignment = 0.0
-) -> Case:
+) -> PairCase:
     """Pair of gears of a mesh of a machine."""
     stage, role = case._stage_of.get(mesh, (None, ""))
     data, key = case.data, f"meshes.{mesh}"
@@ -237,7 +239,7 @@ def read_pair(
     )
 
 
-def read_teeth(case: MachineCase, mesh: str, under: TeethUnder) -> tuple[Case, MeshInputs]:
+def read_teeth(case: MachineCase, mesh: str, under: TeethUnder) -> tuple[PairCase, MeshInputs]:
     """Pair of gears and inputs of a mesh, read once for each sense of its load."""
     refuse_idle(case.data, mesh, under.operation[1], case.source)
     key = case.tooth_group(mesh), under.driver, under.hand, *under.temperatures.values()
@@ -273,7 +275,7 @@ def refuse_idle(data: Mapping[str, Any], mesh: str, torque: float, source: Sourc
     raise InputError((source or Source()).place([(key, Problem(what, "", why, remedy))]))
 
 
-def check_range(pair: Case, operation: tuple[float, float]) -> None:
+def check_range(pair: PairCase, operation: tuple[float, float]) -> None:
     """Refuse speed and torque of a pinion that are out of range."""
     problems: KeyedProblems = []
     for name, value in zip(("speed", "torque"), operation, strict=True):
@@ -289,7 +291,7 @@ def check_range(pair: Case, operation: tuple[float, float]) -> None:
 
 def _merged(name: str, shared: Mapping[str, Any], of_mesh: Mapping[str, Any]) -> dict[str, Any]:
     """Table of a mesh: a model of its own brings its options, other keys are added."""
-    selector = Case.fields[name].kind.selector  # type: ignore[union-attr]
+    selector = PairCase.fields[name].kind.selector  # type: ignore[union-attr]
     values = {**({} if selector in of_mesh else shared), **of_mesh}
     return {key: value for key, value in values.items() if key not in _OF_MACHINE}
 

@@ -29,7 +29,7 @@ from tribodyn.study.rating_summary import rating_figures
 from tribodyn.types import Array
 
 if TYPE_CHECKING:
-    from tribodyn.study.case.case import Case
+    from tribodyn.study.case.pair import PairCase
     from tribodyn.study.machine.case import MachineCase
     from tribodyn.study.machine.result import LoadResult, MachineResult
 
@@ -69,7 +69,11 @@ def rated_meshes(case: MachineCase, loads: Loads) -> Iterator[RatedMesh]:
 
 
 def _rated_mesh(
-    case: MachineCase, load: LoadResult, place: tuple[str, str], pair: Case, names: tuple[str, str]
+    case: MachineCase,
+    load: LoadResult,
+    place: tuple[str, str],
+    pair: PairCase,
+    names: tuple[str, str],
 ) -> RatedMesh:
     """One mesh with speed, torque and load factors of a load."""
     name, mesh = place

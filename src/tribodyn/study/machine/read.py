@@ -9,17 +9,14 @@ from typing import Any
 
 from tribodyn.errors import InputError
 from tribodyn.model import NO_OPTIONS
-from tribodyn.study.case.case import Case
 from tribodyn.study.case.read import parse_toml, source_of
 from tribodyn.study.case.section import file_entries, place_files
-from tribodyn.study.machine.case import MachineCase
-
-_OF_MACHINES = ("shafts", "meshes", "bearings", "planets")
+from tribodyn.study.machine.case import AnyCase, MachineCase
 
 
-def kind_of_tables(data: Mapping[str, Any]) -> type[Case] | type[MachineCase]:
+def kind_of_tables(data: Mapping[str, Any]) -> type[AnyCase]:
     """Class of the case that tables describe."""
-    return MachineCase if any(group in data for group in _OF_MACHINES) else Case
+    return MachineCase._kind_of(data)  # type: ignore[return-value]
 
 
 def files_of(data: dict[str, Any]) -> list[str]:
@@ -51,7 +48,7 @@ def read_case(
 
     Returns
     -------
-    Case or MachineCase
+    Case
 
     Raises
     ------

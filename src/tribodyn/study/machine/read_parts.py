@@ -310,3 +310,17 @@ def add_shafts(
     added = tuple(dict.fromkeys(name for name in implied if name not in shafts))
     shafts.update(dict.fromkeys(added, Shaft((), to_models.material(material))))
     return added
+
+
+def unknown_gears(
+    meshes: Mapping[str, tuple[str, str]], gears: Mapping[str, Gear]
+) -> KeyedProblems:
+    """Problems of meshes whose gears do not exist."""
+    problems: KeyedProblems = []
+    for name, names in meshes.items():
+        for gear in names:
+            if gear not in gears:
+                why, remedy = f"Known: {', '.join(gears)}", "Add the gear, or correct the name"
+                problem = Problem(f'there is no gear "{gear}"', "", why, remedy)
+                problems.append((f"meshes.{name}.gears", problem))
+    return problems

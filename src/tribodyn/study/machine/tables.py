@@ -20,7 +20,7 @@ from tribodyn.model import (
     text,
 )
 from tribodyn.study.case import gears
-from tribodyn.study.case.case_data import CaseData
+from tribodyn.study.case.pair import PairCase
 from tribodyn.study.case.rating_tables import BearingCatalogue, NotchTable, ShaftStrength
 from tribodyn.study.case.section import NamedTables, Section, Table, table
 from tribodyn.study.case.sections import Dynamics, MaterialData, Solver
@@ -30,7 +30,7 @@ _RPM = math.pi / 30.0
 _TURN = 2.0 * math.pi
 #: Tables of models that hold for all meshes, and that a mesh may have for itself.
 SHARED = ("material", "lubricant", "film", "stiffness", "friction", "materials", "rating")
-_MODELS = {name: replace(CaseData.fields[name], default="none") for name in SHARED}  # type: ignore[type-var]
+_MODELS = {name: replace(PairCase.fields[name], default="none") for name in SHARED}  # type: ignore[type-var]
 #: Keys of ``[dynamics]`` of a pair that belong to its mesh.
 MESH_KEYS = tuple(n for n in Dynamics.fields if n not in ("model", "bearing_damping_ratio"))
 _OF_DYNAMICS = {

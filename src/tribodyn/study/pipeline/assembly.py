@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from tribodyn.gear import HypoidFlanks, SpurGear, SpurPair
     from tribodyn.mesh import MeshFriction, MeshFunctions, MeshTable
     from tribodyn.mesh.table_file import TableFile
-    from tribodyn.study.case.case import Case
+    from tribodyn.study.case.pair import PairCase
     from tribodyn.study.case.sections import Dynamics
 
 
@@ -58,7 +58,7 @@ ORDERS = (1, 2, 3, 4, 5)
 _SPEEDS, _BEYOND = 201, 1.15
 
 
-def geometry(case: Case) -> dict[str, float]:
+def geometry(case: PairCase) -> dict[str, float]:
     """Geometry, masses and inertias that follow from a case."""
     if case.mesh_table is not None:
         return _of_mesh_table(case, case.mesh_table)
@@ -108,7 +108,7 @@ def _of_spur(
     return {name: float(value) for name, value in values.items()}
 
 
-def _of_mesh_table(case: Case, table: TableFile) -> dict[str, float]:
+def _of_mesh_table(case: PairCase, table: TableFile) -> dict[str, float]:
     """What is known of gears behind a mesh table: levers, and the bodies that the case gives."""
     values = {"gear_ratio": case.gear_ratio, "backlash": case.backlash}
     for name, gear in (("pinion", case.gears.pinion), ("wheel", case.gears.wheel)):
@@ -138,7 +138,7 @@ _CONES = (
 )
 
 
-def _of_hypoid(case: Case, flanks: HypoidFlanks) -> dict[str, float]:
+def _of_hypoid(case: PairCase, flanks: HypoidFlanks) -> dict[str, float]:
     """Blank of a hypoid pair, its levers and its bodies."""
     blank, body = flanks.blank, bodies(flanks, case.material.density, case.gears)
     values: dict[str, Any] = {
@@ -212,7 +212,7 @@ def equivalent_mass(
     return inertia_pinion * inertia_wheel / weighted
 
 
-def damping_of(case: Case, mesh: MeshTable) -> Damping:
+def damping_of(case: PairCase, mesh: MeshTable) -> Damping:
     """Damping of a case."""
     body = geometry(case)
     supports = _supports(case, (body.get("mass_pinion", 0.0), body.get("mass_wheel", 0.0)))
@@ -228,7 +228,7 @@ def mesh_damping(inputs: MeshInputs, mesh: MeshTable) -> float:
     return float(2.0 * data.mesh_damping_ratio * math.sqrt(mesh.mean_mesh_stiffness * mass))
 
 
-def _supports(case: Case, masses: tuple[float, float]) -> tuple[float, float]:
+def _supports(case: PairCase, masses: tuple[float, float]) -> tuple[float, float]:
     from tribodyn.dynamics.structure.structures import support_damping
 
     names = ("bearing_stiffness", "bearing_damping", "bearing_damping_ratio")
@@ -267,7 +267,7 @@ def mesh_contacts(
 
 
 def system_of(
-    case: Case,
+    case: PairCase,
     mesh: MeshTable,
     damping: Damping,
     friction: MeshFriction | None = None,
@@ -282,14 +282,14 @@ def system_of(
 
 
 def whole_system(
-    case: Case, mesh: MeshTable, mesh_force: str | None = None, *, rehearsal: bool = False
+    case: PairCase, mesh: MeshTable, mesh_force: str | None = None, *, rehearsal: bool = False
 ) -> System:
     """Build the structure of a case with its tooth contact, its damping and its friction."""
     friction = load_friction_of(mesh_inputs(case), mesh, rehearsal)
     return system_of(case, mesh, damping_of(case, mesh), friction, mesh_force)
 
 
-def structure_of(case: Case, mesh: MeshFunctions, damping: Damping, mesh_force: str) -> System:
+def structure_of(case: PairCase, mesh: MeshFunctions, damping: Damping, mesh_force: str) -> System:
     """Build the structure of a case with a mesh, whose force law is named."""
     from tribodyn.dynamics import STRUCTURES, Gearing
     from tribodyn.dynamics.structure.force_law import refuse_clamped_teeth
@@ -316,7 +316,7 @@ def structure_of(case: Case, mesh: MeshFunctions, damping: Damping, mesh_force: 
     return STRUCTURES[case.dynamics.model](gearing, **chosen_options(case, "dynamics"))
 
 
-def rotation_of(case: Case, names: Sequence[str]) -> Array | None:
+def rotation_of(case: PairCase, names: Sequence[str]) -> Array | None:
     """Change of the coordinates in a mesh cycle of the drive [rad]; None where one is unknown."""
     from tribodyn.dynamics import STRUCTURES
 
@@ -330,7 +330,7 @@ def rotation_of(case: Case, names: Sequence[str]) -> Array | None:
     return np.array([turns[name] if name in turning else 0.0 for name in names])
 
 
-def shaft_coordinates(case: Case, system: System) -> dict[str, int]:
+def shaft_coordinates(case: PairCase, system: System) -> dict[str, int]:
     """Number of the coordinate on which the torque of the shaft of each gear acts."""
     from tribodyn.dynamics import STRUCTURES
 
@@ -345,7 +345,7 @@ def shaft_coordinates(case: Case, system: System) -> dict[str, int]:
 
 def diagram_of(
     system: System,
-    case: Case,
+    case: PairCase,
     mesh_frequency: float,
     ends: Sequence[float] | None = None,
     orders: Iterable[int] = ORDERS,

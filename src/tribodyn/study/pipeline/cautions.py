@@ -29,7 +29,7 @@ if TYPE_CHECKING:
     from tribodyn.gear import MassProperties, SpurGear
     from tribodyn.mesh import MeshTable
     from tribodyn.study.case.case import Case
-    from tribodyn.study.case.case_data import BaseCase
+    from tribodyn.study.case.pair import PairCase
 
 
 #: Hertzian pressure above the strength of case-hardened steel [Pa].
@@ -92,7 +92,7 @@ def _part(mesh_warning: MeshWarning) -> float:
     return part if isinstance(part, float) else 0.0
 
 
-def case_cautions(case: Case, machine: BaseCase | None = None) -> tuple[ModelWarning, ...]:
+def case_cautions(case: PairCase, machine: Case | None = None) -> tuple[ModelWarning, ...]:
     """Return warnings about the gears of a case, or of a pair of a machine, before a run."""
     if case.hypoid_flanks is not None:
         return hypoid_warnings(case.gears)
@@ -102,7 +102,7 @@ def case_cautions(case: Case, machine: BaseCase | None = None) -> tuple[ModelWar
     return case._once("cautions", tables, lambda: _of_gears(case, machine or case))
 
 
-def _of_gears(case: Case, whole: BaseCase) -> tuple[ModelWarning, ...]:
+def _of_gears(case: PairCase, whole: Case) -> tuple[ModelWarning, ...]:
     pair = case.gear_pair
     warnings = list(gear_warnings(case.gears, case.dynamics.backlash))
     for name, gear in pair.gears.items():
@@ -114,7 +114,7 @@ def _of_gears(case: Case, whole: BaseCase) -> tuple[ModelWarning, ...]:
     return (*warnings, *_starved(case))
 
 
-def _starved(case: Case) -> Iterator[ModelWarning]:
+def _starved(case: PairCase) -> Iterator[ModelWarning]:
     if case.film.inlet == "zero" and case.film.domain is not None:
         yield ModelWarning(
             "starved-inlet",
@@ -124,7 +124,7 @@ def _starved(case: Case) -> Iterator[ModelWarning]:
         )
 
 
-def _rim(case: Case, name: str, gear: SpurGear) -> Iterator[ModelWarning]:
+def _rim(case: PairCase, name: str, gear: SpurGear) -> Iterator[ModelWarning]:
     rim = gear.root_radius - 0.5 * gear.bore_diameter
     if (
         effective(case)["stiffness.reference"] == "bore"
@@ -148,7 +148,7 @@ def _solid(gear: SpurGear, density: float) -> MassProperties:
         return mass_properties(bare, density)
 
 
-def _other_gear(case: Case, whole: BaseCase, name: str, gear: SpurGear) -> Iterator[ModelWarning]:
+def _other_gear(case: PairCase, whole: Case, name: str, gear: SpurGear) -> Iterator[ModelWarning]:
     """Warn of a given mass that was not adapted to the changed shape of its gear."""
     changed, base = changed_keys(whole), whole.stated.base
     of_shape = {case.source.key(key) for key in body(name)}
@@ -166,7 +166,7 @@ def _other_gear(case: Case, whole: BaseCase, name: str, gear: SpurGear) -> Itera
         )
 
 
-def _mass(case: Case, whole: BaseCase, name: str, gear: SpurGear) -> Iterator[ModelWarning]:
+def _mass(case: PairCase, whole: Case, name: str, gear: SpurGear) -> Iterator[ModelWarning]:
     """Compare given inertias with those of the solid: a wrong unit is far off."""
     solid = _solid(gear, case.density(name))
     for key, unit, factor in _INERTIAS:
@@ -181,7 +181,7 @@ def _mass(case: Case, whole: BaseCase, name: str, gear: SpurGear) -> Iterator[Mo
             )
 
 
-def _is_stated(case: Case, whole: BaseCase, name: str, key: str) -> bool:
+def _is_stated(case: PairCase, whole: Case, name: str, key: str) -> bool:
     """Whether the document that the case began with states the value, for a gear of this shape."""
     changed, base = changed_keys(whole), whole.stated.base
     full, *shape = map(case.source.key, (f"gears.{name}.{key}", *body(name)))
@@ -343,7 +343,7 @@ def _counts_asperities(mesh: MeshTable) -> bool:
     return split or (mesh.friction_law in LAWS and LAWS[mesh.friction_law].asperities)
 
 
-def motion_cautions(case: Case, system: System, response: Response) -> tuple[ModelWarning, ...]:
+def motion_cautions(case: PairCase, system: System, response: Response) -> tuple[ModelWarning, ...]:
     """Warn of loss of contact in a steady motion."""
     if case.backlash == 0.0 or not is_steady(response):
         return ()
@@ -365,7 +365,7 @@ def contact_cautions(share: float, *, touches_back: bool) -> tuple[ModelWarning,
     return (ModelWarning("contact-loss", message),)
 
 
-def teeth_cautions(case: Case) -> tuple[ModelWarning, ...]:
+def teeth_cautions(case: PairCase) -> tuple[ModelWarning, ...]:
     """Warn that the motion ignores deviations from tooth to tooth."""
     if case.spur_pair is None or not case.spur_pair.teeth_differ:
         return ()

@@ -15,8 +15,8 @@ from tribodyn.study.case.provenance import changed_keys
 from tribodyn.study.case.section import section_at
 
 if TYPE_CHECKING:
-    from tribodyn.study.case.case import Case
-    from tribodyn.study.machine.case import MachineCase
+    from tribodyn.study.case.pair import PairCase
+    from tribodyn.study.machine.case import AnyCase, MachineCase
 
 
 STYLES = ("text", "bibtex")
@@ -38,7 +38,7 @@ def _library() -> dict[str, dict[str, Any]]:
     return tomllib.loads(text)
 
 
-def papers(case: Case | MachineCase) -> dict[str, dict[str, Any]]:
+def papers(case: AnyCase) -> dict[str, dict[str, Any]]:
     """Papers behind the models that a case uses, each once."""
     if not case.lumped:
         entries = _package() | _values_source(case)
@@ -50,7 +50,7 @@ def papers(case: Case | MachineCase) -> dict[str, dict[str, Any]]:
     return entries | {key: _library()[key] for key in _METHODS.get(case.solver.method, ())}
 
 
-def _papers_of_pair(case: Case, tables: tuple[str, ...]) -> dict[str, dict[str, Any]]:
+def _papers_of_pair(case: PairCase, tables: tuple[str, ...]) -> dict[str, dict[str, Any]]:
     """Papers behind the models of some tables of a pair, and behind its teeth and losses."""
     from tribodyn.ehl import SHEAR_MODELS
 
@@ -112,7 +112,7 @@ def _is_built_in(model: Model) -> bool:
     return not homes or any(home.startswith("tribodyn.") for home in homes)
 
 
-def _data_sources(case: Case) -> dict[str, dict[str, Any]]:
+def _data_sources(case: PairCase) -> dict[str, dict[str, Any]]:
     """Sources of the values of a case and of its oil."""
     oil = case.lubricant_properties
     sources = _values_source(case)
@@ -121,7 +121,7 @@ def _data_sources(case: Case) -> dict[str, dict[str, Any]]:
     return sources
 
 
-def _values_source(case: Case | MachineCase) -> dict[str, dict[str, Any]]:
+def _values_source(case: AnyCase) -> dict[str, dict[str, Any]]:
     """The document behind the values of a case, and the values that differ from its own."""
     if not case.origin:
         return {}
@@ -173,7 +173,7 @@ def _bibtex(key: str, entry: dict[str, Any]) -> str:
     return f"@{entry['type']}{{{key},\n" + ",\n".join(fields) + "\n}"
 
 
-def cite(case: Case | MachineCase, style: str = "text") -> str:
+def cite(case: AnyCase, style: str = "text") -> str:
     """Write the papers behind a case."""
     entries = papers(case)
     if style == "bibtex":

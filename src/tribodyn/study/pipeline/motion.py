@@ -20,7 +20,7 @@ from tribodyn.study.pipeline.tooth_contact import repeat
 
 if TYPE_CHECKING:
     from tribodyn.dynamics import Response, System
-    from tribodyn.study.case.case import Case
+    from tribodyn.study.case.pair import PairCase
 
 
 #: Engine whose periodic orbits are solved directly.
@@ -35,7 +35,9 @@ _MOST_ROWS = 2**19
 _PERIODS = (1, 2, 3, 4)
 
 
-def motion_of(case: Case, system: System, mesh_frequency: float, progress: Progress) -> Response:
+def motion_of(
+    case: PairCase, system: System, mesh_frequency: float, progress: Progress
+) -> Response:
     """Compute the motion of a case."""
     from tribodyn.dynamics._engine.blocks import marching_on
 
@@ -54,7 +56,7 @@ def motion_of(case: Case, system: System, mesh_frequency: float, progress: Progr
 
 
 def motions_of(
-    points: Sequence[tuple[Case, System, float]],
+    points: Sequence[tuple[PairCase, System, float]],
 ) -> list[Callable[[], Response] | None]:
     """Find motions of cases in batches; None for those that must be computed separately."""
     from tribodyn.dynamics.equations.batched_tables import cache_rates, group_by_structure
@@ -79,7 +81,7 @@ def motions_of(
 
 
 def _transient(
-    case: Case, system: System, mesh_frequency: float, steps: int, progress: Progress
+    case: PairCase, system: System, mesh_frequency: float, steps: int, progress: Progress
 ) -> Response:
     """Simulate from the static equilibrium; a balancing torque is that of the steady state."""
     from tribodyn.dynamics import simulate, steady_state
@@ -114,7 +116,7 @@ def _transient(
     )
 
 
-def engine_arguments(case: Case) -> dict[str, Any]:
+def engine_arguments(case: PairCase) -> dict[str, Any]:
     """Engine of a case and its options, as arguments of :func:`tribodyn.dynamics.simulate`."""
     from tribodyn.dynamics import ENGINES
 
@@ -140,7 +142,7 @@ def _steady(system: System, mesh_frequency: float, steps: int, progress: Progres
 
 
 def _marched_orbit(
-    case: Case, system: System, orbit: Response, steps: int, progress: Progress
+    case: PairCase, system: System, orbit: Response, steps: int, progress: Progress
 ) -> Response:
     """Continue from an orbit with the engine of the case until its motion repeats."""
     from tribodyn.dynamics import simulate
@@ -183,7 +185,7 @@ def _marched_orbit(
     )
 
 
-def _restless(case: Case, cycles: int, change: float) -> Problem:
+def _restless(case: PairCase, cycles: int, change: float) -> Problem:
     engine = case.solver.engine
     return Problem(
         f'the motion still changes by {change:.2e} of its size after {cycles} mesh cycles of "'
@@ -211,7 +213,7 @@ _STEPS = "steps_per_mesh_cycle"
 _MARGIN = 1.05
 
 
-def steps_of(case: Case, system: System, mesh_frequency: float) -> int:
+def steps_of(case: PairCase, system: System, mesh_frequency: float) -> int:
     """Return the requested steps per mesh cycle, or those that resolve the fastest motion."""
     from tribodyn.dynamics.equations.step_limit import LIMIT, accurate_steps, rate_on_grid
 
@@ -224,7 +226,7 @@ def steps_of(case: Case, system: System, mesh_frequency: float) -> int:
     return case.solver.steps_per_mesh_cycle or accurate_steps(rate, mesh_frequency)
 
 
-def _too_slow(case: Case, needed: float, high: float) -> Problem:
+def _too_slow(case: PairCase, needed: float, high: float) -> Problem:
     from tribodyn import units
 
     def rpm(speed: float) -> str:

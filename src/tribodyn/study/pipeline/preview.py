@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from tribodyn.gear import SpurPair
     from tribodyn.losses import GearboxLosses
     from tribodyn.mesh import MeshTable
-    from tribodyn.study.case.case import Case
+    from tribodyn.study.case.pair import PairCase
 
 #: Elastic natural frequencies in a summary.
 _MODES = 12
@@ -28,7 +28,7 @@ _CACHE_SIZE = 256
 _FACTORS = ("peak", "rms")
 
 
-def operating_figures(case: Case) -> dict[str, float]:
+def operating_figures(case: PairCase) -> dict[str, float]:
     """Speed and force at the pitch line, power, and the oil at its operating temperature."""
     torque, speed = case.pinion_torque, case.pinion_speed
     figures = {"input_power": torque * speed}
@@ -53,7 +53,7 @@ def operating_figures(case: Case) -> dict[str, float]:
     return figures
 
 
-def load_figures(case: Case, mesh: MeshTable, figures: Mapping[str, float]) -> dict[str, float]:
+def load_figures(case: PairCase, mesh: MeshTable, figures: Mapping[str, float]) -> dict[str, float]:
     """Dynamic factors, efficiency, and the mesh stiffness of ISO 6336-1 for comparison."""
     lost, power = figures["mean_friction_power"], figures["input_power"]
     if case.operation.torque_balance == "load":
@@ -76,7 +76,7 @@ def _dynamic_factors(figures: Mapping[str, float]) -> dict[str, float]:
     return {f"dynamic_factor_{name}": figures[f"{name}_mesh_force"] / mean for name in _FACTORS}
 
 
-def gearbox_losses_of(case: Case, lost: Any, **point: Any) -> GearboxLosses:
+def gearbox_losses_of(case: PairCase, lost: Any, **point: Any) -> GearboxLosses:
     """Losses of the gearbox of a case for given tooth losses, at its own or another point."""
     from tribodyn.losses import Gearbox, gearbox_losses
 
@@ -91,7 +91,7 @@ def gearbox_losses_of(case: Case, lost: Any, **point: Any) -> GearboxLosses:
     )
 
 
-def gearbox_figures(case: Case, lost: float) -> dict[str, float]:
+def gearbox_figures(case: PairCase, lost: float) -> dict[str, float]:
     """Losses of shafts and oil, if the case has them, and the total efficiency."""
     if case.gearbox is None:
         return {}
@@ -108,7 +108,7 @@ def gearbox_figures(case: Case, lost: float) -> dict[str, float]:
     return {name: float(value[0, 0]) for name, value in figures.items()}
 
 
-def standard_figures(case: Case) -> dict[str, float]:
+def standard_figures(case: PairCase) -> dict[str, float]:
     """``b c_gamma_alpha`` of ISO 6336-1, and the share of the gear bodies in the deflection."""
 
     def under() -> Callable[[float], dict[str, float]]:

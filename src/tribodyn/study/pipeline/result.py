@@ -28,7 +28,7 @@ if TYPE_CHECKING:
     from tribodyn.gear import ToothContact
     from tribodyn.mesh import HypoidFriction, MeshFriction, MeshTable
     from tribodyn.stiffness import LoadedContact
-    from tribodyn.study.case.case import Case
+    from tribodyn.study.case.pair import PairCase
     from tribodyn.study.faults.motion import TurningMotion
     from tribodyn.study.heat_balance import HeatBalance
     from tribodyn.study.pipeline.assembly import Damping
@@ -43,7 +43,7 @@ class Result(ResultOfCase, Record):
 
     Parameters
     ----------
-    case : Case
+    case : PairCase
         What was computed.
     mesh : MeshTable
         The tooth contact over one mesh cycle.
@@ -69,7 +69,7 @@ class Result(ResultOfCase, Record):
     _MOTION = MOTIONS[1]
     _COMPARISON = "result_comparison"
 
-    case: Case
+    case: PairCase
     mesh: MeshTable
     system: System
     response: Response

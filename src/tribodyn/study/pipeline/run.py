@@ -43,19 +43,23 @@ from tribodyn.study.settle import settle
 if TYPE_CHECKING:
     from tribodyn.dynamics import Response, System
     from tribodyn.mesh import MeshFriction, MeshTable
-    from tribodyn.study.case.case import Case
+    from tribodyn.study.case.pair import PairCase
     from tribodyn.study.heat_balance import HeatBalance
     from tribodyn.study.pipeline.assembly import Damping
 
 
 def run(
-    case: Case, progress: Progress = SILENT, *, stacklevel: int = 2, follow: Follow | None = None
+    case: PairCase,
+    progress: Progress = SILENT,
+    *,
+    stacklevel: int = 2,
+    follow: Follow | None = None,
 ) -> Result:
     """Compute a case.
 
     Parameters
     ----------
-    case : Case
+    case : PairCase
         From :func:`tribodyn.load_case`.
     progress : Progress
         Receives the progress of the run; silent by default.
@@ -97,7 +101,7 @@ def _has_marched() -> bool:
     return bool(getattr(march_block, "signatures", ()))
 
 
-def rehearse(case: Case) -> tuple[ModelWarning, ...]:
+def rehearse(case: PairCase) -> tuple[ModelWarning, ...]:
     """Raise the input errors of a run without computing it; return its warnings on the load."""
     from tribodyn.dynamics.equations.program import compile_system
     from tribodyn.dynamics.equations.step_limit import FEWEST, refuse_steps
@@ -112,7 +116,7 @@ def rehearse(case: Case) -> tuple[ModelWarning, ...]:
 
 
 def computed(
-    case: Case,
+    case: PairCase,
     progress: Progress = SILENT,
     mesh_source: Callable[[], MeshTable] | None = None,
     follow: Follow | None = None,
@@ -128,7 +132,7 @@ def computed(
 class PreparedRun:
     """A case with mesh and structure, ready for its motion, which studies find in batches."""
 
-    case: Case
+    case: PairCase
     mesh: MeshTable
     coupling: Coupling | None
     heat: HeatBalance | None
@@ -171,7 +175,7 @@ class PreparedRun:
 
 
 def prepare_run(
-    case: Case,
+    case: PairCase,
     progress: Progress = SILENT,
     mesh_source: Callable[[], MeshTable] | None = None,
     follow: Follow | None = None,
@@ -193,7 +197,7 @@ def prepare_run(
     return PreparedRun(*parts, model_warnings)
 
 
-def restored(case: Case, stored: Stored) -> Result:
+def restored(case: PairCase, stored: Stored) -> Result:
     """Result from its folder; the forces along its motion are computed again."""
     (load,) = stored.loads
     data, (mesh,) = load.data, load.tables.values()
@@ -215,7 +219,7 @@ def restored(case: Case, stored: Stored) -> Result:
 class PendingRun(NamedTuple):
     """A case to be prepared, and the source of its mesh table if the study has computed it."""
 
-    case: Case
+    case: PairCase
     mesh_source: Callable[[], MeshTable] | None = None
 
 

@@ -27,7 +27,7 @@ if TYPE_CHECKING:
     import xarray
 
     from tribodyn.mesh import MeshTable
-    from tribodyn.study.case.case_data import BaseCase
+    from tribodyn.study.case.case import Case
     from tribodyn.study.pipeline.result_of_case import ResultOfCase
 
 #: Names of the files of a motion: of parts by name, and of a pair.
@@ -161,7 +161,7 @@ def _left_out(
             yield from _left_out(field.kind, table_in(data, name), whole, f"{prefix}{name}.")
 
 
-def as_computed(case: BaseCase, stored: Stored) -> BaseCase:
+def as_computed(case: Case, stored: Stored) -> Case:
     """Case with the defaults with which another version computed its stored result."""
     then = json.loads(stored.loads[0].data.attrs.get("defaults", "{}"))
     now = json.loads(json.dumps(defaults_of(case) if then else {}))

@@ -27,7 +27,7 @@ if TYPE_CHECKING:
     from tribodyn.mesh import HypoidFriction, HypoidLoadedContact, MeshFriction, MeshTable
     from tribodyn.mesh.sharing import FittedLaw, ToothContact
     from tribodyn.stiffness import LoadedContact
-    from tribodyn.study.case.case import Case
+    from tribodyn.study.case.pair import PairCase
     from tribodyn.types import Array
 
 
@@ -37,7 +37,7 @@ _LIGHT = 0.3
 _FEWEST = 16
 
 
-def mesh_of(case: Case, progress: Progress = SILENT, **options: Any) -> MeshTable:
+def mesh_of(case: PairCase, progress: Progress = SILENT, **options: Any) -> MeshTable:
     """Compute the tooth contact of a pair over one mesh cycle, as :func:`mesh_table`."""
     return mesh_table(mesh_inputs(case), progress, **options)
 
@@ -119,7 +119,7 @@ def teeth_contact_ratio(inputs: MeshInputs) -> float | None:
     return contact_ratio(cycle.grid, shared.share, shared.corner_share)
 
 
-def film_group(case: Case) -> object:
+def film_group(case: PairCase) -> object:
     """Key of cases whose tooth contacts differ in speed and load alone; None for other cases."""
     if case.spur_pair is None or case._named_files():
         return None
@@ -214,7 +214,7 @@ def load_friction_of(
 _PHASES = 64  #: phases of a mesh cycle
 
 
-def loaded_settings(case: Case) -> dict[str, Any]:
+def loaded_settings(case: PairCase) -> dict[str, Any]:
     """Provider, its options and material of a case, as arguments of the loaded tooth contact."""
     settings = model_settings(case)
     options = dict(settings["stiffness_options"])
@@ -226,7 +226,7 @@ def loaded_settings(case: Case) -> dict[str, Any]:
     }
 
 
-def phases_of_turns(case: Case) -> Array:
+def phases_of_turns(case: PairCase) -> Array:
     """Phases until all repeats: shorter than the hunting period where one gear is even."""
     gears = (case.gear_pair.pinion, case.gear_pair.wheel)
     turns = math.lcm(*(gear.teeth for gear in gears if gear.modification.teeth_differ))
@@ -234,13 +234,13 @@ def phases_of_turns(case: Case) -> Array:
 
 
 def loaded_contact(
-    case: Case, *, torque: Any = None, phases: int | Array = _PHASES
+    case: PairCase, *, torque: Any = None, phases: int | Array = _PHASES
 ) -> LoadedContact:
     """Find load sharing, transmission error and stiffness of a case under torques at rest.
 
     Parameters
     ----------
-    case : Case
+    case : PairCase
         From :func:`tribodyn.load_case`; its ``[stiffness]`` sets the compliance of the teeth.
     torque : float, str or list, optional
         Torques on the gear named by ``operation.speed_of``: floats in N*m, or text with a unit.
@@ -278,7 +278,7 @@ def loaded_contact(
         )
 
 
-def operation_values(name: str, values: Any, case: Case) -> list[float]:
+def operation_values(name: str, values: Any, case: PairCase) -> list[float]:
     """Read torques or speeds, each checked like the key of the case."""
     if values is None:
         return [getattr(case.operation, name)]
@@ -293,11 +293,11 @@ def operation_values(name: str, values: Any, case: Case) -> list[float]:
         raise InputError(problem) from None
 
 
-def read_torques(case: Case, values: Any) -> list[float]:
+def read_torques(case: PairCase, values: Any) -> list[float]:
     """Read torques on the gear named by ``operation.speed_of`` as those of the first gear."""
     return [value / case.speed_ratio for value in operation_values("torque", values, case)]
 
 
-def read_speeds(case: Case, values: Any) -> list[float]:
+def read_speeds(case: PairCase, values: Any) -> list[float]:
     """Read speeds of the gear named by ``operation.speed_of`` as those of the first gear."""
     return [value * case.speed_ratio for value in operation_values("speed", values, case)]

@@ -22,7 +22,7 @@ from tribodyn.study.machine.read_parts import is_faulty, read_gear
 if TYPE_CHECKING:
     from tribodyn.gear import CylindricalPair
     from tribodyn.machine import Machine, MeshLoad, PowerFlow
-    from tribodyn.study.case.case import Case
+    from tribodyn.study.case.pair import PairCase
     from tribodyn.study.case.user_input import Source
 
 #: Members of a stage; sun and ring are gears, the carrier is a shaft.
@@ -101,7 +101,7 @@ class CaseStage:
         """Geometry of a kind of mesh."""
         return self._pair(mesh).gear_pair  # type: ignore[return-value]
 
-    def _pair(self, mesh: str) -> Case:
+    def _pair(self, mesh: str) -> PairCase:
         """Pair of a kind of mesh, at any speed and torque."""
         if mesh not in self._pairs:
             names = self.names_of(mesh)
@@ -110,7 +110,7 @@ class CaseStage:
         return self._pairs[mesh]
 
     @cached_property
-    def _pairs(self) -> dict[str, Case]:
+    def _pairs(self) -> dict[str, PairCase]:
         return {}
 
     def with_forms(self) -> CaseStage:

@@ -13,7 +13,7 @@ from tribodyn.aliases import with_old_names
 from tribodyn.checkpoints import Checkpoints
 from tribodyn.errors import InputError, collected
 from tribodyn.progress import SILENT, Progress
-from tribodyn.study.machine.case import MachineCase
+from tribodyn.study.machine.case import AnyCase
 from tribodyn.study.studies.case_grid import (
     Moving,
     contact_without_speed,
@@ -30,7 +30,6 @@ from tribodyn.types import Array
 
 if TYPE_CHECKING:
     from tribodyn.nonlinear.bifurcation import Bifurcation
-    from tribodyn.study.case.case import Case
 
 
 #: All values take the steps of the one that needs most while the counts differ by no more than this
@@ -44,7 +43,7 @@ _MOST_KEPT = 48
 
 @with_old_names
 def bifurcation(
-    case: Case | MachineCase,
+    case: AnyCase,
     over: str = "operation.speed",
     between: tuple[Any, Any] | None = None,
     points: int = 300,
@@ -60,7 +59,7 @@ def bifurcation(
 
     Parameters
     ----------
-    case : Case or MachineCase
+    case : Case
         From :func:`tribodyn.load_case`.
     over : str
         Dotted key of the value that varies.
@@ -134,9 +133,7 @@ def bifurcation(
     return replace(diagram, signal=f"mesh {name}") if of_mesh else diagram
 
 
-def _lengths(
-    case: Case | MachineCase, members: list[Moving], options: dict[str, Any]
-) -> dict[str, Any]:
+def _lengths(case: AnyCase, members: list[Moving], options: dict[str, Any]) -> dict[str, Any]:
     """Options with the lengths of motions of a machine, in periods of its clock."""
     if case.lumped:
         return options
@@ -150,7 +147,7 @@ def _lengths(
 
 
 def _members(
-    case: Case | MachineCase,
+    case: AnyCase,
     mesh: str,
     over: str,
     values: Any,
@@ -175,9 +172,7 @@ def _members(
     return [Moving(system, beat, study_steps(each, system, beat)) for each, system, beat in parts]
 
 
-def _values(
-    case: Case | MachineCase, over: str, between: tuple[Any, Any] | None, points: int, by: str
-) -> Any:
+def _values(case: AnyCase, over: str, between: tuple[Any, Any] | None, points: int, by: str) -> Any:
     """Return the values of the key in SI; both ends are checked like the key of the case."""
     if between is None or len(between) != 2 or int(points) != points or points < 2:
         why = "A diagram goes from one value to another in at least two points"
@@ -187,7 +182,7 @@ def _values(
     return np.linspace(first, last, int(points))
 
 
-def _unit(case: Case | MachineCase, over: str) -> str:
+def _unit(case: AnyCase, over: str) -> str:
     spec = case.option_of(over)
     return str(spec.unit) if spec is not None and spec.unit else "-"
 
@@ -202,7 +197,7 @@ _DIFFERENT = 0.05
 class Findings:
     """Findings of a bifurcation diagram: sentences, figures and a table."""
 
-    def __init__(self, case: Case | MachineCase, diagram: Bifurcation) -> None:
+    def __init__(self, case: AnyCase, diagram: Bifurcation) -> None:
         spec = case.option_of(diagram.parameter_name)
         units = (spec.unit, spec.display_unit) if spec else ("", "")
         values = tuple(float(value) for value in diagram.parameter)

@@ -18,7 +18,7 @@ from tribodyn.mesh import MeshTable
 from tribodyn.progress import SILENT, Progress, StageProgress
 from tribodyn.study.case.to_models import locate_errors
 from tribodyn.study.first_use import compile_in_parallel
-from tribodyn.study.machine.case import MachineCase
+from tribodyn.study.machine.case import AnyCase, MachineCase
 from tribodyn.study.machine.rated_meshes import rated_figures
 from tribodyn.study.machine.result import LoadResult
 from tribodyn.study.machine.result import steps_of as steps_of_machine
@@ -32,30 +32,30 @@ from tribodyn.study.studies.sweep_result import SweepPoint
 
 if TYPE_CHECKING:
     from tribodyn.dynamics import System
-    from tribodyn.study.case.case import Case
+    from tribodyn.study.case.pair import PairCase
 
 
 class Member(NamedTuple):
     """Case of a study with its tooth contact and its structure."""
 
-    case: Case
+    case: PairCase
     mesh: MeshTable
     system: System
 
 
-def contact_without_speed(case: Case) -> bool:
+def contact_without_speed(case: PairCase) -> bool:
     """Whether the tooth contact is independent of the speed."""
     return case.film.model == "none" and case.friction.law in ("none", "constant")
 
 
-def built(case: Case) -> Member:
+def built(case: PairCase) -> Member:
     """Build tooth contact and structure of a case."""
     mesh = mesh_of(case)
     return Member(case, mesh, whole_system(case, mesh))
 
 
 def varied(
-    case: Case,
+    case: PairCase,
     changes: Sequence[Mapping[str, object]],
     progress: Progress,
     checkpoints: Checkpoints | None = None,
@@ -131,7 +131,7 @@ class Moving(NamedTuple):
     contact: int = 0  #: contact of the mesh that is followed
 
 
-def moving(case: Case | MachineCase, mesh: str | None = None) -> Moving:
+def moving(case: AnyCase, mesh: str | None = None) -> Moving:
     """Structure of a case under its load; ``mesh`` is that of a machine that is followed."""
     if case.lumped:
         member = built(case)
@@ -179,13 +179,13 @@ def moving_members(
     return run_each(at, values, task="Machines", progress=progress)
 
 
-def moving_at(case: Case | MachineCase, over: str, mesh: str, value: float) -> Moving:
+def moving_at(case: AnyCase, over: str, mesh: str, value: float) -> Moving:
     """Structure of a case at a value of a key."""
     return moving(case.replace({over: float(value)}), mesh)
 
 
 @contextmanager
-def many_motions(case: Case | MachineCase) -> Iterator[None]:
+def many_motions(case: AnyCase) -> Iterator[None]:
     """Context of a study of many motions: errors with their place in the case, no warnings."""
     if not case.lumped:
         with collected(), single_blas_thread():
@@ -195,12 +195,12 @@ def many_motions(case: Case | MachineCase) -> Iterator[None]:
             yield
 
 
-def build_system(case: Case | MachineCase, *, progress: Progress = SILENT) -> tuple[System, float]:
+def build_system(case: AnyCase, *, progress: Progress = SILENT) -> tuple[System, float]:
     """Build the structure of a case with its tooth contact, ready for every nonlinear method.
 
     Parameters
     ----------
-    case : Case or MachineCase
+    case : Case
         From :func:`tribodyn.load_case`.
     progress : Progress
         Receives the progress of the tooth contact; silent by default.
@@ -230,7 +230,7 @@ def build_system(case: Case | MachineCase, *, progress: Progress = SILENT) -> tu
     return built_case.system, built_case.frequency
 
 
-def study_steps(case: Case, system: System, mesh_frequency: float) -> int:
+def study_steps(case: PairCase, system: System, mesh_frequency: float) -> int:
     """Steps per mesh cycle of a study of many motions: those of the case, or a coarse default."""
     accurate = steps_of(case, system, mesh_frequency)
     return case.solver.steps_per_mesh_cycle or max(FEWEST, accurate // COARSER)

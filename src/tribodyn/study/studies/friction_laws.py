@@ -10,13 +10,13 @@ from tribodyn.errors import InputError, collected
 
 if TYPE_CHECKING:
     from tribodyn.friction import TribologicalContact
-    from tribodyn.study.case.case import Case
+    from tribodyn.study.case.pair import PairCase
 
 #: Compared points of the path of contact, in the order of roll of FZG type A.
 PLACES = ("A", "C", "after B", "middle", "before D", "E")
 
 
-def friction_laws(case: Case) -> list[dict[str, Any]]:
+def friction_laws(case: PairCase) -> list[dict[str, Any]]:
     """List each law with meaning, source, options, coefficients at PLACES and range check."""
     from tribodyn.friction import LAWS
 
@@ -47,7 +47,7 @@ def friction_laws(case: Case) -> list[dict[str, Any]]:
     return rows
 
 
-def _contacts(case: Case) -> TribologicalContact:
+def _contacts(case: PairCase) -> TribologicalContact:
     """Contacts of a tooth pair at PLACES; pairs in contact share the load equally."""
     from tribodyn.contact import effective_modulus, equal_share, hertz_line, path_of_contact
     from tribodyn.ehl import FILM_MODELS

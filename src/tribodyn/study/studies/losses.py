@@ -17,15 +17,15 @@ from tribodyn.study.studies.runner import run_each
 
 if TYPE_CHECKING:
     from tribodyn.losses import GearboxLosses, RigPowerFlow
-    from tribodyn.study.case.case import Case
-    from tribodyn.study.machine.case import MachineCase
+    from tribodyn.study.case.pair import PairCase
+    from tribodyn.study.machine.case import AnyCase
 
 #: Torques and speeds of a map relative to those of the case, which is one of the points.
 STEPS = np.linspace(0.25, 2.0, 8)
 
 
 def loss_map(
-    case: Case | MachineCase,
+    case: AnyCase,
     *,
     torque: object = None,
     speed: object = None,
@@ -36,7 +36,7 @@ def loss_map(
 
     Parameters
     ----------
-    case : Case or MachineCase
+    case : Case
         From :func:`tribodyn.load_case`. Teeth lose by its ``[friction]``, shafts and oil by its
         ``[losses]``; without that table the teeth alone are counted.
     torque, speed : float, str or list, optional
@@ -106,14 +106,14 @@ def _warn_once(model_warnings: Iterable[ModelWarning], points: int) -> None:
         warn(code, repeated[0].message + count_text, stacklevel=3)
 
 
-def rig_power_flow(case: Case, slave: Case | None = None) -> RigPowerFlow:
+def rig_power_flow(case: PairCase, slave: PairCase | None = None) -> RigPowerFlow:
     """Find the power flow of a back-to-back rig that tests the gears of a case.
 
     Parameters
     ----------
-    case : Case
+    case : PairCase
         The test gearbox with its ``[losses]``.
-    slave : Case, optional
+    slave : PairCase, optional
         The gearbox that closes the loop, at the same torque and speed of the pinion; by default
         the same as the test gearbox.
 

@@ -25,8 +25,8 @@ if TYPE_CHECKING:
     from collections.abc import Iterable
 
     from tribodyn.dynamics import Campbell, NaturalModes
-    from tribodyn.study.case.case import Case
-    from tribodyn.study.machine.case import MachineCase
+    from tribodyn.study.case.pair import PairCase
+    from tribodyn.study.machine.case import AnyCase, MachineCase
 
 _SPEED = "operation.speed"
 #: Smallest share of the energy that is reported.
@@ -45,14 +45,12 @@ class Mode:
     speeds: tuple[float, ...]  #: critical speeds, one for each of ``ORDERS`` [rad/s]
 
 
-def natural_modes(
-    case: Case | MachineCase, progress: Progress = SILENT
-) -> NaturalModes | MachineModes:
+def natural_modes(case: AnyCase, progress: Progress = SILENT) -> NaturalModes | MachineModes:
     """Find the natural frequencies of a case about its static load; no motion is computed.
 
     Parameters
     ----------
-    case : Case or MachineCase
+    case : Case
         From :func:`tribodyn.load_case`.
     progress : Progress
         Receives the progress of the tooth contact; silent by default.
@@ -82,7 +80,7 @@ def natural_modes(
 
 
 def campbell(
-    case: Case | MachineCase,
+    case: AnyCase,
     between: tuple[object, object] | None = None,
     *,
     orders: Iterable[int] = ORDERS,
@@ -92,7 +90,7 @@ def campbell(
 
     Parameters
     ----------
-    case : Case or MachineCase
+    case : Case
         From :func:`tribodyn.load_case`.
     between : tuple, optional
         Lowest and highest value of ``operation.speed``: floats in rad/s, or text with a unit; by
@@ -131,7 +129,7 @@ def campbell(
     return diagram_of(system, case, mesh_frequency, ends, orders)
 
 
-def mode_rows(modes: NaturalModes, case: Case, mesh_frequency: float) -> list[Mode]:
+def mode_rows(modes: NaturalModes, case: PairCase, mesh_frequency: float) -> list[Mode]:
     """Elastic modes of a case with energy shares by body and spring, and their critical speeds."""
     per_hertz = case.operation.speed / mesh_frequency
     bodies, springs = modes.body_share(), modes.strain_by_kind()

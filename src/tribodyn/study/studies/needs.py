@@ -13,8 +13,8 @@ from tribodyn.errors import Argument, InputError, did_you_mean
 from tribodyn.study.mesh_inputs import PAIR_MESH
 
 if TYPE_CHECKING:
-    from tribodyn.study.case.case import Case
-    from tribodyn.study.machine.case import MachineCase
+    from tribodyn.study.case.pair import PairCase
+    from tribodyn.study.machine.case import AnyCase
 
 #: Kinds of cases: pairs of gears, and cases of parts with names.
 PAIRS = ("cylindrical pair", "hypoid pair", "mesh table")
@@ -56,20 +56,20 @@ STUDIES: dict[str, Need] = {
 }
 
 
-def kind_of(case: Case | MachineCase) -> str:
+def kind_of(case: AnyCase) -> str:
     """Kind of a case, of :data:`KINDS`."""
     if case.lumped:
         return dict(zip(("spur", "hypoid", "table"), PAIRS, strict=True))[case.gears.kind]
     return case.kind.lower()
 
 
-def takes(study: str, case: Case | MachineCase) -> bool:
+def takes(study: str, case: AnyCase) -> bool:
     """Whether a case, or one of its meshes, has what a study needs."""
     kind, need = kind_of(case), STUDIES[study]
     return kind in need.kinds or (need.of_mesh and kind in PARTS)
 
 
-def require(study: str, case: Case | MachineCase, where: Any = None) -> None:
+def require(study: str, case: AnyCase, where: Any = None) -> None:
     """Refuse a case that lacks what a study needs."""
     if takes(study, case):
         return
@@ -84,11 +84,11 @@ def require(study: str, case: Case | MachineCase, where: Any = None) -> None:
 class MeshPair(NamedTuple):
     """A mesh of a case: its pair of gears, and the tables of both gears in the case."""
 
-    pair: Case
+    pair: PairCase
     gears: tuple[str, str]  #: tables of pinion and wheel, such as ``gears.z1``
 
 
-def mesh_names(case: Case | MachineCase) -> tuple[str, ...]:
+def mesh_names(case: AnyCase) -> tuple[str, ...]:
     """Names of the meshes with computed teeth; of equal planets the first of each kind."""
     parts: Any = case
     if kind_of(case) in PAIRS:
@@ -105,7 +105,7 @@ def _planet_meshes(parts: Any) -> dict[str, tuple[str, ...]]:
     return {} if stage is None else parts.machine().planets[stage].mesh_names(stage)
 
 
-def motion_meshes(case: Case | MachineCase) -> tuple[str, ...]:
+def motion_meshes(case: AnyCase) -> tuple[str, ...]:
     """Names of the meshes that a study of motions can follow; of equal planets the first."""
     parts: Any = case
     if kind_of(case) in PAIRS:
@@ -113,7 +113,7 @@ def motion_meshes(case: Case | MachineCase) -> tuple[str, ...]:
     return tuple(_planet_meshes(parts)) or tuple(parts.machine().meshes)
 
 
-def study_meshes(study: str, case: Case | MachineCase) -> tuple[str, ...]:
+def study_meshes(study: str, case: AnyCase) -> tuple[str, ...]:
     """Meshes of a case that have what a study of one mesh needs."""
     parts: Any = case
     if STUDIES[study] == _MOTION:
@@ -126,7 +126,7 @@ def study_meshes(study: str, case: Case | MachineCase) -> tuple[str, ...]:
     return tuple(name for name in names if name not in unfit)
 
 
-def mesh_pair(study: str, case: Case | MachineCase, mesh: str | None = None) -> MeshPair:
+def mesh_pair(study: str, case: AnyCase, mesh: str | None = None) -> MeshPair:
     """Pair of gears of the mesh that a study is about, misaligned as its shafts deflect."""
     require(study, case)
     parts: Any = case
@@ -163,7 +163,7 @@ def _named_mesh(
     return mesh or names[0]
 
 
-def mesh_in_motion(study: str, case: Case | MachineCase, mesh: str | None = None) -> str:
+def mesh_in_motion(study: str, case: AnyCase, mesh: str | None = None) -> str:
     """Mesh of a case that a study of its motions is about, by its name in the machine."""
     require(study, case)
     parts: Any = case
@@ -174,13 +174,13 @@ def mesh_in_motion(study: str, case: Case | MachineCase, mesh: str | None = None
     return str(_planet_meshes(parts).get(name, (name,))[0])
 
 
-def _deflected(case: Any, mesh: str, pair: Case) -> Case:
+def _deflected(case: Any, mesh: str, pair: PairCase) -> PairCase:
     """Pair of a mesh with the misalignment by the shafts of its machine."""
     from tribodyn.study.machine.run import balanced_machine
 
     load = case.operating_point
     balanced = balanced_machine(case, load, rehearsal=True)
-    deflected: Case = case.pair(mesh, load, balanced.misalignment[mesh])
+    deflected: PairCase = case.pair(mesh, load, balanced.misalignment[mesh])
     return deflected
 
 

@@ -12,7 +12,7 @@ from tribodyn.dynamics.orbits.solution_branch import of_contact
 from tribodyn.dynamics.orbits.system_family import family_of
 from tribodyn.errors import InputError
 from tribodyn.progress import SILENT, Progress
-from tribodyn.study.machine.case import MachineCase
+from tribodyn.study.machine.case import AnyCase
 from tribodyn.study.studies.case_grid import (
     Moving,
     contact_without_speed,
@@ -26,14 +26,13 @@ from tribodyn.study.studies.study_axes import ends_of
 if TYPE_CHECKING:
     from tribodyn.analysis import Basins, LyapunovExponents
     from tribodyn.dynamics import Branch
-    from tribodyn.study.case.case import Case
 
 #: Half width of the plane of initial states, relative to the static deflection of the mesh.
 _WIDE = 5.0
 
 
 def lyapunov_exponents(
-    case: Case | MachineCase,
+    case: AnyCase,
     *,
     cycles: int = 1000,
     transient: int = 300,
@@ -45,7 +44,7 @@ def lyapunov_exponents(
 
     Parameters
     ----------
-    case : Case or MachineCase
+    case : Case
         From :func:`tribodyn.load_case`. The motion starts at its static equilibrium.
     cycles : int
         Mesh cycles over which to average.
@@ -98,7 +97,7 @@ def lyapunov_exponents(
 
 
 def basins(
-    case: Case | MachineCase,
+    case: AnyCase,
     transmission_error: tuple[Any, Any] | None = None,
     rate: tuple[Any, Any] | None = None,
     *,
@@ -114,7 +113,7 @@ def basins(
 
     Parameters
     ----------
-    case : Case or MachineCase
+    case : Case
         From :func:`tribodyn.load_case`.
     transmission_error : tuple, optional
         Range of the dynamic transmission error at the start, counted from where the driving flank
@@ -222,7 +221,7 @@ def _plane_about_equilibrium(
 
 
 def continuation(
-    case: Case | MachineCase,
+    case: AnyCase,
     over: str = "operation.speed",
     between: tuple[object, object] | None = None,
     *,
@@ -238,7 +237,7 @@ def continuation(
 
     Parameters
     ----------
-    case : Case or MachineCase
+    case : Case
         From :func:`tribodyn.load_case`.
     over : str
         Dotted key of the value that varies.

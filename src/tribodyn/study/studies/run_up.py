@@ -28,8 +28,8 @@ from tribodyn.study.studies.study_axes import read_axes
 
 if TYPE_CHECKING:
     from tribodyn.dynamics import RunUp, SpeedSweep, System
-    from tribodyn.study.case.case import Case
-    from tribodyn.study.machine.case import MachineCase
+    from tribodyn.study.case.pair import PairCase
+    from tribodyn.study.machine.case import AnyCase, MachineCase
     from tribodyn.study.machine.motion import MachineMotion
     from tribodyn.study.machine.result import LoadResult
     from tribodyn.types import Array
@@ -43,7 +43,7 @@ _COARSE = 0.02
 
 
 def run_up(
-    case: Case | MachineCase,
+    case: AnyCase,
     between: tuple[object, object] | None = None,
     duration: float = 10.0,
     *,
@@ -58,7 +58,7 @@ def run_up(
 
     Parameters
     ----------
-    case : Case or MachineCase
+    case : Case
         From :func:`tribodyn.load_case`.
     between : tuple
         Lowest and highest value of ``operation.speed``: floats in rad/s, or text with a unit.
@@ -135,20 +135,20 @@ def run_up(
 
 
 def speed_systems(
-    case: Case, speeds: object, progress: Progress = SILENT
+    case: PairCase, speeds: object, progress: Progress = SILENT
 ) -> tuple[dict[float, System], float]:
     """Build the structure of a case at each speed, by mesh frequency."""
     members, per_speed = _members(case, speeds, progress)
     return {member.mesh.mesh_frequency: member.system for member in members}, per_speed
 
 
-def _members(case: Case, speeds: Any, progress: Progress) -> tuple[list[Member], float]:
+def _members(case: PairCase, speeds: Any, progress: Progress) -> tuple[list[Member], float]:
     """The case at each speed, and its mesh frequency over the speed."""
     members = varied(case, [{_SPEED: float(speed)} for speed in speeds], progress)
     return members, members[-1].mesh.mesh_frequency / float(speeds[-1])
 
 
-def _turning_systems(case: Case, members: list[Member]) -> tuple[dict[float, System], int]:
+def _turning_systems(case: PairCase, members: list[Member]) -> tuple[dict[float, System], int]:
     """Structures at each speed by mesh frequency, and the mesh cycles of their clock."""
     if not varies_over_turns(case):
         return {member.mesh.mesh_frequency: member.system for member in members}, 1
@@ -166,7 +166,7 @@ def _turning_systems(case: Case, members: list[Member]) -> tuple[dict[float, Sys
     return systems, driven.cycles
 
 
-def _check_faults(case: Case) -> None:
+def _check_faults(case: PairCase) -> None:
     """Refuse faults that do not repeat with the turns, and periods that are too long."""
     from tribodyn.faults import RandomLoad
     from tribodyn.study.faults.section import excitations
@@ -219,7 +219,7 @@ def supports(system: System) -> dict[str, Any]:
 
 
 def speed_sweep(
-    case: Case | MachineCase,
+    case: AnyCase,
     between: tuple[Any, Any],
     points: int = 60,
     *,
@@ -231,7 +231,7 @@ def speed_sweep(
 
     Parameters
     ----------
-    case : Case or MachineCase
+    case : Case
         From :func:`tribodyn.load_case`.
     between : tuple
         Lowest and highest value of ``operation.speed``: floats in rad/s, or text with a unit.

@@ -20,8 +20,7 @@ from tribodyn.progress import SILENT, Progress
 from tribodyn.study.processes import helpers
 
 if TYPE_CHECKING:
-    from tribodyn.study.case.case import Case
-    from tribodyn.study.machine.case import MachineCase
+    from tribodyn.study.machine.case import AnyCase
 
 Item = TypeVar("Item")
 Value = TypeVar("Value")
@@ -33,9 +32,7 @@ _ITEMS_PER_PROCESS = 50
 _NO_VALUES: Mapping[int, Any] = MappingProxyType({})
 
 
-def identity(
-    study: str, case: Case | MachineCase, over: object, **options: object
-) -> dict[str, Any]:
+def identity(study: str, case: AnyCase, over: object, **options: object) -> dict[str, Any]:
     """Identity of a study; checkpoints are reused only if it is the same."""
     import tribodyn
 

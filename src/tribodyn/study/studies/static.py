@@ -30,8 +30,8 @@ from tribodyn.units import format_quantity
 if TYPE_CHECKING:
     from tribodyn.mesh import ComprehensiveStiffness, FilmOverOperation
     from tribodyn.stiffness import HarrisMap
-    from tribodyn.study.case.case import Case
-    from tribodyn.study.machine.case import MachineCase
+    from tribodyn.study.case.pair import PairCase
+    from tribodyn.study.machine.case import AnyCase
 
 
 #: Torques of a map over those of the case.
@@ -62,9 +62,9 @@ class OptimumOfCase(ABC):
         """Modification by key of the case, as text in the units of the file."""
 
     @property
-    def case(self) -> Case | MachineCase:
+    def case(self) -> AnyCase:
         """The case that was studied, with its best flanks."""
-        changed: Case | MachineCase = self.studied.replace(self.changes)
+        changed: AnyCase = self.studied.replace(self.changes)
         return changed
 
 
@@ -97,7 +97,7 @@ class CaseLeadOptimum(OptimumOfCase, LeadOptimum):
 
 
 def harris_map(
-    case: Case | MachineCase,
+    case: AnyCase,
     torque: object = None,
     *,
     phases: int | None = None,
@@ -107,7 +107,7 @@ def harris_map(
 
     Parameters
     ----------
-    case : Case or MachineCase
+    case : Case
         From :func:`tribodyn.load_case`; its ``[stiffness]`` sets the compliance of the teeth,
         ``gears.line_stiffness`` that of hypoid gears.
     torque : list of float or str, optional
@@ -154,7 +154,7 @@ def harris_map(
         )
 
 
-def _hypoid_map(case: Case, torques: list[float], phases: int | None) -> HarrisMap:
+def _hypoid_map(case: PairCase, torques: list[float], phases: int | None) -> HarrisMap:
     from tribodyn.mesh.hypoid.table import hypoid_transmission_error_over_torque
 
     if phases is not None:
@@ -165,7 +165,7 @@ def _hypoid_map(case: Case, torques: list[float], phases: int | None) -> HarrisM
 
 
 def optimize_tip_relief(
-    case: Case | MachineCase,
+    case: AnyCase,
     torque: object = None,
     *,
     amount: object = None,
@@ -177,7 +177,7 @@ def optimize_tip_relief(
 
     Parameters
     ----------
-    case : Case or MachineCase
+    case : Case
         From :func:`tribodyn.load_case`.
     torque : tuple or list, optional
         Two ends of a range, or more torques, on the gear named by ``operation.speed_of``: floats
@@ -230,7 +230,7 @@ def optimize_tip_relief(
 
 
 def optimize_lead(
-    case: Case | MachineCase,
+    case: AnyCase,
     torque: object = None,
     *,
     crowning: object = None,
@@ -244,7 +244,7 @@ def optimize_lead(
 
     Parameters
     ----------
-    case : Case or MachineCase
+    case : Case
         From :func:`tribodyn.load_case`.
     torque : tuple or list, optional
         Two ends of a range, or more torques, on the gear named by ``operation.speed_of``: floats
@@ -326,7 +326,7 @@ def _lengths(name: str, ends: Any) -> tuple[float, float] | None:
 
 
 def comprehensive_stiffness(
-    case: Case | MachineCase,
+    case: AnyCase,
     *,
     torque: object = None,
     speed: object = None,
@@ -339,7 +339,7 @@ def comprehensive_stiffness(
 
     Parameters
     ----------
-    case : Case or MachineCase
+    case : Case
         From :func:`tribodyn.load_case`; its ``[film]`` says how the film is found.
     torque : float, str or list, optional
         Torques on the gear named by ``operation.speed_of``: floats in N*m, or text with a unit.
@@ -397,7 +397,7 @@ def comprehensive_stiffness(
 
 
 def film_over_operation(
-    case: Case | MachineCase,
+    case: AnyCase,
     *,
     torque: object = None,
     speed: object = None,
@@ -408,7 +408,7 @@ def film_over_operation(
 
     Parameters
     ----------
-    case : Case or MachineCase
+    case : Case
         From :func:`tribodyn.load_case`; its ``[film]`` says how the film is found.
     torque, speed, mesh, progress
         As :func:`comprehensive_stiffness` takes them.

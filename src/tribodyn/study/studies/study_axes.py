@@ -15,8 +15,7 @@ from tribodyn.errors import InputError
 from tribodyn.study.case.values import FaultError, Plain, read_value
 
 if TYPE_CHECKING:
-    from tribodyn.study.case.case import Case
-    from tribodyn.study.machine.case import MachineCase
+    from tribodyn.study.machine.case import AnyCase
 
 
 _EXAMPLE = 'Write, for example, {"operation.speed": ("400 rpm", "3500 rpm", 60)}'
@@ -66,9 +65,7 @@ class Axis:
         return f"{number:.6g} {self.display_unit}".rstrip()
 
 
-def ends_of(
-    case: Case | MachineCase, key: str, ends: Sequence[object], *, by: str = ""
-) -> tuple[float, ...]:
+def ends_of(case: AnyCase, key: str, ends: Sequence[object], *, by: str = "") -> tuple[float, ...]:
     """Read numbers of one key as the case file does, each on its own."""
     values = [member_value(case, key, end, by) for end in ends]
     if not all(isinstance(value, float) for value in values):
@@ -80,7 +77,7 @@ def ends_of(
     return tuple(float(value) for value in values)
 
 
-def member_value(case: Case | MachineCase, key: str, value: object, by: str) -> Any:
+def member_value(case: AnyCase, key: str, value: object, by: str) -> Any:
     """Read a value of one key; conflicts with other keys are found when it is computed."""
     spec = case.option_of(key)
     if spec is None:
@@ -109,9 +106,7 @@ def _location(by: str) -> str:
     return by or "argument over"
 
 
-def read_axes(
-    case: Case | MachineCase, over: Mapping[str, object], *, by: str = ""
-) -> tuple[Axis, ...]:
+def read_axes(case: AnyCase, over: Mapping[str, object], *, by: str = "") -> tuple[Axis, ...]:
     """Read the keys that vary with their values, and limit the number of points."""
     if not over:
         raise InputError("nothing varies", "argument over", "", _EXAMPLE)
@@ -126,7 +121,7 @@ def _check_number(points: int, by: str) -> None:
         raise InputError(f"{points} values", _location(by), why, "Take fewer points")
 
 
-def read_axis(case: Case | MachineCase, key: str, entry: object, by: str) -> Axis:
+def read_axis(case: AnyCase, key: str, entry: object, by: str) -> Axis:
     """Read a range ``(first, last, points)`` or a list of values of one key."""
     if isinstance(entry, tuple) and len(entry) == 3:
         values = _range(case, key, entry, by)
@@ -144,9 +139,7 @@ def read_axis(case: Case | MachineCase, key: str, entry: object, by: str) -> Axi
     return Axis(key, values, unit, display_unit)
 
 
-def _range(
-    case: Case | MachineCase, key: str, entry: tuple[Any, ...], by: str
-) -> tuple[float, ...]:
+def _range(case: AnyCase, key: str, entry: tuple[Any, ...], by: str) -> tuple[float, ...]:
     first, last, points = entry
     if isinstance(points, bool) or int(points) != points or points < 2:
         why = "A range has at least two points, both ends included"
@@ -161,7 +154,7 @@ def _range(
     return tuple(np.linspace(low, high, int(points)).tolist())
 
 
-def points_of(case: Case | MachineCase, key: str, values: object, *, by: str) -> list[float]:
+def points_of(case: AnyCase, key: str, values: object, *, by: str) -> list[float]:
     """Read the values of a key; a list may have a single value."""
     if isinstance(values, list) and len(values) == 1:
         return list(ends_of(case, key, values, by=by))

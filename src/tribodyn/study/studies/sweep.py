@@ -28,8 +28,8 @@ from tribodyn.study.studies.study_axes import Axis, read_axes
 from tribodyn.study.studies.sweep_result import Sweep, SweepPoint
 
 if TYPE_CHECKING:
-    from tribodyn.study.case.case import Case
-    from tribodyn.study.machine.case import MachineCase
+    from tribodyn.study.case.pair import PairCase
+    from tribodyn.study.machine.case import AnyCase
 
 Value = TypeVar("Value")
 
@@ -41,7 +41,7 @@ _GROUP_SIZE, _BATCH = 16, 8
 
 @with_old_names
 def sweep(
-    case: Case | MachineCase,
+    case: AnyCase,
     over: str | Mapping[str, Any] = "operation.speed",
     between: tuple[Any, Any] | None = None,
     points: int = 40,
@@ -55,7 +55,7 @@ def sweep(
 
     Parameters
     ----------
-    case : Case or MachineCase
+    case : Case
         From :func:`tribodyn.load_case`.
     over : str or mapping
         Dotted key that varies; or several, each with ``(first, last, points)``, a tuple, or a
@@ -132,13 +132,13 @@ def pair_source(pending_at: Callable[..., PendingRun]) -> PointSource:
     return PointSource(partial(_points, pending_at), pending_at)
 
 
-def _source(case: Case | MachineCase, keys: Sequence[str]) -> PointSource:
+def _source(case: AnyCase, keys: Sequence[str]) -> PointSource:
     if not case.lumped:
         return PointSource(partial(points_of_parts, case, keys))
     return pair_source(partial(_pending_at, case, keys))
 
 
-def _pending_at(case: Case, keys: Sequence[str], *values: object) -> PendingRun:
+def _pending_at(case: PairCase, keys: Sequence[str], *values: object) -> PendingRun:
     return PendingRun(case.replace(dict(zip(keys, values, strict=True))))
 
 
@@ -168,7 +168,7 @@ def compute_points(
 
 
 def points_under(
-    case: Case | MachineCase, changes: Sequence[Mapping[str, object]], progress: Progress = SILENT
+    case: AnyCase, changes: Sequence[Mapping[str, object]], progress: Progress = SILENT
 ) -> list[SweepPoint]:
     """Compute a case for several changes of the same keys; a failed point holds its reason."""
     source = _source(case, tuple(changes[0]) if changes else ())

@@ -82,7 +82,7 @@ class Sweep(Record):
 
     Parameters
     ----------
-    case : Case or MachineCase
+    case : Case
         The case that was varied.
     axes : tuple of Axis
         Keys that vary, each with its values.

@@ -20,8 +20,8 @@ from tribodyn.types import Array, Texts
 from tribodyn.uncertainty import Band, bootstrap_band
 
 if TYPE_CHECKING:
-    from tribodyn.study.case.case import Case
-    from tribodyn.study.machine.case import MachineCase
+    from tribodyn.study.case.pair import PairCase
+    from tribodyn.study.machine.case import AnyCase, MachineCase
     from tribodyn.study.pipeline.result import Result
     from tribodyn.study.studies.sweep_result import SweepPoint
 
@@ -137,7 +137,7 @@ class CaseEnsemble(Record):
         Of the sample, and of the bands.
     title : str
         Title of the case.
-    case : Case, optional
+    case : PairCase, optional
         The case whose inputs are spread.
     """
 
@@ -150,7 +150,7 @@ class CaseEnsemble(Record):
     acceleration: Array = quantity("variant", "phase", unit="m/s^2")
     seed: int = fact()
     title: str = fact()
-    case: Case | None = None
+    case: PairCase | None = None
 
     @cached_property
     def results(self) -> tuple[Result, ...]:
@@ -305,7 +305,7 @@ class CaseEnsemble(Record):
 
 
 def ensemble(
-    case: Case | MachineCase,
+    case: AnyCase,
     distributions: Mapping[str, object] | None = None,
     size: int = 64,
     *,
@@ -317,7 +317,7 @@ def ensemble(
 
     Parameters
     ----------
-    case : Case or MachineCase
+    case : Case
         From :func:`tribodyn.load_case`.
     distributions : mapping, optional
         Inputs that are spread, as :func:`tribodyn.uncertainty.sample` reads them: keys of the

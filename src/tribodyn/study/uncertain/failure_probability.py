@@ -17,8 +17,7 @@ from tribodyn.study.uncertain.lanes import draw, points_of_values, successful
 from tribodyn.types import Array, Texts
 
 if TYPE_CHECKING:
-    from tribodyn.study.case.case import Case
-    from tribodyn.study.machine.case import MachineCase
+    from tribodyn.study.machine.case import AnyCase
 
 #: Fewest variants.
 _FEWEST = 8
@@ -62,7 +61,7 @@ class FailureProbability(Record):
 
 
 def failure_probability(
-    case: Case | MachineCase,
+    case: AnyCase,
     distributions: Mapping[str, object] | None = None,
     size: int = 64,
     *,
@@ -73,7 +72,7 @@ def failure_probability(
 
     Parameters
     ----------
-    case : Case or MachineCase
+    case : Case
         With ``[rating]``; a machine is rated at its operating point.
     distributions : mapping, optional
         Keys with their tolerances, as :func:`tribodyn.uncertainty.sample` reads them, such as

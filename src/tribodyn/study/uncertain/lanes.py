@@ -30,8 +30,8 @@ from tribodyn.uncertainty import distribution, sample
 
 if TYPE_CHECKING:
     from tribodyn.dynamics import LaneParameters
-    from tribodyn.study.case.case import Case
-    from tribodyn.study.machine.case import MachineCase
+    from tribodyn.study.case.pair import PairCase
+    from tribodyn.study.machine.case import AnyCase
     from tribodyn.study.studies.sweep_result import SweepPoint
 
 #: Steps on which two structures are compared, and the relative difference that counts as none.
@@ -64,7 +64,7 @@ class Lanes:
 
 
 def draw(
-    case: Case | MachineCase,
+    case: AnyCase,
     spread: Mapping[str, Any],
     size: int,
     *,
@@ -75,7 +75,7 @@ def draw(
     return sample(distributions_of(case, spread), size, method=method, seed=seed)
 
 
-def distributions_of(case: Case | MachineCase, spread: Mapping[str, object]) -> dict[str, Any]:
+def distributions_of(case: AnyCase, spread: Mapping[str, object]) -> dict[str, Any]:
     """Distributions of keys of a case and of factors, each in the unit that it has there."""
     distributions = {}
     for key, text in spread.items():
@@ -89,7 +89,7 @@ def distributions_of(case: Case | MachineCase, spread: Mapping[str, object]) -> 
     return distributions
 
 
-def lanes_of(case: Case, values: Mapping[str, Array], progress: Progress = SILENT) -> Lanes:
+def lanes_of(case: PairCase, values: Mapping[str, Array], progress: Progress = SILENT) -> Lanes:
     """Lanes of a case for values by key, all (lanes,), or by name of a factor."""
     count = len(next(iter(values.values())))
     factors = {name: np.ones(count) for name in SCALES}
@@ -121,7 +121,7 @@ def lanes_of(case: Case, values: Mapping[str, Array], progress: Progress = SILEN
     return Lanes(members, frequency, varied_factors, _steps(members, frequency, factors))
 
 
-def check_spread_key(case: Case | MachineCase, key: str, column: Array) -> None:
+def check_spread_key(case: AnyCase, key: str, column: Array) -> None:
     """Raise if a key is no number of the case, or its least or greatest value is out of range."""
     spec = case.option_of(key)
     value = case.get(key)
@@ -136,7 +136,7 @@ def check_spread_key(case: Case | MachineCase, key: str, column: Array) -> None:
 
 
 def points_of_values(
-    case: Case | MachineCase, values: Mapping[str, Array], progress: Progress = SILENT
+    case: AnyCase, values: Mapping[str, Array], progress: Progress = SILENT
 ) -> list[SweepPoint]:
     """Compute a case at values of its keys, each as a case of its own."""
     for key, column in values.items():
@@ -159,7 +159,7 @@ def successful(
     return good
 
 
-def _factor(case: Case, key: str, column: Array) -> str | None:
+def _factor(case: PairCase, key: str, column: Array) -> str | None:
     """Return the factor of the structure that is equivalent to a key, or None."""
     nominal = effective(case).get(key)
     if not isinstance(nominal, float) or nominal == 0.0:
@@ -173,7 +173,7 @@ def _factor(case: Case, key: str, column: Array) -> str | None:
     return None
 
 
-def _contact_without_load(case: Case, torques: Array) -> bool:
+def _contact_without_load(case: PairCase, torques: Array) -> bool:
     """Whether the tooth contact is the same for the least, the greatest and the stated torque."""
     if not contact_without_speed(case):
         return False

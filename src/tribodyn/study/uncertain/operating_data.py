@@ -18,8 +18,7 @@ from tribodyn.study.uncertain.lanes import draw, lanes_of, points_of_values, suc
 from tribodyn.study.uncertain.vibration_data import data_set
 
 if TYPE_CHECKING:
-    from tribodyn.study.case.case import Case
-    from tribodyn.study.machine.case import MachineCase
+    from tribodyn.study.machine.case import AnyCase, MachineCase
     from tribodyn.types import Array
 
 #: Response figures of every operating point, with units.
@@ -35,7 +34,7 @@ RESPONSE = {
 _LOW, _HIGH, _PHASES = 0.7, 1.3, 8
 
 
-def default_ranges(case: Case | MachineCase) -> dict[str, str]:
+def default_ranges(case: AnyCase) -> dict[str, str]:
     """Ranges of torque and speed about the case, of a pair also of what its teeth depend on."""
     ranges = {
         "operation.torque": _about(case["operation.torque"], "N*m"),
@@ -58,7 +57,7 @@ _ROUNDING = 1e-9
 
 
 def operating_data(
-    case: Case | MachineCase,
+    case: AnyCase,
     over: Mapping[str, object] | None = None,
     size: int = 256,
     *,
@@ -69,7 +68,7 @@ def operating_data(
 
     Parameters
     ----------
-    case : Case or MachineCase
+    case : Case
         From :func:`tribodyn.load_case`.
     over : mapping, optional
         Ranges such as ``{"operation.speed": "400 rpm .. 3000 rpm"}``, of keys of the case or of

@@ -20,8 +20,7 @@ from tribodyn.types import Array, Texts
 from tribodyn.uncertainty import sobol_indices as indices_of
 
 if TYPE_CHECKING:
-    from tribodyn.study.case.case import Case
-    from tribodyn.study.machine.case import MachineCase
+    from tribodyn.study.machine.case import AnyCase
 
 #: Probability of the intervals of the indices.
 _LEVEL = 0.95
@@ -78,7 +77,7 @@ class CaseSensitivity(Record):
 
 
 def sobol_indices(
-    case: Case | MachineCase,
+    case: AnyCase,
     figures: str | Sequence[str] | None = None,
     distributions: Mapping[str, object] | None = None,
     size: int = 64,
@@ -90,7 +89,7 @@ def sobol_indices(
 
     Parameters
     ----------
-    case : Case or MachineCase
+    case : Case
         From :func:`tribodyn.load_case`.
     figures : str or sequence of str, optional
         Figures of the summary; by default those that a sweep shows, as far as they vary.
@@ -178,9 +177,7 @@ def sobol_indices(
 class _Runs:
     """Summaries of a case by the values of its keys, each computed once."""
 
-    def __init__(
-        self, case: Case | MachineCase, distributions: dict[str, Any], progress: Progress
-    ) -> None:
+    def __init__(self, case: AnyCase, distributions: dict[str, Any], progress: Progress) -> None:
         self.case, self.distributions, self.progress = case, distributions, progress
         self.summaries: dict[tuple[float, ...], Mapping[str, float]] = {}
 

@@ -28,8 +28,8 @@ from tribodyn.types import Array
 
 if TYPE_CHECKING:
     from tribodyn.dynamics.time.engines import FixedMarcher
-    from tribodyn.study.case.case import Case
-    from tribodyn.study.machine.case import MachineCase
+    from tribodyn.study.case.pair import PairCase
+    from tribodyn.study.machine.case import AnyCase
 
 #: Stiffness and friction as the source of the data set spreads them.
 SPREAD = {"stiffness_scale": "1 +- 0.83 %", "friction_scale": "1 +- 0.83 %"}
@@ -38,7 +38,7 @@ _TIME_COLUMNS = {"trajectory": "1", "time": "s", "phase": "1", "cos_phase": "1",
 
 
 def vibration_data(
-    case: Case,
+    case: PairCase,
     *,
     seed: int,
     distributions: Mapping[str, object] | None = None,
@@ -53,7 +53,7 @@ def vibration_data(
 
     Parameters
     ----------
-    case : Case
+    case : PairCase
         From :func:`tribodyn.load_case`.
     seed : int
         The same seed gives the same table.
@@ -137,7 +137,7 @@ def vibration_data(
 
 
 def data_set(
-    kind: str, case: Case | MachineCase, columns: dict[str, Array], settings: dict[str, Any]
+    kind: str, case: AnyCase, columns: dict[str, Array], settings: dict[str, Any]
 ) -> DataSet:
     """Columns with their units and their origin."""
     signal_units = {**_TIME_COLUMNS, **SIGNALS}
@@ -162,7 +162,7 @@ def _over_cycle(lanes: Lanes, rows: int, progress: Progress) -> dict[str, Array]
 
 
 def _over_time(
-    case: Case,
+    case: PairCase,
     lanes: Lanes,
     sampled: Mapping[str, Array],
     places: tuple[int, float],
@@ -214,7 +214,7 @@ def _over_time(
 class _March:
     """Time integration of lanes of one structure from their static state, with samples."""
 
-    def __init__(self, case: Case, lanes: Lanes) -> None:
+    def __init__(self, case: PairCase, lanes: Lanes) -> None:
         from tribodyn.dynamics import LaneParameters, steady_state
         from tribodyn.dynamics.equations.orbit_coordinates import static_start
         from tribodyn.dynamics.time.engines import Setting, prepare
