@@ -190,7 +190,17 @@ class Case(CaseTables):
 
     @abstractmethod
     def density(self, gear: str) -> float:
-        """Density of one gear [kg/m^3]: its own, or that of the material."""
+        """Density of one gear [kg/m^3]: its own, or that of the material.
+
+        Parameters
+        ----------
+        gear : str
+            Name of its table, such as ``"pinion"``.
+
+        Returns
+        -------
+        float
+        """
 
     @abstractmethod
     def _all_values(self) -> dict[str, Any]:
@@ -264,6 +274,11 @@ class Case(CaseTables):
     @cached_property
     def _files(self) -> tuple[tuple[dict[str, Any], str, str], ...]:
         return tuple(file_entries(self.root, self.data))
+
+    @property
+    def is_rated(self) -> bool:
+        """Whether the case asks for the load capacity of its gears."""
+        return self.data.get("rating") is not None
 
     @property
     @abstractmethod

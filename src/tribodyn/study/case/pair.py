@@ -214,11 +214,6 @@ class PairCase(Case, case=True):
         return self.gears.composite_roughness
 
     @property
-    def is_rated(self) -> bool:
-        """Whether the case asks for the load capacity of its gears."""
-        return self.rating is not None
-
-    @property
     def speed_ratio(self) -> float:
         """Speed of the pinion over that of the gear whose speed and torque the case gives."""
         return self.gear_ratio if self.operation.speed_of == "wheel" else 1.0

@@ -89,6 +89,13 @@ class MachineCase(Case):
 
     Created as any :class:`tribodyn.Case`, from tables with ``[meshes.NAME]`` and ``[gears.NAME]``.
 
+    Parameters
+    ----------
+    source : Source, optional
+        Where the values come from.
+    **data : object
+        The tables of the case file.
+
     Examples
     --------
     >>> case = Case(
@@ -302,11 +309,6 @@ class MachineCase(Case):
         return "Planetary stage" if self.lone_stage else "Machine"
 
     @property
-    def is_rated(self) -> bool:
-        """Whether the case asks for the load capacity of its gears."""
-        return self.data.get("rating") is not None
-
-    @property
     def meshes(self) -> tuple[str, ...]:
         """Names of the meshes."""
         return tuple(self._mesh_tables)
@@ -457,12 +459,11 @@ class MachineCase(Case):
             yield f"meshes.{mesh}", pair, names
 
     def density(self, gear: str) -> float:
-        """Density of one gear [kg/m^3]: its own, or that of the material.
+        """Density of one gear [kg/m^3], by its name.
 
         Parameters
         ----------
         gear : str
-            Name of the gear.
 
         Returns
         -------

@@ -27,7 +27,7 @@ from tribodyn.study.planetary.machine_stages import motion_of_stage
 if TYPE_CHECKING:
     from tribodyn.machine import Machine
     from tribodyn.machine.graph.clock import Phases
-    from tribodyn.study.case.case import Case
+    from tribodyn.study.case.pair import PairCase
     from tribodyn.study.machine.case import MachineCase
     from tribodyn.study.machine.tables import SolverTable
 
@@ -220,7 +220,7 @@ def shape_figures(case: MachineCase) -> dict[str, float]:
     return values
 
 
-def computed_pairs(case: MachineCase) -> Iterator[tuple[str, Case, TeethUnder]]:
+def computed_pairs(case: MachineCase) -> Iterator[tuple[str, PairCase, TeethUnder]]:
     """Iterate over meshes with computed teeth and their pairs, of planets the first."""
     firsts = {case.tooth_group(name): name for name in reversed(case.meshes_with_teeth)}
     for name in reversed(firsts.values()):
