@@ -58,14 +58,11 @@ def steady_motion(
     """Motion of a machine on one clock or over phases; a start fits if its coordinates do."""
     from tribodyn.dynamics import PhaseResponse, clearance_motion, harmonic_balance
 
-    if system.phases:
-        start = start if isinstance(start, PhaseResponse) else None
-        if start is not None and start.names != tuple(system.names):
-            start = None
-        frequencies = structure.machine.phases.frequency
-        return harmonic_balance(system, frequencies, start=start)
     if start is not None and start.names != tuple(system.names):
         start = None
+    if system.phases:
+        start = start if isinstance(start, PhaseResponse) else None
+        return harmonic_balance(system, structure.machine.phases.frequency, start=start)
     supports, frequency = clearance_supports(structure), structure.machine.clock.frequency
     steps = steps_of(structure)
     if supports:
