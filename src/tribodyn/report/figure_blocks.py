@@ -10,13 +10,17 @@ import numpy as np
 
 from tribodyn import plot
 from tribodyn.drawing import Sketch, figures_of
-from tribodyn.errors import InputError
-from tribodyn.gear import Misalignment
+from tribodyn.errors import InputError, collected
+from tribodyn.gear import Misalignment, tooth_contact
 from tribodyn.plot import FIGURES, Drawing
 from tribodyn.plot.theme.style import TOP
+from tribodyn.study.machine.pair_cases import inputs_under
+from tribodyn.study.mesh_inputs import HypoidTeeth
+from tribodyn.study.pipeline.tooth_contact import hypoid_friction_of
 from tribodyn.study.studies.needs import PAIRS, kind_of
 
 if TYPE_CHECKING:
+    from tribodyn.mesh import MeshTable
     from tribodyn.study import MachineResult, Result
 
 #: Figures of reports by topic; others have a topic of their own.
@@ -47,6 +51,8 @@ HYPOID_SECTIONS = (
     *("hypoid_friction", "mesh_force", "tooth_force", "transmission_error", "acceleration"),
     *("spectrum", *_OF_BEARINGS),
 )
+#: Those of the teeth at rest.
+_OF_TEETH = SECTIONS[: SECTIONS.index("mesh_force")]
 #: Margin above the panels for marks and buttons [px].
 _MARGIN = 44
 #: Height of a figure that states none [px].
@@ -190,15 +196,34 @@ def _of_stages(result: MachineResult) -> Iterator[_Place]:
 
 
 def _of_meshes(result: MachineResult) -> Iterator[_Place]:
-    """Maps of the meshes, those of planets with equal teeth once, and how shafts move them."""
+    """Figures of computed teeth, of planets with equal teeth once, and how shafts move them."""
     load, tables = result.operation, set[int]()
     for number, (mesh, table) in enumerate(load.tables.items(), 1):
-        if id(table) not in tables:
-            heading = f"Mesh {mesh}: maps over the face"
-            yield _Place(plot.face_maps, table, f"face-maps-{number}", heading)
+        if id(table) in tables:
+            continue
         tables.add(id(table))
+        for name, subject in _of_teeth(result, mesh, table):
+            if isinstance(figure := FIGURES[name], Drawing):
+                heading = f"Mesh {mesh}: {figure.heading[0].lower()}{figure.heading[1:]}"
+                yield _Place(figure, subject, f"{name.replace('_', '-')}-{number}", heading)
     for number, (mesh, errors) in enumerate(load.misalignment.items(), 1):
         if isinstance(errors, Misalignment):
             study, heading = result.mounting_study(mesh), "contact with deflected shafts"
             place = f"mounting-{number}", f"Mesh {mesh}: {heading}"
             yield _Place(plot.hypoid_misalignment, study, *place)
+
+
+def _of_teeth(result: MachineResult, mesh: str, table: MeshTable) -> Iterator[tuple[str, Any]]:
+    """Names of the figures of a mesh of a machine, those of its pair, and what they draw."""
+    load = result.operation
+    inputs = inputs_under(result.case, mesh, load.load, load.misalignment[mesh])
+    if not isinstance(teeth := inputs.teeth, HypoidTeeth):
+        yield from ((name, table) for name in (*_OF_TEETH, "face_maps"))
+        return
+    with collected():  # the run has raised the warnings
+        friction = hypoid_friction_of(inputs)
+    yield from (("hypoid_pair", teeth.flanks), ("ease_off", teeth.flanks))
+    yield "hypoid_contact", tooth_contact(teeth.flanks, teeth.mounting)
+    yield from (("hypoid_load", friction.loaded), ("hypoid_pressure", friction.loaded))
+    yield from (("hypoid_friction", friction), ("mesh_stiffness", table))
+    yield "static_transmission_error", table
