@@ -91,6 +91,7 @@ __all__ = ["ANY", "FILES", "LINES", "import_circles", "lines_of_code", "measures
 #: study: machines warn, are stored and summed up as pairs are
 #: dynamics: motions over phases in less time
 #: study: one class Case reads and checks a case of any kind
+#: report: figures of the teeth of machines
 LINES: dict[str, int] = {
     "__init__": 105,
     "__main__": 3,
@@ -130,11 +131,11 @@ LINES: dict[str, int] = {
     "progress": 72,
     "rating": 2891,
     "record": 212,
-    "report": 1740,
+    "report": 1761,
     "scope": 55,
     "signals": 1782,
     "stiffness": 5260,
-    "study": 19846,
+    "study": 19843,
     "surrogate": 767,
     "types": 8,
     "uncertainty": 289,
@@ -143,7 +144,7 @@ LINES: dict[str, int] = {
     "variants": 1048,
 }
 #: Modules of the package, and its annotations without a type.
-FILES, ANY = 712, 2271
+FILES, ANY = 712, 2272
 
 _NO_CODE = {
     tokenize.COMMENT, tokenize.NL, tokenize.NEWLINE, tokenize.INDENT, tokenize.DEDENT,
