@@ -19,12 +19,7 @@ from tribodyn.dynamics.harmonic.meshwise_inverse import MeshwiseInverse
 from tribodyn.dynamics.harmonic.newton import LINEAR, State
 from tribodyn.dynamics.harmonic.phase_contacts import PhaseContacts, axis_of
 from tribodyn.dynamics.harmonic.phase_grid import PhaseGrid
-<<<<<<< HEAD
 from tribodyn.dynamics.harmonic.phase_rows import Mesh, PhaseRows
-=======
-from tribodyn.dynamics.harmonic.phase_rows import PhaseRows
-from tribodyn.dynamics.harmonic.radial_clearance import RadialClearance
->>>>>>> 587a1022 (dynamics: supports with a clearance move over independent phases)
 from tribodyn.dynamics.harmonic.residual import OnGrid, Residual
 from tribodyn.dynamics.modal.closed_structure import ClosedStructure
 from tribodyn.dynamics.modal.contact_equations import close_contacts
@@ -74,7 +69,6 @@ class Part:
         return OnGrid.of(self, grid, contacts, loaded, self.members, self.closed, self.floating)
 
 
-<<<<<<< HEAD
 def parts_of(rows: PhaseRows, structure: ClosedStructure, rest: Rest) -> list[Part]:
     """Divide a system into the contacts that follow the same phases, and close them all."""
     groups: dict[tuple[frozenset[int], int], list[Mesh]] = {}
@@ -86,38 +80,6 @@ def parts_of(rows: PhaseRows, structure: ClosedStructure, rest: Rest) -> list[Pa
         none = np.zeros((0, rows.system.size))
         resting = rest._replace(floating=rest.floating[members])
         law, closed = close_contacts(some.means, none, resting, structure.coordinates)
-=======
-def parts_of(
-    system: System, frequency: Array, structure: ClosedStructure, rest: Rest,
-    supports: Sequence[RadialClearance] = (),
-) -> list[Part]:  # fmt: skip
-    """Divide a system into the contacts that follow the same phases, and close them all."""
-    # The last contacts are those of supports, which follow no phase more than others.
-    first = len(system.contacts) - 2 * len(supports)
-    groups: dict[tuple[frozenset[int], int], list[int]] = {}
-    for number, contact in enumerate(system.contacts):
-        cycles = [contact.cycles, *(term.cycles for term in contact.turning)]
-        axes = frozenset(np.flatnonzero(np.any(np.array(cycles) != 0, axis=0)).tolist())
-        key = (axes, axis_of(np.array(contact.cycles))) if number < first else (frozenset(), 0)
-        groups.setdefault(key, []).append(number)
-    parts = []
-    for key, numbers in groups.items():
-        place = {number: at for at, number in enumerate(numbers)}
-        frictions = [
-            replace(each, contacts=tuple(place[j] for j in each.contacts))
-            for each in system.frictions
-            if each.contacts[0] in place
-        ]
-        contacts = [system.contacts[number] for number in numbers]
-        alone = replace(
-            system, contacts=contacts, frictions=frictions, force=np.zeros(system.size),
-            balance=None,
-        )  # fmt: skip
-        rows = PhaseRows.of(alone, frequency, supports if numbers[0] >= first else ())
-        none = np.zeros((0, system.size))
-        resting = rest._replace(floating=rest.floating[numbers])
-        law, closed = close_contacts(rows.means, none, resting, structure.coordinates)
->>>>>>> 587a1022 (dynamics: supports with a clearance move over independent phases)
         means = law.along, law.push, law.contact_stiffness, law.contact_damping
         parts.append(Part(some, members, *key, structure, *means, closed, resting.floating))
     push, along = structure.push, structure.along

@@ -15,7 +15,6 @@ import numpy as np
 
 from tribodyn.dynamics.equations.compiled import Compiled, sample_system
 from tribodyn.dynamics.equations.entry import entry_values
-<<<<<<< HEAD
 from tribodyn.dynamics.equations.grid import (
     PointEvaluator,
     RowEvaluator,
@@ -24,14 +23,8 @@ from tribodyn.dynamics.equations.grid import (
     unrepeated,
 )
 from tribodyn.dynamics.equations.nodes import Nodes, evaluate_rows, ramp_count
-=======
-from tribodyn.dynamics.equations.grid import PointEvaluator, RowEvaluator, build_grid, system_events
-from tribodyn.dynamics.equations.motion import Forces, compression, forces
-from tribodyn.dynamics.equations.nodes import Nodes, evaluate_rows
->>>>>>> 587a1022 (dynamics: supports with a clearance move over independent phases)
 from tribodyn.dynamics.equations.phases import Turning, phase_sum
 from tribodyn.dynamics.equations.system import System
-from tribodyn.dynamics.harmonic.radial_clearance import RadialClearance, clearance_forces
 from tribodyn.dynamics.modal.contact_equations import Rows, jumping_events, project_rows
 from tribodyn.errors import InputError
 from tribodyn.types import Array, Index
@@ -113,17 +106,10 @@ class PhaseRows:
     system: System
     frequency: Array  #: of each phase [Hz]
     meshes: tuple[Mesh, ...]
-<<<<<<< HEAD
     means: Compiled  #: entries of every mesh over one cycle of its own, with checked functions
-=======
-    mean: System  #: the system with one cycle of every mesh in a period, for mean values
-    supports: tuple[RadialClearance, ...] = ()  #: those that the last contacts stand for
->>>>>>> 587a1022 (dynamics: supports with a clearance move over independent phases)
 
     @classmethod
-    def of(
-        cls, system: System, frequency: Array, supports: Sequence[RadialClearance] = ()
-    ) -> PhaseRows:
+    def of(cls, system: System, frequency: Array) -> PhaseRows:
         """Divide the contacts of a system into meshes."""
         groups: dict[Any, list[int]] = {}
         for number, contact in enumerate(system.contacts):
@@ -133,7 +119,6 @@ class PhaseRows:
         contacts = [replace(contact, **clock) for contact in system.contacts]
         still = replace(system, force=np.zeros(system.size), contacts=contacts, lead=None)
         _check_turning(system)
-<<<<<<< HEAD
         meshes = []
         for (cycles, offset), numbers in groups.items():
             turns = [term.cycles for n in numbers for term in system.contacts[n].turning]
@@ -142,10 +127,6 @@ class PhaseRows:
             meshes.append(_mesh(still, cycles, offset, numbers, axes))
         mean = replace(still, force=sampled_forces(system).mean(axis=0))
         return cls(system, frequency, tuple(meshes), sample_system(mean, _STEPS))
-=======
-        rows = cls(system, frequency, meshes, still, tuple(supports))
-        return replace(rows, mean=replace(still, force=rows.sampled_forces().mean(axis=0)))
->>>>>>> 587a1022 (dynamics: supports with a clearance move over independent phases)
 
     def some(self, meshes: Sequence[Mesh]) -> PhaseRows:
         """The rows of some meshes, without external forces and their balance."""
@@ -204,18 +185,6 @@ class PhaseRows:
         phase = phase_sum(points, self.meshes[0].cycles)[:, None]
         force = self.force(points)[:, None]
         return Nodes(phase=phase, weight=np.ones((1, 1)), force=force, **fields)
-
-    def forces(self, points: Array, q: Array, v: Array, extra: Array) -> Forces:
-        """Contact forces and accelerations of a motion at points (p, 1, ...)."""
-        nodes, first = self.nodes(points), len(self.system.contacts) - 2 * len(self.supports)
-        if not self.supports:
-            return forces(self.system, nodes, 1.0, q[:, None], v[:, None], extra=extra)
-        moved, springs = compression(nodes, q[:, None])[:, 0, first:], nodes.stiffness[0, 0, first:]
-        held, rows = clearance_forces(self.supports, moved)[0], nodes.direction[0, 0, first:]
-        further = extra + (moved * springs - held) @ rows
-        motion = forces(self.system, nodes, 1.0, q[:, None], v[:, None], extra=further[:, None])
-        motion.contact[:, 0, first:] = held
-        return motion
 
     def projected(
         self, points: Array, along: Array, push: Array, before: Mesh | None = None

@@ -22,6 +22,7 @@ from tribodyn.study.faults.turning import refuse_long_period
 from tribodyn.study.machine.first_look import (
     PhaseCost,
     cost_over_phases,
+    has_clearance,
     over_phases,
     periods_of_turns,
     phase_cost_of,
@@ -374,7 +375,7 @@ def phases_with_faults(machine: Machine, excited: Sequence[ShaftExcitation]) -> 
 
 def faults_over_phases(case: MachineCase, machine: Machine) -> bool:
     """Whether the motion with faults is found over phases: where its period is long."""
-    if case.solver.phases == "off":
+    if case.solver.phases == "off" or has_clearance(machine):
         return False
     if over_phases(case.solver, machine):
         return True

@@ -60,24 +60,15 @@ def steady_motion(
 
     if start is not None and start.names != tuple(system.names):
         start = None
-<<<<<<< HEAD
     if system.phases:
         start = start if isinstance(start, PhaseResponse) else None
         return harmonic_balance(system, structure.machine.phases.frequency, start=start)
     supports, frequency = clearance_supports(structure), structure.machine.clock.frequency
     steps = steps_of(structure)
     if supports:
-=======
-    search: dict[str, Any] = {"start": start, "steps": steps_of(structure)}
-    frequency: Any = structure.machine.clock.frequency
-    if system.phases:
-        search = {"start": start if isinstance(start, PhaseResponse) else None}
-        frequency = structure.machine.phases.frequency
-    if supports := clearance_supports(structure):
->>>>>>> 587a1022 (dynamics: supports with a clearance move over independent phases)
         system = without_clearance_supports(structure, system)
-        return clearance_motion(system, [*supports.values()], frequency, **search)
-    return harmonic_balance(system, frequency, **search)
+        return clearance_motion(system, [*supports.values()], frequency, steps=steps, start=start)
+    return harmonic_balance(system, frequency, steps=steps, start=start)
 
 
 def power_with_friction(
