@@ -16,7 +16,6 @@ from tribodyn.errors import InputError, require_positive
 from tribodyn.faults.fault import Fault
 from tribodyn.gear import Material, SpurPair
 from tribodyn.mesh import MeshForceLaw, MeshFunctions, phase_grid
-from tribodyn.mesh.sharing import ramps_about
 from tribodyn.model import NO_OPTIONS
 from tribodyn.record import Record, fact, quantity, record
 from tribodyn.stiffness.loaded.contact import contact_problem
@@ -28,6 +27,7 @@ from tribodyn.stiffness.loaded.problem import (
     ContactProblem,
     slice_gaps,
 )
+from tribodyn.stiffness.loaded.ramps import ramps_about
 from tribodyn.stiffness.model import MODELS
 from tribodyn.types import Array, Index
 

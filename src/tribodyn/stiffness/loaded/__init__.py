@@ -5,6 +5,7 @@
 | `contact` | from a gear pair, a torque and a model's name to the loaded contact |
 | `problem` | where pairs may touch; loads at an approach, and approach at a load |
 | `kernel` | the compiled solver of that problem |
+| `ramps` | ramps that add up to the force of a mesh over its deflection |
 | `result` | load sharing, transmission error, stiffness, harmonics, loads at the foot |
 | `models` | stiffness models whose pairs are solved together |
 """

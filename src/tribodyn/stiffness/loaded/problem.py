@@ -193,9 +193,18 @@ def local_coefficients(material: Material, places: ContactPlaces) -> tuple[Array
     return scale * terms.sum(axis=0), scale
 
 
+class WideContactError(ComputationError):
+    """The contact of the flanks is too wide for the formula of their local compression."""
+
+
 _STATUS = {
-    1: ("the loads of the tooth pairs do not settle", "Check the load and the deviations"),
+    1: (
+        ComputationError,
+        "the loads of the tooth pairs do not settle",
+        "Check the load and the deviations",
+    ),
     2: (
+        WideContactError,
         "the contact of the flanks is as wide as the teeth are thick",
         "Lower the load; the formula of the local compression holds for a narrow contact",
     ),
@@ -338,7 +347,7 @@ class ContactProblem:
 
         Raises
         ------
-        ComputationError
+        WideContactError
             If a load is beyond what the formula of the local compression covers.
         """
         from tribodyn.stiffness.loaded.kernel import solve_loads
@@ -453,5 +462,5 @@ class ContactProblem:
         teeth = parts.structure, parts.local, parts.logarithm
         status = stoppable(kernel, *teeth, gaps, *arguments, brief=solves * gaps.size <= _BRIEF)
         if status:
-            what, remedy = _STATUS[status]
-            raise ComputationError(what, "loaded tooth contact", "", remedy)
+            kind, what, remedy = _STATUS[status]
+            raise kind(what, "loaded tooth contact", "", remedy)
