@@ -70,7 +70,8 @@ def xu_2007(
     -----
     ModelWarning
         Code ``friction-range`` outside |SR| 0-1, P_h 0.5-2.5 GPa, V_e 1-20 m/s, R 5-80 mm,
-        S 0-0.6 um.
+        S 0-0.6 um, below 1 mPa*s, where its logarithm changes sign, and where the coefficient
+        exceeds 0.2.
 
     Source: Xu, Kahraman, Anderson and Maddock (2007), with unrounded coefficients: the rounded
     ones in print are 2 to 3 % low.
@@ -101,6 +102,8 @@ def xu_2007(
             Range("entrainment_speed", speed, 1.0, 20.0, "m/s"),
             Range("equivalent_radius", radius * 1e3, 5.0, 80.0, "mm"),
             Range("roughness", roughness, 0.0, 0.6, "um"),
+            Range("dynamic_viscosity", viscosity, 1.0, np.inf, "mPa*s"),
+            Range("friction coefficient", coefficient, 0.0, 0.2),
         ),
         "The regression extrapolates there: compare with another friction law.",
     )

@@ -80,6 +80,8 @@ def test_limits_of_the_range_are_inclusive():
         ("equivalent_radius", 4e-3, r"equivalent_radius 4 mm.*5 to 80 mm"),
         ("equivalent_radius", 0.1, "equivalent_radius 100 mm"),
         ("roughness_rms", 0.7e-6, r"roughness 0\.7 um.*0 to 0\.6 um"),
+        ("dynamic_viscosity", 0.7e-3, r"dynamic_viscosity 0\.7 mPa\*s.*1 or more mPa\*s"),
+        ("dynamic_viscosity", 4.0, r"friction coefficient 0\.2\d+, fitted for 0 to 0\.2"),
     ],
 )
 def test_every_limit_is_warned_of_with_value_limit_and_remedy(name, value, message):
