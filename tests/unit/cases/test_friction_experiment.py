@@ -255,3 +255,19 @@ def test_it_is_stored_and_goes_on(experiment: Any, case: Any, tmp_path: Any) -> 
         again = friction_experiment(case, **options, checkpoints=members)
     assert not requests
     assert again.to_csv() == complete.to_csv()
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", ["time-varying-friction", "fzg-roughness"])
+def test_a_film_for_a_law_leaves_the_teeth_of_the_case(name: str) -> None:
+    case = td.load_case(name)
+    roughness = ["0.4 um", "0.53 um"]
+    experiment = friction_experiment(case, laws=["ehl", "xu-2007"], roughness=roughness)
+    changes = {"friction.law": "xu-2007", "gears.composite_roughness": roughness[1]}
+    alone = td.run(case.replace(changes)).summary()
+    values = (case["gears.driver"], case["operation.torque_balance"], f"xu-2007 {roughness[1]}")
+    place = tuple(
+        axis.values.index(value) for axis, value in zip(experiment.axes, values, strict=True)
+    )
+    for figure in ("rms_mesh_force", "rms_bearing_force_loa_pinion"):
+        assert experiment[figure][place] == pytest.approx(alone[figure], rel=1e-10)

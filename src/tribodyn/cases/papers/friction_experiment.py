@@ -142,7 +142,7 @@ def _laws(names: Sequence[str]) -> tuple[str, ...]:
 
 
 def _with_film(case: PairCase, laws: Sequence[str]) -> PairCase:
-    """Return the case with the film that the laws need and a composite roughness."""
+    """Return the case with the film that the laws need, not in series, and one roughness."""
     from tribodyn.ehl import FILM_MODELS
     from tribodyn.friction import LAWS as LAW_REGISTRY
 
@@ -156,6 +156,8 @@ def _with_film(case: PairCase, laws: Sequence[str]) -> PairCase:
         changes["film.model"] = "newton"
     if case.film.model == "none" and not _ON_FILM.isdisjoint(laws):
         changes.setdefault("film.model", "dowson-higginson")
+    if changes and "film.stiffness" not in case.user_input:
+        changes["film.stiffness"] = "none"  # the teeth stay those of the case
     heights = [
         f"gears.{gear}.{name}" for gear in DRIVERS for name in ("roughness_rms", "roughness_ra")
     ]
