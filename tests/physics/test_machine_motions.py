@@ -15,6 +15,7 @@ from tribodyn.dynamics import Contact, LoadFriction, System, continuation, harmo
 from tribodyn.dynamics.equations.compiled import compile_for
 from tribodyn.dynamics.equations.orbit_coordinates import static_start
 from tribodyn.dynamics.modal.modal_march import compile_modal, is_modal
+from tribodyn.dynamics.orbits.modal_tangent import ModalTangent
 from tribodyn.dynamics.orbits.orbit_map import OrbitMap
 from tribodyn.errors import ComputationError
 from tribodyn.nonlinear.attractors import Motions, settle
@@ -142,6 +143,33 @@ def test_branch_loses_stability_at_the_edges_of_the_mathieu_tongue() -> None:
     assert TURN * doubling.parameter == pytest.approx(exact, rel=1e-5)
     balanced = harmonic_balance(beside_others(alone), 1.8 / TURN, steps=256)
     assert branch.rms[0, 0] == pytest.approx(np.std(balanced.deflection[:, 0]), rel=1e-4)
+
+
+def test_exponents_of_a_motion_that_repeats_need_its_disturbances_over_two_periods(
+    monkeypatch,
+) -> None:
+    size, frequency, calls = 30, 0.05, []
+    links = np.diff(np.eye(size), axis=0)
+    stiffness = 0.1 * np.eye(size) + 3.0 * links.T @ links
+    contact = Contact(links[4], lambda p: 9.0 + np.cos(TURN * p), gap=0.02)
+    damping = 0.2 * stiffness + 0.05 * np.eye(size)  # decay from 0.03 to 1.2: 1e10 in a period
+    chain = System(np.eye(size), damping, stiffness, links[4], [contact])
+    at = ModalTangent.at
+
+    def counted(self, state, sections):
+        calls.append(sections)
+        return at(self, state, sections)
+
+    monkeypatch.setattr(ModalTangent, "at", counted)
+    spectrum = lyapunov_exponents(chain, frequency, steps=64, transient=200, verdict=False)
+    assert len(calls) == 2
+    assert spectrum.repeats == 1
+    assert spectrum.divergence == pytest.approx(-np.trace(damping), rel=1e-5)
+    assert spectrum.exponents.sum() == pytest.approx(spectrum.divergence, rel=1e-9)
+    assert np.all(spectrum.standard_error < 2e-3)
+    motion = harmonic_balance(chain, frequency, stability=True)
+    growth = frequency * np.log(np.abs(motion.floquet_multipliers))
+    assert spectrum.vibrating[: growth.size] == pytest.approx(np.sort(growth)[::-1], rel=1e-3)
 
 
 def test_a_motion_that_settles_within_a_period_is_looked_at_after_each(monkeypatch) -> None:

@@ -20,7 +20,6 @@ from tribodyn.dynamics.modal.modal_march import compile_motion
 from tribodyn.dynamics.time.simulate import read_force, read_start
 from tribodyn.errors import ComputationError, InputError
 from tribodyn.nonlinear.lyapunov_carrier import (
-    ALIGN,
     Carrier,
     carrier_of,
     floquet_growth,
@@ -220,8 +219,8 @@ def lyapunov_exponents(
     every power of the number of cycles for periodic and quasi-periodic motion (Das, Saiki, Sander
     and Yorke, Nonlinearity 30, 2017); its error is half the difference of the two halves. The
     saltation matrix is that of Mueller, Chaos, Solitons and Fractals 5 (1995). Systems with more
-    than 24 coordinates, and those with ramps, are integrated in modal coordinates; their average
-    ends as soon as the matrices repeat.
+    than 24 coordinates, and those with ramps, are integrated in modal coordinates: until
+    the motion repeats, which leaves the matrices of one period, or until the matrices do.
 
     Free rotations follow from the structure, not from exponents that are small: they are the
     motions that no spring strains and no contact direction feels at any mesh phase. The exponent
@@ -248,10 +247,7 @@ def lyapunov_exponents(
         why = "Nothing vibrates, so that every exponent is zero"
         raise InputError(what, "System.stiffness", why, "Restrain at least one coordinate")
     progress.start("Mesh cycles", int(cycles + transient))
-    align = min(int(transient), ALIGN)
-    carrier.settle(int(transient) - align)
-    progress.advance(int(transient) - align)
-    carrier.carry(align, progress)
+    carrier.carry(carrier.settle(int(transient), progress), progress)
     growth, divergence = carrier.carry(int(cycles), progress)
     progress.finish()
     spectrum = _summarize(carrier, growth, divergence, 2 * system.size)
@@ -281,13 +277,16 @@ def _summarize(carrier: Carrier, growth: Array, divergence: Array, count: int) -
     if period:
         span = period / mesh_frequency
         repeated = list(carrier.last)[-period:]
-        values, share = floquet_growth(repeated, carrier.frame, carrier.braked)
-        values = values / span
-        errors, mean = np.full_like(values, mismatch / span), float(divergence[-period:].mean())
+        values, share, known = floquet_growth(repeated, carrier.frame, carrier.braked)
+        averages, deviations = _averages(growth)
+        values, errors = (
+            np.where(known, values / span, averages),
+            np.where(known, mismatch / span, deviations),
+        )
+        mean = float(divergence[-period:].mean())
     elif not np.nanmax(values) > _SURE * np.nan_to_num(errors[int(values.argmax())]):
-        half = (len(growth) + 1) // 2
-        values, mean = _windowed(growth), float(_windowed(divergence[:, None])[0])
-        errors = 0.5 * np.abs(_windowed(growth[:half]) - _windowed(growth[-half:]))
+        mean = float(_windowed(divergence[:, None])[0])
+        values, errors = _averages(growth)
     growth = growth[:, np.argsort(-values, kind="stable")]
     free, braked = count - values.size, np.zeros(values.size, dtype=bool)
     braked[np.argsort(-share, kind="stable")[: carrier.braked.shape[1]]] = True
@@ -324,6 +323,13 @@ def _block_error(growth: Array) -> Array:
     length = len(growth) // blocks
     means = growth[-blocks * length :].reshape(blocks, length, -1).mean(axis=1)
     return np.asarray(means.std(axis=0, ddof=1) / np.sqrt(blocks))
+
+
+def _averages(growth: Array) -> tuple[Array, Array]:
+    """Averages with a smooth window, and half the difference of those of both halves."""
+    half = (len(growth) + 1) // 2
+    errors = 0.5 * np.abs(_windowed(growth[:half]) - _windowed(growth[-half:]))
+    return _windowed(growth), errors
 
 
 def _windowed(values: Array) -> Array:

@@ -18,15 +18,18 @@ from tribodyn.dynamics.orbits.modal_tangent import ModalTangent
 from tribodyn.dynamics.orbits.orbit_map import engine_scaling
 from tribodyn.nonlinear.lyapunov_tangent import TangentTables, carry_over_crossings
 from tribodyn.progress import Progress
-from tribodyn.types import Array
+from tribodyn.types import Array, Mask
 
 #: Largest number of stored values while disturbances are integrated.
 _MOST_VALUES = 6_000_000
 #: Mesh cycles of the transient over which disturbances already turn into their directions, and
 #: those whose matrices are compared to see whether they repeat.
 ALIGN, _COMPARED = 200, 32
-#: Difference of matrices that repeat for good.
-_EXACTLY = 1e-10
+#: Difference of matrices that repeat for good, and of the states of a motion that does.
+_EXACTLY, _CLOSED = 1e-10, 1e-11
+#: Logarithm of the growths of disturbances that need not be apart, and mesh cycles in which those
+#: of a motion that repeats are apart, or else their growth is averaged.
+_TOGETHER, _TURNS = 14.0, 64
 
 
 class Carrier:
@@ -44,11 +47,16 @@ class Carrier:
         self.share = np.zeros(k)
         self.length = self.elapsed = 0
         self.last: deque[Array] = deque(maxlen=_COMPARED)
+        #: Frame at the beginning of the last cycles, and how it grew in each.
+        self.frames: deque[tuple[Array, Array]] = deque(maxlen=PERIODS)
 
-    def settle(self, cycles: int) -> None:
-        """March without disturbances."""
-        for first in range(0, cycles, ALIGN):
-            self._march(min(ALIGN, cycles - first), None)
+    def settle(self, cycles: int, progress: Progress) -> int:
+        """March without disturbances; returns the cycles that are left for them to turn in."""
+        left = min(cycles, ALIGN)
+        for first in range(0, cycles - left, ALIGN):
+            self._march(min(ALIGN, cycles - left - first), None)
+        progress.advance(cycles - left)
+        return left
 
     def _march(self, cycles: int, record: Array | None) -> None:
         frequency = self.tables.mesh_frequency
@@ -73,22 +81,23 @@ class Carrier:
         while done < cycles:
             first = done
             for products, trace in self._cycles(cycles - first):
+                frame = self.frame
                 for product in products:
                     self.frame, upper = np.linalg.qr(product @ self.frame)
                     growth[done] += np.log(np.abs(np.diag(upper)))
                 share += share_in(self.braked, self.frame)
+                self.frames.append((frame, growth[done]))
                 self.last.append(products.copy())
                 divergence[done], done = trace, done + 1
             progress.advance(done - first)
-            if self.ended:
+            if self.ended(done):
                 break
         self.share = share / max(1, done)
         frequency = self.tables.mesh_frequency
         return growth[:done] * frequency, divergence[:done] * frequency
 
-    @property
-    def ended(self) -> bool:
-        """Whether further mesh cycles show nothing new."""
+    def ended(self, done: int) -> bool:
+        """Whether further mesh cycles than those ``done`` show nothing new."""
         return False
 
     def _cycles(self, cycles: int) -> Iterator[tuple[Array, float]]:
@@ -166,22 +175,50 @@ class ModalCarrier(Carrier):
         most = max(1, compiled.grid.steps // 2)
         self._sections = min(most, math.ceil(fastest / frequency / math.log(SPREAD)))
         self._place: Array | None = None
+        self._period = 0  # cycles after which the motion repeats, once that is known
 
-    @property
-    def ended(self) -> bool:
-        """Whether the matrices repeat."""
+    def settle(self, cycles: int, progress: Progress) -> int:
+        """March until the motion repeats; if it does not, as far as other motions."""
+        begin, reduce = self.state, self.tables.coordinates.reduce
+        states = deque([reduce(begin)[0]], maxlen=PERIODS + 1)
+        for cycle in range(cycles):
+            self._march(1, None)
+            states.append(reduce(self.state)[0])
+            distance = np.linalg.norm(np.array(states) - states[-1], axis=1)[-2::-1]
+            if distance.min() <= _CLOSED * np.linalg.norm(states[-1]):
+                self._period = 1 + int(np.argmax(distance <= _CLOSED * np.linalg.norm(states[-1])))
+                progress.advance(cycle + 1)
+                return cycles
+        self.state, self.elapsed = begin, 0
+        return super().settle(cycles, progress)
+
+    def ended(self, done: int) -> bool:
+        """Whether further mesh cycles than those ``done`` show nothing new."""
+        period = self._period
+        if period:
+            if len(self.last) < 2 * period:
+                return False
+            gain = np.sum([gain for _, gain in list(self.frames)[-period:]], axis=0)
+            turn = self.frames[-period][0].T @ self.frame
+            together = [np.ptp(gain[a:b]) <= _TOGETHER for a, b in pairwise(edges_of(turn))]
+            return all(together) or done >= _TURNS
         # Motions that still approach may repeat after several periods by chance, less closely.
         full = len(self.last) == self.last.maxlen
         return full and repeats_after(self.last)[1] <= _EXACTLY
 
     def _cycles(self, cycles: int) -> Iterator[tuple[Array, float]]:
-        if self._place is None:
-            motion = self.tables.compiled.engine.motion
-            self._place = motion.state(*np.split(self.state[0], 2))[0]
-        tangent = self._tangent.at(self._place, self._sections)
-        self._place = tangent.state
-        products = np.linalg.solve(self._scale, tangent.products @ self._scale)
-        yield np.asarray(products), float(np.linalg.slogdet(products)[1].sum())
+        if self._period and len(self.last) == 2 * self._period and not repeats_after(self.last)[0]:
+            self._period = 0  # what grazes a contact repeats, and its disturbances do not
+        if self._period and len(self.last) >= 2 * self._period:
+            products = self.last[-self._period]
+        else:
+            if self._place is None:
+                motion = self.tables.compiled.engine.motion
+                self._place = motion.state(*np.split(self.state[0], 2))[0]
+            tangent = self._tangent.at(self._place, self._sections)
+            self._place = tangent.state
+            products = np.asarray(np.linalg.solve(self._scale, tangent.products @ self._scale))
+        yield products, float(np.linalg.slogdet(products)[1].sum())
 
 
 def carrier_of(compiled: Compiled, mesh_frequency: float, state: Array, extra: Array) -> Carrier:
@@ -193,7 +230,7 @@ def carrier_of(compiled: Compiled, mesh_frequency: float, state: Array, extra: A
 
 
 #: Mesh cycles after which matrices may repeat, and how closely.
-_PERIODS, _REPEATS = 16, 1e-8
+PERIODS, _REPEATS = 16, 1e-8
 #: Blocks of the frame are apart when they exchange less than this.
 _APART = 1e-10
 #: A product whose singular values differ by more loses the small disturbances to rounding.
@@ -210,7 +247,7 @@ def repeats_after(cycles: Sequence[Array]) -> tuple[int, float]:
     """Return the number of mesh cycles after which the matrices repeat, and the difference."""
     matrices = np.asarray(cycles)
     size = np.linalg.norm(matrices, axis=(-2, -1))
-    for period in range(1, min(_PERIODS, len(matrices) // 2) + 1):
+    for period in range(1, min(PERIODS, len(matrices) // 2) + 1):
         distance = (
             np.linalg.norm(matrices[period:] - matrices[:-period], axis=(-2, -1)) / size[period:]
         )
@@ -219,17 +256,25 @@ def repeats_after(cycles: Sequence[Array]) -> tuple[int, float]:
     return 0, float("nan")
 
 
-def floquet_growth(cycles: Sequence[Array], frame: Array, directions: Array) -> tuple[Array, Array]:
+def edges_of(turn: Array) -> list[int]:
+    """Edges of the blocks of a frame that exchange nothing, by how it turns (k, k)."""
+    size = turn.shape[0]
+    return [0, *(i for i in range(1, size) if np.abs(turn[i:, :i]).max() < _APART), size]
+
+
+def floquet_growth(
+    cycles: Sequence[Array], frame: Array, directions: Array
+) -> tuple[Array, Array, Mask]:
     """Growth of disturbances over one period, in the order of the frame; shares in directions."""
+    # The mask marks those whose growth is known: others differ too much, and are not apart.
     old, uppers = frame, []
     for product in (product for groups in cycles for product in groups):
         frame, upper = np.linalg.qr(product @ frame)
         uppers.append(upper)
     turn = old.T @ frame
-    size = turn.shape[0]
-    edges = [0, *(i for i in range(1, size) if np.abs(turn[i:, :i]).max() < _APART), size]
-    growth, share = np.zeros(size), np.zeros(size)
-    for first, last in pairwise(edges):
+    gain = np.log(np.abs([np.diag(upper) for upper in uppers])).sum(axis=0)
+    growth, share, known = gain.copy(), np.zeros(len(turn)), np.ones(len(turn), dtype=bool)
+    for first, last in pairwise(edges_of(turn)):
         block, scale = np.eye(last - first), 0.0
         for upper in uppers:
             block = upper[first:last, first:last] @ block
@@ -237,9 +282,11 @@ def floquet_growth(cycles: Sequence[Array], frame: Array, directions: Array) -> 
             block, scale = block / norm, scale + float(np.log(norm))
         values, vectors = np.linalg.eig(turn[first:last, first:last] @ block)
         order = np.argsort(-np.abs(values), kind="stable")
-        growth[first:last] = np.log(np.abs(values[order])) + scale
         share[first:last] = share_in(directions, old[:, first:last] @ vectors[:, order])
-    return growth, share
+        known[first:last] = np.ptp(gain[first:last]) <= 1.5 * _TOGETHER
+        if known[first]:
+            growth[first:last] = np.log(np.abs(values[order])) + scale
+    return growth, share, known
 
 
 def _pairwise(matrices: Array) -> Array:
