@@ -196,8 +196,9 @@ def _tree(content: bytes, place: str) -> dict[str, Any]:
     if content[:4] == b"PK\x03\x04":
         content = _unzipped(content, place)
     try:
-        if content.lstrip(b"\xef\xbb\xbf \t\r\n")[:1] == b"{":
-            tree = json.loads(content.decode("utf-8-sig"))["model"]
+        head = content[:4096].decode(json.detect_encoding(content), "replace")
+        if head.lstrip("\ufeff \t\r\n")[:1] == "{":
+            tree = json.loads(content)["model"]
         else:
             parser = ElementTree.XMLParser(target=_NoDoctype())
             tree = _from_xml(ElementTree.fromstring(content, parser), place)
@@ -390,11 +391,10 @@ def version_remark(file: RexsFile) -> str:
         + (f" and {len(names) - _MOST_NAMES} more" if len(names) > _MOST_NAMES else "")
         for kind, names in file.unread().items()
     ]
-    name = f"version {file.version}" if file.version else "a version that the file does not name"
-    return (
-        f"REXS {name} is not known and is read by the names of attributes in versions 1.0 to "
-        f"2.0.0; not read are, of {'; of '.join(lost) or 'gears, shafts, bearings: none'}"
-    )
+    version = f"REXS version {file.version} is not known" if file.version else (
+        "The file names no version of REXS"
+    )  # fmt: skip
+    return f"{version} and is read by the names of attributes in versions 1.0 to 2.0.0; not read are, of {'; of '.join(lost) or 'gears, shafts, bearings: none'}"
 
 
 def kinds(components: Iterable[Component]) -> dict[str, int]:

@@ -515,3 +515,22 @@ def test_tools_of_manufacturing_steps_make_the_rack(amount: float, tmp_path: Pat
     model = GearboxModel(model_of(tree | {"relations": [*kept, *steps]}, "steps"))
     assert case_from_rexs(model).gears.rack_tip_radius_coefficient == pytest.approx(0.3)
     assert any("protuberance" in remark for remark in model.remarks) == bool(amount)
+
+
+@pytest.mark.parametrize("name", ["two_stages.rexs", "two_stages.rexsj"])
+@pytest.mark.parametrize("encoding", ["utf-8-sig", "utf-16", "utf-16-le", "utf-16-be"])
+def test_models_in_other_encodings_are_the_same(name: str, encoding: str, tmp_path: Path) -> None:
+    text = (MODELS / name).read_text("utf-8")
+    if encoding.startswith("utf-16"):
+        text = text.replace('encoding="UTF-8"', 'encoding="UTF-16"')
+    (tmp_path / name).write_bytes(text.encode(encoding))
+    first, second = (read_rexs(path) for path in (MODELS / name, tmp_path / name))
+    assert [stage.id for stage in second.stages] == [stage.id for stage in first.stages]
+    assert list(second.remarks) == list(first.remarks)
+
+
+def test_a_file_without_a_version_is_said(tmp_path: Path) -> None:
+    text = (MODELS / "two_stages.rexs").read_text("utf-8")
+    path = tmp_path / "m.rexs"
+    path.write_text(re.sub(r'(<model[^>]*?) version="[^"]*"', r"\1", text, count=1), "utf-8")
+    assert any("names no version of REXS" in remark for remark in read_rexs(path).remarks)
