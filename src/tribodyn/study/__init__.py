@@ -17,10 +17,10 @@ if TYPE_CHECKING:
     from tribodyn.study.faults.wear import Wear, wear
     from tribodyn.study.frequencies import KinematicFrequencies, kinematic_frequencies
     from tribodyn.study.machine.case import MachineCase, PartsCase, PlanetaryCase
-    from tribodyn.study.machine.load_cases import LoadCase
     from tribodyn.study.machine.modes import MachineCampbell
     from tribodyn.study.machine.motion import MachineMotion, PeriodicSamples
     from tribodyn.study.machine.read import read_case
+    from tribodyn.study.machine.read_parts import LoadCase
     from tribodyn.study.machine.result import (
         LoadResult,
         MachineResult,
@@ -144,7 +144,7 @@ __all__ = [
 _NAMES = {
     "machine.read": "read_case",
     "machine.case": "Case MachineCase PairCase PartsCase PlanetaryCase",
-    "machine.load_cases": "LoadCase",
+    "machine.read_parts": "LoadCase",
     "faults.clock": "TurningClock turning_clock",
     "faults.recording_set": "RecordingSet record_set",
     "faults.wear": "Wear wear",

@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from tribodyn.losses.gearbox import TurningBody
     from tribodyn.machine import Machine, StaticBalance
     from tribodyn.study.machine.case import MachineCase
-    from tribodyn.study.machine.load_cases import LoadCase
+    from tribodyn.study.machine.read_parts import LoadCase
 
 #: Parts of a loss under the names of the figures of a summary.
 FIGURES = {

@@ -10,7 +10,7 @@ import pytest
 import tribodyn as td
 from tribodyn.errors import InputError
 from tribodyn.study import read_case
-from tribodyn.study.case.changes import with_values
+from tribodyn.study.case.user_input import with_values
 
 
 @pytest.mark.parametrize(

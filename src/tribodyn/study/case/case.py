@@ -14,7 +14,6 @@ from tribodyn.aliases import with_old_names
 from tribodyn.arguments.reading import brief
 from tribodyn.errors import InputError, Problem
 from tribodyn.model import NO_OPTIONS
-from tribodyn.study.case.changes import changed_tables, with_values
 from tribodyn.study.case.provenance import (
     Assumption,
     provenance,
@@ -34,9 +33,11 @@ from tribodyn.study.case.user_input import (
     Source,
     Stated,
     UserInput,
+    changed_tables,
     plain,
     spread_problem,
     unsound,
+    with_values,
     without_spread,
 )
 from tribodyn.study.case.values import KeyedProblems, correct_keys

@@ -11,11 +11,10 @@ from tribodyn.errors import Problem
 from tribodyn.gear.hypoid.blank import GENERATIONS, HANDS, PROCESSES, RANGES, hypoid_blank
 from tribodyn.gear.hypoid.kinematics import ENTRAINMENTS
 from tribodyn.model import REQUIRED, Option, choice, file_path, flag, integer, number, numbers, text
-from tribodyn.study.case.changes import with_values
 from tribodyn.study.case.rating_tables import CutterTable
 from tribodyn.study.case.section import Section, Table
 from tribodyn.study.case.section import table as inner_table
-from tribodyn.study.case.user_input import UserInput, conflicting_keys
+from tribodyn.study.case.user_input import UserInput, conflicting_keys, with_values
 
 _GUARD = "guards against a wrong unit"
 _RACK = "ISO 53 profiles lie between 0.2 and 1.4"

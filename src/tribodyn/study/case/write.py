@@ -14,7 +14,6 @@ import numpy as np
 from tribodyn import units
 from tribodyn.arguments.quantities import quantity_in, without_units
 from tribodyn.model import Option
-from tribodyn.study.case.changes import with_values
 from tribodyn.study.case.checks import DEFAULT_MARK
 from tribodyn.study.case.gears import is_idle
 from tribodyn.study.case.provenance import changed_keys, effective, provenance
@@ -26,7 +25,7 @@ from tribodyn.study.case.section import (
     option_at,
     section_at,
 )
-from tribodyn.study.case.user_input import Note
+from tribodyn.study.case.user_input import Note, with_values
 from tribodyn.study.case.values import Plain, in_unit, unmarked, written
 
 if TYPE_CHECKING:

@@ -34,7 +34,6 @@ from tribodyn.study.case.values import KeyedProblems, read_table, with_typed_key
 from tribodyn.study.faults.machine_section import impossible_faults, machine_fault_problems
 from tribodyn.study.machine.assumptions import default_assumptions, stated_assumptions
 from tribodyn.study.machine.housing_files import read_housing
-from tribodyn.study.machine.load_cases import LoadCase, read_loads
 from tribodyn.study.machine.pair_cases import (
     constant_law,
     inputs_under,
@@ -47,6 +46,7 @@ from tribodyn.study.machine.pair_cases import (
     with_forms,
 )
 from tribodyn.study.machine.read_parts import (
+    LoadCase,
     add_shafts,
     completed,
     each_part,
@@ -56,6 +56,7 @@ from tribodyn.study.machine.read_parts import (
     read_bearing,
     read_coupling,
     read_gear,
+    read_loads,
     read_rated_parts,
     read_shaft,
     solver_problems,

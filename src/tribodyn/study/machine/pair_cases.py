@@ -34,7 +34,7 @@ if TYPE_CHECKING:
     from tribodyn.gear import HypoidBlank
     from tribodyn.machine import Gear
     from tribodyn.study.machine.case import MachineCase
-    from tribodyn.study.machine.load_cases import LoadCase
+    from tribodyn.study.machine.read_parts import LoadCase
 
 #: Those that meshes of hypoid gears have not.
 _OF_CYLINDRICAL = ("stiffness", "materials", "rating")

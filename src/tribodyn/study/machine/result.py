@@ -42,8 +42,8 @@ if TYPE_CHECKING:
     from tribodyn.study.faults.sensors import Sensors
     from tribodyn.study.heat_balance import HeatBalance
     from tribodyn.study.machine.case import MachineCase
-    from tribodyn.study.machine.load_cases import LoadCase
     from tribodyn.study.machine.modes import MachineCampbell
+    from tribodyn.study.machine.read_parts import LoadCase
     from tribodyn.study.rated_parts import PartRatings
     from tribodyn.study.rating import RatedMesh
 

@@ -36,9 +36,9 @@ from tribodyn.study.coupling import load_of_torque, mesh_under_load
 from tribodyn.study.heat_balance import HeatBalance, Temperatures
 from tribodyn.study.machine.case import MachineCase
 from tribodyn.study.machine.first_look import over_phases, warn_of_gears, warn_of_motion
-from tribodyn.study.machine.load_cases import LoadCase
 from tribodyn.study.machine.motion import MachineMotion, machine_motion, motion_from
 from tribodyn.study.machine.pair_cases import inputs_under, read_teeth, teeth_under
+from tribodyn.study.machine.read_parts import LoadCase
 from tribodyn.study.machine.result import (
     LoadResult,
     MachineResult,

@@ -7,7 +7,6 @@ from typing import Any
 
 from tribodyn.errors import Problem, did_you_mean
 from tribodyn.model import NO_OPTIONS
-from tribodyn.study.case.changes import changed_tables, with_values
 from tribodyn.study.case.rating_tables import (
     HISTORY,
     BearingCatalogue,
@@ -15,6 +14,7 @@ from tribodyn.study.case.rating_tables import (
     ShaftStrength,
 )
 from tribodyn.study.case.section import entries, section_at, table_in
+from tribodyn.study.case.user_input import changed_tables, with_values
 from tribodyn.study.case.values import written
 from tribodyn.study.machine.tables import (
     GROUPS,
