@@ -394,7 +394,9 @@ def version_remark(file: RexsFile) -> str:
     version = f"REXS version {file.version} is not known" if file.version else (
         "The file names no version of REXS"
     )  # fmt: skip
-    return f"{version} and is read by the names of attributes in versions 1.0 to 2.0.0; not read are, of {'; of '.join(lost) or 'gears, shafts, bearings: none'}"
+    listed = "; of ".join(lost) or "gears, shafts, bearings: none"
+    known = "is read by the names of attributes in versions 1.0 to 2.0.0"
+    return f"{version} and {known}; not read are, of {listed}"
 
 
 def kinds(components: Iterable[Component]) -> dict[str, int]:
