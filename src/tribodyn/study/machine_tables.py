@@ -43,10 +43,9 @@ _OF_STAGE = (
 STIFF = 1e9
 
 
-def _support(meaning: str, basis: str = "") -> Any:
-    return number(
-        STIFF, 0.0, 1e14, _GUARD, unit="N/m", example='"1e8 N/m"', meaning=meaning, basis=basis
-    )
+def _support(meaning: str, **more: Any) -> Any:
+    unit = {"unit": "N/m", "example": '"1e8 N/m"'}
+    return number(STIFF, 0.0, 1e14, _GUARD, meaning=meaning, **unit, **more)
 
 
 def _errors(meaning: str) -> Any:
@@ -95,7 +94,7 @@ class PlanetsTable(Section):
         example='["0 deg", "120 deg", "240 deg"]',
         meaning="angles of the planets about the sun; equally spaced by default",
     )  # fmt: skip
-    pin_stiffness: float = _support("radial stiffness of each planet on the carrier")
+    pin_stiffness: float = _support("radial stiffness of each planet on the carrier", positive=True)
     pin_clearance: float = clearance(
         "radial distance that each planet can move on its pin before it is held"
     )

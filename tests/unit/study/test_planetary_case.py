@@ -50,7 +50,7 @@ def result(case):
         ({"operation.output": None}, "operation.output", "output is missing"),
         ({"operation.output": "shaft"}, "operation.output", "Known: sun, ring, carrier"),
         ({"operation.output": "sun"}, "operation.output", "is the input"),
-        ({"operation.speed": "0 rpm"}, "operation.speed", "speed = 0.0"),
+        ({"operation.speed": "0 rpm"}, "operation.speed", "speed = 0 rpm"),
         ({"gears.ring.teeth": 61}, "gears.ring.teeth", "Write teeth = -61"),
         ({"gears.ring.tip_diameter": "220 mm"}, "gears.ring.tip_diameter", "tip"),
         ({"planets.low.center_distance": "70 mm"}, "planets.low.center_distance", "70 mm"),

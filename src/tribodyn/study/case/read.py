@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+import sys
 import tomllib
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
@@ -12,6 +13,7 @@ from typing import TYPE_CHECKING, Any, Self
 
 from tribodyn import units
 from tribodyn.errors import InputError, Problem
+from tribodyn.study.case.section import named_rows
 from tribodyn.study.case.user_input import Note, Source
 from tribodyn.validated_files import read_bytes
 
@@ -200,7 +202,21 @@ def read_text(path: Path) -> str:
 
 def source_of(text: str, name: str) -> Source:
     """Where the values of the text of a case file come from."""
-    return Source(name or "case", partial(key_lines, text), notes=partial(key_notes, text))
+    return Source(name or "case", partial(_lines_by_row, text), notes=partial(key_notes, text))
+
+
+def _lines_by_row(text: str) -> dict[str, list[int]]:
+    """Line numbers of all keys, of lists of tables also by the names of their rows."""
+    lines = key_lines(text)
+    for table, value in tomllib.loads(text).items():
+        rows, heads = named_rows(value), lines.get(table, [])
+        inner = [(key, at) for key, at in lines.items() if key.startswith(f"{table}.")]
+        for (row, _), head, end in zip(rows, heads, [*heads[1:], sys.maxsize], strict=False):
+            lines[f"{table}.{row}"] = [head]
+            for key, at in inner:
+                if inside := [line for line in at if head < line < end]:
+                    lines[f"{table}.{row}.{key.removeprefix(f'{table}.')}"] = inside
+    return lines
 
 
 @contextmanager

@@ -252,7 +252,7 @@ class MachineCase(Case):
         """Table of a mesh, and the law of one with a constant stiffness."""
         key, names = f"meshes.{name}", table.gears
         listed = names if isinstance(names, list | tuple) else ()
-        if len(listed) != 2 or not all(isinstance(each, str) for each in listed):
+        if len(listed) != 2 or not all(isinstance(n, str) and listed.count(n) == 1 for n in listed):
             remedy = 'Write gears = ["z1", "z2"]'
             what = "gears is missing" if names is None else f"gears = {names!r}"
             problem = Problem(what, "", "A mesh has two gears", remedy)

@@ -15,6 +15,7 @@ from tribodyn.study.case import gears
 from tribodyn.study.case.hypoid import blank_of
 from tribodyn.study.case.pair import PairCase
 from tribodyn.study.case.rating_tables import HISTORY, PartRating
+from tribodyn.study.case.section import named_rows, table_in
 from tribodyn.study.case.sections import Operation
 from tribodyn.study.case.to_models import usual_backlash
 from tribodyn.study.case.user_input import Source
@@ -79,7 +80,7 @@ class PairSource(Source):
         label = f'mesh "{self.mesh}"' if self.group == "meshes" else stage
         named = [
             (key, replace(problem, what=f"{label}: {problem.what}"))
-            if self.key(key).partition(".")[0] in ("dynamics", "operation")
+            if self.key(key).partition(".")[0] in ("dynamics", "operation", "load_cases")
             else (key, problem)
             for key, problem in problems
         ]
@@ -257,34 +258,54 @@ def inputs_under(
 ) -> MeshInputs:
     """What the teeth of a mesh of a machine are computed from, misaligned by its shafts."""
     under = teeth_under(case, mesh, load)
+    speed, torque = (_key_of(case, load, name) for name in ("speed", "torque"))
+    refuse_idle(case.data, mesh, under.operation[1], case.source, torque)
     pair, inputs = read_teeth(case, mesh, under)
-    check_range(pair, under.operation)
+    check_range(pair, under.operation, (speed, torque))
     return inputs.under(*under.operation, under.along_path(misalignment))
 
 
-def refuse_idle(data: Mapping[str, Any], mesh: str, torque: float, source: Source | None) -> None:
-    """Refuse a mesh that carries no torque."""
+def _key_of(case: MachineCase, load: LoadCase, name: str) -> str:
+    """Key that gives the speed or the torque of a load."""
+    for number, (row, body) in enumerate(named_rows(case.data.get("load_cases")), 1):
+        if load.name == body.get("name", f"load case {number}") and body.get(name) is not None:
+            return f"load_cases.{row}.{name}"
+    return f"operation.{name}"
+
+
+def refuse_idle(
+    data: Mapping[str, Any],
+    mesh: str,
+    torque: float,
+    source: Source | None,
+    key: str = "operation.torque",
+) -> None:
+    """Refuse a mesh that carries no torque; the key gives that of the input."""
     if torque >= _IDLE:
         return
     what, why = f"mesh {mesh} carries no torque", "Its teeth have no contact to compute"
-    remedy = "Name the shaft where the power leaves behind it, or give it a constant stiffness"
+    group, _, name = key.partition(".")
     option = OperationTable.spec("torque")
     assert option is not None
-    stated = read_value(option, "torque", data["operation"]["torque"])
-    key = "operation.output" if stated else "operation.torque"
+    body = table_in(data, group)
+    value = body[name] if name in body else body[name.removesuffix(".torque")]["torque"]
+    remedy = "Give a torque, or give the meshes a constant stiffness"
+    if read_value(option, "torque", value):
+        key = "operation.output"
+        remedy = "Name the shaft where the power leaves behind it, or give it a constant stiffness"
     raise InputError((source or Source()).place([(key, Problem(what, "", why, remedy))]))
 
 
-def check_range(pair: PairCase, operation: tuple[float, float]) -> None:
-    """Refuse speed and torque of a pinion that are out of range."""
+def check_range(pair: PairCase, operation: tuple[float, float], keys: tuple[str, str]) -> None:
+    """Refuse speed and torque of a pinion that are out of range; the keys give them."""
     problems: KeyedProblems = []
-    for name, value in zip(("speed", "torque"), operation, strict=True):
+    for key, name, value in zip(keys, ("speed", "torque"), operation, strict=True):
         try:
             spec = Operation.spec(name)
             assert spec is not None
             read_value(spec, name, Plain(value))
         except FaultError as fault:
-            problems.append((f"operation.{name}", fault.problem))
+            problems.append((key, fault.problem))
     if problems:
         raise InputError(pair.source.place(problems))
 

@@ -38,6 +38,9 @@ _SECTION = (
     "both diameters of the end"
 )
 _PARTS = ("length", "outer_diameter", "inner_diameter", "end_outer_diameter", "end_inner_diameter")
+_RPM = math.pi / 30.0
+#: Lowest speed of a shaft, that of a pair [rad/s].
+_SLOWEST = 0.01 * _RPM
 #: Distance on both sides of a notch at which the diameters are read [m].
 _BESIDE = 1e-7
 _SHARE = re.compile(r"\s*([\d.]+)\s*%\s*")
@@ -386,6 +389,11 @@ def read_loads(
             problem = Problem(f'{end} = ""', "", "It names a shaft or a member", "Give its name")
             problems.append((f"operation.{end}", problem))
     point = LoadCase("operation", operation.speed, operation.torque, 1.0)
+    speeds = {f"load_cases.{row}": getattr(table, "speed", None) for row, table in named.items()}
+    for key, speed in {"operation": operation.speed, **speeds}.items():
+        if speed is not None and abs(speed) < _SLOWEST:
+            what, why = f"speed = {speed / _RPM:.4g} rpm", "Allowed: 0.01 rpm or faster either way"
+            problems.append((f"{key}.speed", Problem(what, "", why, "Correct the value")))
     loads = _history_loads(tables.rating, point, bool(named), problems)
     loads += tuple(_load_cases(named, point, problems))
     total = sum(load.share for load in loads)

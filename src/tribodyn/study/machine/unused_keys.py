@@ -190,7 +190,9 @@ def _constant_meshes(data: Mapping[str, Any]) -> KeyedProblems:
     why = "A mesh with a constant stiffness has no computed teeth"
     remedy = "Remove it, or remove the stiffness of the mesh"
     for stage in _tables(data, "planets").values():
-        computed |= {str(stage.get(role)) for role in ("sun", "planet", "ring_planet", "ring")}
+        roles = [role for role in ("sun", "planet", "ring_planet", "ring") if role in stage]
+        computed |= {str(stage[role]) for role in roles}
+    named |= computed
     for name, body in meshes.items():
         names = body.get("gears")
         named |= {str(gear) for gear in (names if isinstance(names, list | tuple) else ())}
