@@ -5,9 +5,10 @@ from tribodyn.dynamics.equations.entry import Entry
 from tribodyn.dynamics.equations.lane_parameters import LaneParameters
 from tribodyn.dynamics.equations.step_limit import recommended_steps
 from tribodyn.dynamics.equations.system import Contact, LoadFriction, System
+from tribodyn.dynamics.harmonic.clearance_motion import clearance_motion
 from tribodyn.dynamics.harmonic.harmonic_balance import harmonic_balance
 from tribodyn.dynamics.harmonic.phase_response import Lines, PhaseResponse
-from tribodyn.dynamics.harmonic.radial_clearance import RadialClearance, clearance_motion
+from tribodyn.dynamics.harmonic.radial_clearance import RadialClearance
 from tribodyn.dynamics.linear.campbell import Campbell, Resonance, campbell
 from tribodyn.dynamics.linear.linear_system import ForcedResponse, forced_response
 from tribodyn.dynamics.linear.natural_modes import NaturalModes, natural_modes

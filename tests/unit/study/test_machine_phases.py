@@ -156,10 +156,37 @@ def test_the_spectrum_names_the_largest_combination_lines() -> None:
     assert all(trace.name != "several phases" for trace in plot.machine_orders(constant).data)
 
 
-def test_phases_are_refused_where_a_bearing_has_a_clearance() -> None:
-    bearing = {"shaft": "in", "position": 0.0, "radial_stiffness": 1e8, "clearance": 20e-6}
-    changes = {f"bearings.A.{key}": value for key, value in bearing.items()}
-    held = case({"z1": 29, "z2": 71}, phases="on").replace(changes)
-    with pytest.raises(td.InputError, match=r"solver\.phases.*bearing A has a clearance"):
-        td.run(held)
-    assert td.run(held.replace({"solver.phases": "auto"})).motion.phase_turns is None
+def held(base: Any, clearance: float = 20e-6) -> Any:
+    """The same in two bearings a shaft, those of the first two shafts with a clearance."""
+    changes: dict[str, Any] = {}
+    for shaft in ("in", "shaft1", "shaft2", "out"):
+        for end, position in (("a", -0.05), ("b", 0.15)):
+            bearing = {"shaft": shaft, "position": position, "radial_stiffness": 2e8}
+            if shaft in ("in", "shaft1"):
+                bearing["clearance"] = clearance
+            changes |= {f"bearings.{shaft}_{end}.{key}": each for key, each in bearing.items()}
+    return base.replace(changes)
+
+
+def test_hunting_teeth_in_bearings_with_clearance_run_over_phases() -> None:
+    """One clock would take 4,757 cycles of the fastest mesh."""
+    base = held(case())
+    cost = warn_of_motion(base.solver, base.machine())
+    assert cost is not None
+    result = td.run(base)
+    response, motion, figures = result.operation.response, result.motion, result.summary()
+    assert isinstance(response, PhaseResponse)
+    assert response.converged
+    base_radius = 0.5 * 3e-3 * np.cos(np.radians(20.0)) * np.array(list(TEETH.values()))
+    ratios = base_radius[1::2] / np.append(base_radius[2::2], 1.0)
+    forces = 100.0 / base_radius[0] * np.cumprod([1.0, *ratios[:-1]])
+    for number, force in enumerate(forces, start=1):
+        assert figures[f"meshes.mesh{number}.mean_mesh_force"] == pytest.approx(force, rel=1e-9)
+    # The bearings of the first shaft hold the first mesh alone, in spite of their clearance.
+    on_shaft = [motion.bearing.index(name) for name in ("in_a", "in_b")]
+    pushed = np.tensordot(motion.weight, motion.bearing_force[:, on_shaft, 1:3].sum(axis=1), 1)
+    assert np.hypot(*pushed) == pytest.approx(forces[0], rel=1e-9)
+    for name in ("in_a", "shaft1_b"):
+        rows = result.operation.structure.bearing(name)[1:3]
+        moved = np.hypot(*(response.fine.position @ rows.T).T)
+        assert moved.min() > 20e-6

@@ -4,6 +4,7 @@ The public names are those of :mod:`tribodyn.dynamics`.
 
 | module | content |
 |---|---|
+| ``clearance_motion`` | the steady motion in supports with a clearance |
 | ``harmonic_balance`` | the steady motion on one clock, or over several phases |
 | ``newton`` | Newton's method with Krylov solutions for the residual over a period |
 | ``orbit_response`` | the response from the harmonics of a motion |
@@ -13,4 +14,5 @@ The public names are those of :mod:`tribodyn.dynamics`.
 | ``phase_march`` | the motion over phases by integration over time |
 | ``phase_response`` | that motion at any time, and its spectral lines |
 | ``phase_rows`` | entries of the contacts at points of the phases |
+| ``radial_clearance`` | the law of a support with a clearance |
 """

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -28,6 +28,7 @@ from tribodyn.dynamics.harmonic.phase_response import (
     sum_lines,
 )
 from tribodyn.dynamics.harmonic.phase_rows import PhaseRows, sampled_forces
+from tribodyn.dynamics.harmonic.radial_clearance import REMEDY, RadialClearance, about_load
 from tribodyn.dynamics.modal.closed_structure import ClosedStructure
 from tribodyn.dynamics.modal.contact_equations import close_contacts
 from tribodyn.errors import ComputationError, InputError, warn
@@ -108,8 +109,12 @@ class _Search:
     start: Array  #: static equilibrium (n,)
 
     @classmethod
-    def of(cls, system: System, frequency: Array) -> _Search:
-        rows = PhaseRows.of(system, frequency)
+    def of(
+        cls, system: System, frequency: Array, supports: Sequence[RadialClearance] = ()
+    ) -> _Search:
+        if supports:
+            system, supports = _supported(system, supports, frequency)
+        rows = PhaseRows.of(system, frequency, supports)
         means = rows.means
         refuse_disconnected(means)
         orbit_coordinates(means, float(frequency.max()))  # warns of forces that do not balance
@@ -214,16 +219,33 @@ class _Search:
         return errors
 
 
+def _supported(
+    system: System, supports: Sequence[RadialClearance], frequency: Array
+) -> tuple[System, list[RadialClearance]]:
+    """System with springs for supports about their mean loads, and their laws for these."""
+    cycles, loads = system.contacts[0].cycles, np.zeros((len(supports), 2))
+    # Springs without clearance first, whose displacements have the directions of the loads.
+    for laws in ([replace(each, clearance=0.0) for each in supports], supports):
+        pairs = [about_load(each, load, cycles) for each, load in zip(laws, loads, strict=True)]
+        springs = [spring for _, both in pairs for spring in both]
+        held = replace(system, contacts=[*system.contacts, *springs])
+        if laws is not supports:
+            position = at_rest(PhaseRows.of(held, frequency).means).position
+            loads = np.array([each.displacement(position) for each in supports])
+    return held, [law for law, _ in pairs]
+
+
 def phase_balance(
-    system: System, frequency: Any, steps: Any, start: Any, tolerance: float
-) -> PhaseResponse:
+    system: System, frequency: Any, steps: Any, start: Any, tolerance: float,
+    supports: Sequence[RadialClearance] = (),
+) -> PhaseResponse:  # fmt: skip
     """Find the motion over several phases; arguments as of :func:`harmonic_balance`."""
     frequency = read_frequencies(frequency, system.phases)
     if start is not None and not isinstance(start, PhaseResponse):
         what, why = "start is no motion over these phases", "Grids of several phases are refined"
         remedy = "Give the Response of another frequency of the same system, or leave it out"
         raise InputError(what, "start", why, remedy)
-    search = _Search.of(system, frequency)
+    search = _Search.of(system, frequency, supports)
     points = _first_points(search) if steps is None else _read_steps(steps, search)
     _refuse_large(search, points)
     points, residual, solution = search.first(points, start, tolerance, steps is None)
@@ -279,6 +301,9 @@ def _integrated(
     meshes = search.rows.meshes
     slowest = min(meshes, key=lambda mesh: abs(search.rows.rate(mesh.cycles)))
     label = contact_label(search.rows.system, int(slowest.contacts[0]))
+    if search.rows.supports:
+        what = f"no motion in the clearances of {len(search.rows.supports)} supports is found"
+        raise ComputationError(what, "clearance_motion", text, REMEDY)
     try:
         marched = marched_response(motion, search.structure)
         cycles = abs(int(slowest.cycles @ np.array(marched.turns)))

@@ -17,6 +17,7 @@ from numpy.polynomial import legendre
 
 from tribodyn.dynamics.harmonic.phase_grid import PhaseGrid
 from tribodyn.dynamics.harmonic.phase_rows import Mesh, PhaseRows
+from tribodyn.dynamics.harmonic.radial_clearance import clearance_forces
 from tribodyn.dynamics.modal.contact_equations import (
     NO_BREAKS,
     Breaks,
@@ -188,6 +189,25 @@ class PhaseContacts(ContactLaw):
         """Pieces between the jumps of the entries, and the entries at their points."""
         pieces = Pieces.of(self.grid, self.axis, self.jumps, _GAUSS)
         return pieces, self.part.projected(pieces.points, *self.bases)
+
+    def law(
+        self, rows: Rows, frequency: float, y: Array, rate: Array, excess: Array,
+        closed: Mask | None = None,
+    ) -> Law:  # fmt: skip
+        """Contact forces at rows; those of supports with a clearance are all of a part."""
+        law, supports = super().law(rows, frequency, y, rate, excess, closed), self.part.supports
+        if closed is not None or not supports:
+            return law
+        springs = rows.stiffness[..., 0]
+        force, tangent = clearance_forces(supports, law.compression)
+        change = force - springs * law.compression
+        tangent -= springs[..., None] * np.eye(springs.shape[1])
+        push, along = rows.push[0], rows.along[0]
+        return law._replace(
+            contact=law.contact + change,
+            force=law.force - change @ push,
+            stiffness=law.stiffness + push.T @ tangent @ along,
+        )
 
     def at(
         self, y: Array, rate: Array, excess: Array, closed: Mask | None, means: tuple[Array, Array]

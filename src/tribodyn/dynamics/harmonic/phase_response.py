@@ -7,7 +7,6 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from tribodyn.dynamics.equations.motion import forces
 from tribodyn.dynamics.harmonic.newton import State
 from tribodyn.dynamics.harmonic.phase_march import PhaseMarch
 from tribodyn.dynamics.harmonic.phase_residual import PhaseResidual
@@ -116,12 +115,9 @@ class PhaseResponse(Response):
         moved = [np.zeros((0, width)) for width in (q.shape[1], count, count)]
         step = max(1, _TOGETHER // max(1, q.shape[1] * count))
         parts = [
-            forces(
-                self._rows.system, self._rows.nodes(points[at]), 1.0, q[at, None], v[at, None],
-                extra=self.extra_force,
-            )
+            self._rows.forces(points[at], q[at], v[at], self.extra_force)
             for at in (slice(begin, begin + step) for begin in range(0, len(points), step))
-        ]  # fmt: skip
+        ]
         names = {"acceleration": "acceleration", "deflection": "deflection",
                  "contact_force": "contact"}  # fmt: skip
         return {"position": q, "velocity": v} | {

@@ -22,9 +22,11 @@ from tribodyn.dynamics.equations.grid import (
     system_events,
     unrepeated,
 )
+from tribodyn.dynamics.equations.motion import Forces, compression, forces
 from tribodyn.dynamics.equations.nodes import Nodes, evaluate_rows, ramp_count
 from tribodyn.dynamics.equations.phases import Turning, phase_sum
 from tribodyn.dynamics.equations.system import System
+from tribodyn.dynamics.harmonic.radial_clearance import RadialClearance, clearance_forces
 from tribodyn.dynamics.modal.contact_equations import Rows, jumping_events, project_rows
 from tribodyn.errors import InputError
 from tribodyn.types import Array, Index
@@ -107,26 +109,31 @@ class PhaseRows:
     frequency: Array  #: of each phase [Hz]
     meshes: tuple[Mesh, ...]
     means: Compiled  #: entries of every mesh over one cycle of its own, with checked functions
+    supports: tuple[RadialClearance, ...] = ()  #: those that the last contacts stand for
 
     @classmethod
-    def of(cls, system: System, frequency: Array) -> PhaseRows:
+    def of(
+        cls, system: System, frequency: Array, supports: Sequence[RadialClearance] = ()
+    ) -> PhaseRows:
         """Divide the contacts of a system into meshes."""
         groups: dict[Any, list[int]] = {}
+        first = len(system.contacts) - 2 * len(supports)
         for number, contact in enumerate(system.contacts):
-            groups.setdefault((contact.cycles, contact.offset), []).append(number)
+            groups.setdefault((contact.cycles, contact.offset, number >= first), []).append(number)
         clock: dict[str, Any] = {"cycles": 1, "offset": 0.0}
         clock |= {"turning_error": (), "turning_cycles": ()}
         contacts = [replace(contact, **clock) for contact in system.contacts]
         still = replace(system, force=np.zeros(system.size), contacts=contacts, lead=None)
         _check_turning(system)
         meshes = []
-        for (cycles, offset), numbers in groups.items():
+        for (cycles, offset, of_support), numbers in groups.items():
             turns = [term.cycles for n in numbers for term in system.contacts[n].turning]
             followed = np.any([np.atleast_1d(each) != 0 for each in (cycles, *turns)], axis=0)
-            axes = frozenset(np.flatnonzero(followed).tolist())
+            axes = frozenset() if of_support else frozenset(np.flatnonzero(followed).tolist())
             meshes.append(_mesh(still, cycles, offset, numbers, axes))
         mean = replace(still, force=sampled_forces(system).mean(axis=0))
-        return cls(system, frequency, tuple(meshes), sample_system(mean, _STEPS))
+        means = sample_system(mean, _STEPS)
+        return cls(system, frequency, tuple(meshes), means, tuple(supports))
 
     def some(self, meshes: Sequence[Mesh]) -> PhaseRows:
         """The rows of some meshes, without external forces and their balance."""
@@ -157,7 +164,8 @@ class PhaseRows:
         force = np.broadcast_to(0.0, nodes.force.shape)
         nodes = nodes._replace(force=force, **{name: part(name) for name in names})
         means = replace(self.means, system=alone, nodes=nodes)
-        return PhaseRows(alone, self.frequency, numbered, means)
+        supports = () if meshes[0].axes else self.supports
+        return PhaseRows(alone, self.frequency, numbered, means, supports)
 
     def force(self, points: Array) -> Array:
         """External force at points (p or 1, n)."""
@@ -185,6 +193,18 @@ class PhaseRows:
         phase = phase_sum(points, self.meshes[0].cycles)[:, None]
         force = self.force(points)[:, None]
         return Nodes(phase=phase, weight=np.ones((1, 1)), force=force, **fields)
+
+    def forces(self, points: Array, q: Array, v: Array, extra: Array) -> Forces:
+        """Contact forces and accelerations of a motion at points (p, 1, ...)."""
+        nodes, first = self.nodes(points), len(self.system.contacts) - 2 * len(self.supports)
+        if not self.supports:
+            return forces(self.system, nodes, 1.0, q[:, None], v[:, None], extra=extra)
+        moved, springs = compression(nodes, q[:, None])[:, 0, first:], nodes.stiffness[0, 0, first:]
+        held, rows = clearance_forces(self.supports, moved)[0], nodes.direction[0, 0, first:]
+        further = extra + (moved * springs - held) @ rows
+        motion = forces(self.system, nodes, 1.0, q[:, None], v[:, None], extra=further[:, None])
+        motion.contact[:, 0, first:] = held
+        return motion
 
     def projected(
         self, points: Array, along: Array, push: Array, before: Mesh | None = None

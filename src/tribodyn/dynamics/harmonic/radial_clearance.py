@@ -1,19 +1,18 @@
-"""Periodic motion with supports that hold a point only beyond a radial clearance."""
+"""Supports that hold a point only beyond a radial clearance."""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from tribodyn.checks import require_number
-from tribodyn.dynamics.equations.system import Contact, System
+from tribodyn.dynamics.equations.system import Contact
 from tribodyn.errors import (
     Argument,
-    ComputationError,
     InputError,
     real_numbers,
     require_between,
@@ -21,15 +20,13 @@ from tribodyn.errors import (
 )
 from tribodyn.types import Array
 
-if TYPE_CHECKING:
-    from tribodyn.dynamics.time.response import Response
-
 #: Width over the clearance of the transition between no contact and contact.
 _SMOOTH = 1e-3
-#: Change of a displacement over its size that ends the search, and the most passes of it.
-_SAME, _PASSES = 1e-8, 40
-
-_REMEDY = "Reduce the clearance, increase load or damping, or start from a similar motion"
+#: Displacement over the clearance of a support without load; least stiffness of the spring across
+#: the load that stands for a support, over that along it.
+_UNLOADED, _SOFT = 1e-9, 1e-2
+#: What helps where no motion is found.
+REMEDY = "Reduce the clearance, increase load or damping, or start from a similar motion"
 
 
 @dataclass(frozen=True, eq=False)
@@ -187,119 +184,35 @@ class RadialClearance:
         return toward, self.stiffness * slope, self.stiffness * np.maximum(secant, 0.0)
 
 
-def clearance_motion(
-    system: System,
-    supports: Sequence[RadialClearance],
-    frequency: float,
-    *,
-    steps: int = 200,
-    start: Response | None = None,
-) -> Response:
-    """Find the periodic motion of a system with further supports that have a radial clearance.
+def about_load(
+    support: RadialClearance, displacement: Array, cycles: Any
+) -> tuple[RadialClearance, list[Contact]]:
+    """Support for the compressions of springs along and across a displacement (2,), and these."""
+    # The springs have the tangent of the support at this displacement beyond the clearance.
+    size = float(np.linalg.norm(displacement))
+    toward = displacement / size if size > 0.0 else np.array([1.0, 0.0])
+    frame = np.stack((toward, toward[::-1] * np.array([-1.0, 1.0])))
+    shift = np.array([support.clearance if size > _UNLOADED * support.clearance else 0.0, 0.0])
+    rows, middle = frame @ np.asarray(support.directions), frame @ np.asarray(support.offset)
+    across = max(size / (size + support.clearance), _SOFT) if support.clearance else 1.0
+    stiffness = support.stiffness, support.stiffness * across
+    springs = [
+        Contact(row, k, error=float(e), cycles=cycles, name="support with clearance")
+        for row, k, e in zip(rows, stiffness, middle + shift, strict=True)
+    ]
+    return replace(support, directions=rows, offset=-shift), springs
 
-    Parameters
-    ----------
-    system : System
-        Without these supports.
-    supports : sequence of RadialClearance
-        Supports; their contacts are behind those of the system, two for each.
-    frequency : float
-        Frequency of the clock [Hz].
-    steps : int
-        Steps per cycle of the fastest contact.
-    start : Response, optional
-        Motion of a similar system from which the search starts.
 
-    Returns
-    -------
-    Response
-
-    Raises
-    ------
-    InputError
-        If a support has other coordinates than the system, or an argument is out of range.
-    ComputationError
-        If the search does not converge.
-
-    Notes
-    -----
-    Newton's method: every pass is a harmonic balance with the tangents of the supports along the
-    motion before it. Without clearance one pass is exact. Of several motions, such as those of a
-    point that hits its support all around, the one nearest to that without clearance is found.
-
-    Examples
-    --------
-    >>> pin = RadialClearance([[1.0, 0.0], [0.0, 1.0]], 1e8, 20e-6)
-    >>> mesh = Contact([1.0, 0.0], 1e3, error=lambda phase: 1e-6 * np.cos(2 * np.pi * phase))
-    >>> body = System(np.eye(2), 1e3 * np.eye(2), np.zeros((2, 2)), [0.0, 1e3], [mesh])
-    >>> clearance_motion(body, [pin], 5.0).position[0, 1:].round(7)  # c + F/k
-    array([3.e-05])
-    """
-    from tribodyn.dynamics.harmonic.harmonic_balance import harmonic_balance
-
-    for support in supports:
-        if np.asarray(support.directions).shape[1] != system.size:
-            what = f"a support has {np.asarray(support.directions).shape[1]} coordinates"
-            why, remedy = (
-                f"The system has {system.size}",
-                "Give directions with one column for each",
-            )
-            raise InputError(what, Argument("supports"), why, remedy)
-    paths: list[Array] = []
-    response, grid = start, np.zeros(1)
-    share, last = 1.0, np.inf
-    for _ in range(_PASSES):
-        contacts = list(system.contacts)
-        for number, support in enumerate(supports):
-            rigid = replace(support, clearance=0.0)
-            contacts += (
-                support.linearized(_on_grid(grid, paths[number]))
-                if paths
-                else rigid.linearized(lambda phase: np.zeros((np.size(phase), 2)))
-            )
-        try:
-            response = harmonic_balance(
-                replace(system, contacts=contacts), frequency, steps=steps, start=response
-            )
-        except ComputationError as error:
-            what = f"no motion in the clearances of {len(supports)} supports is found"
-            why = f"At its last approximation {error.problems[0].what}"
-            raise ComputationError(what, "clearance_motion", why, _REMEDY) from None
-        grid = response.fine.phase
-        moved = [support.displacement(response.fine.position) for support in supports]
-        if not paths:  # the load that pushes the point beyond its clearance
-            paths = [_pushed(d, s.clearance) for d, s in zip(moved, supports, strict=True)]
-            if not any(support.clearance for support in supports):
-                return response
-            continue
-        change = max(
-            float(np.abs(new - old).max()) / (support.clearance + float(np.abs(new).max()))
-            for new, old, support in zip(moved, paths, supports, strict=True)
+def clearance_forces(
+    supports: Sequence[RadialClearance], compression: Array
+) -> tuple[Array, Array]:
+    """Forces of supports (p, 2 m) and their derivatives (p, 2 m, 2 m) at compressions (p, 2 m)."""
+    force, tangent = np.empty_like(compression), np.zeros((*compression.shape, len(supports) * 2))
+    for number, support in enumerate(supports):
+        at = slice(2 * number, 2 * number + 2)
+        displacement = compression[:, at] - np.asarray(support.offset)
+        force[:, at], tangent[:, at, at] = (
+            support.force(displacement),
+            support.tangent(displacement),
         )
-        if change <= _SAME:
-            return response
-        share = max(0.5 * share, 0.05) if change > last else min(1.0, 2.0 * share)
-        last = change
-        paths = [old + share * (new - old) for new, old in zip(moved, paths, strict=True)]
-    what = f"the motion in the clearances of {len(supports)} supports does not settle"
-    why = f"After {_PASSES} passes the displacements change by {change:.2g} of their size"
-    raise ComputationError(what, "clearance_motion", why, _REMEDY)
-
-
-def _pushed(displacement: Array, clearance: float) -> Array:
-    """Displacement with the clearance added in its direction."""
-    size = np.linalg.norm(displacement, axis=1, keepdims=True)
-    return np.asarray(displacement * (1.0 + clearance / np.maximum(size, 1e-300)))
-
-
-def _on_grid(grid: Array, path: Array) -> Callable[[Array], Array]:
-    """Displacement over the phase of the clock between its samples."""
-    order = np.argsort(grid % 1.0, kind="stable")
-    at, values = (grid % 1.0)[order], path[order]
-
-    def function(phase: Array) -> Array:
-        """Linear between the samples."""
-        columns = [np.interp(phase, at, column, period=1.0) for column in values.T]
-        return np.stack(columns, axis=-1)
-
-    return function
+    return force, tangent

@@ -12,7 +12,8 @@ from numpy.typing import ArrayLike
 from tribodyn.checks import require_number, require_whole
 from tribodyn.dynamics.equations.entry import Entry, varies
 from tribodyn.dynamics.equations.system import Contact, System
-from tribodyn.dynamics.harmonic.radial_clearance import RadialClearance, clearance_motion
+from tribodyn.dynamics.harmonic.clearance_motion import clearance_motion
+from tribodyn.dynamics.harmonic.radial_clearance import RadialClearance
 from tribodyn.dynamics.linear.linear_system import linear_system
 from tribodyn.dynamics.linear.natural_modes import undamped_modes
 from tribodyn.errors import (

@@ -22,7 +22,6 @@ from tribodyn.study.faults.turning import refuse_long_period
 from tribodyn.study.machine.first_look import (
     PhaseCost,
     cost_over_phases,
-    has_clearance,
     over_phases,
     periods_of_turns,
     phase_cost_of,
@@ -375,7 +374,7 @@ def phases_with_faults(machine: Machine, excited: Sequence[ShaftExcitation]) -> 
 
 def faults_over_phases(case: MachineCase, machine: Machine) -> bool:
     """Whether the motion with faults is found over phases: where its period is long."""
-    if case.solver.phases == "off" or has_clearance(machine):
+    if case.solver.phases == "off":
         return False
     if over_phases(case.solver, machine):
         return True

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 from tribodyn.faults import Fault, drive
 from tribodyn.interrupt import single_blas_thread
+from tribodyn.machine.static.supports import clearance_supports, without_clearance_supports
 from tribodyn.progress import SILENT, Progress
 from tribodyn.study.faults.clock import (
     MOST_CYCLES,
@@ -49,8 +50,7 @@ if TYPE_CHECKING:
 
 _ACCURACY = Accuracy((128, 256), 1e-4)
 _SHORTER = (
-    'Set solver.phases = "auto", which needs no period unless bearings have a clearance, or give '
-    "faults of one gear of the mesh only"
+    'Set solver.phases = "auto", which needs no period, or give faults of one gear of the mesh only'
 )
 
 
@@ -160,15 +160,20 @@ def _over_phases(
     seats: dict[str, LooseSeat], progress: Progress,
 ) -> _Found:  # fmt: skip
     """Motion over phases of the meshes and of what turns with shafts and drives them."""
-    from tribodyn.dynamics import harmonic_balance
+    from tribodyn.dynamics import clearance_motion, harmonic_balance
     from tribodyn.machine import system as system_of
 
     machine, excited = structure.machine, excitations_of(case)
-    phases = phases_with_faults(machine, excited)
+    phases, supports = phases_with_faults(machine, excited), clearance_supports(structure)
     system = with_loose_seats(system_of(structure, phases=phases), seats)
+    if supports:
+        system = without_clearance_supports(structure, system)
     driven = [(each, phases.driven[rate_of(machine.clock, each)]) for each in excited]
     system, ahead = drive_machine_over_phases(structure, system, driven)
-    response = harmonic_balance(system, phases.frequency, progress=progress)
+    if supports:
+        response = clearance_motion(system, [*supports.values()], phases.frequency)
+    else:
+        response = harmonic_balance(system, phases.frequency, progress=progress)
     motion = with_lifted_forces(machine_motion(structure, response, phases), response, seats)
     units = phase_units(machine, phases, [each.gear for each in excited])
     return _Found(response, replace(motion, units=units), ahead)

@@ -8,7 +8,7 @@ from collections.abc import Iterator, Sequence
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from tribodyn.arrays.memory import machine_memory
-from tribodyn.errors import ComputationError, InputError, ModelWarning, Problem, warn
+from tribodyn.errors import ComputationError, ModelWarning, Problem, warn
 from tribodyn.machine import machine_structure
 from tribodyn.study.machine.motion import phase_names
 from tribodyn.study.machine.pair_cases import TeethUnder, inputs_under, read_teeth, teeth_under
@@ -40,20 +40,9 @@ _FEWEST = 60
 
 def over_phases(solver: SolverTable, machine: Machine) -> bool:
     """Whether the motion of a machine is found over independent phases of its meshes."""
-    clearance = has_clearance(machine)
-    if clearance and solver.phases == "on":
-        where = next(n for n, each in machine.bearings.items() if each.unloaded is not None)
-        what, why = f"bearing {where} has a clearance", "Its force is found over one clock"
-        remedy = 'Set solver.phases = "auto", or remove the clearance'
-        raise InputError(what, "solver.phases", why, remedy)
-    if solver.phases == "off" or len(machine.phases.frequency) == 1 or clearance:
+    if solver.phases == "off" or len(machine.phases.frequency) == 1:
         return False
     return solver.phases == "on" or repeats_late(max(machine.clock.cycles.values()))
-
-
-def has_clearance(machine: Machine) -> bool:
-    """Whether bearings have a clearance, whose forces need the period of one clock."""
-    return any(bearing.unloaded is not None for bearing in machine.bearings.values())
 
 
 def repeats_late(cycles: int) -> bool:
@@ -95,6 +84,10 @@ def phase_cost_of(
         )
         for name, mesh in machine.meshes.items()
     ]  # fmt: skip
+    loose = sum(each.clearance > 0.0 or each.unloaded is not None
+                for each in machine.bearings.values())  # fmt: skip
+    if loose:
+        followers.append((2 * loose, (0,) * len(phases.frequency), 1, ()))
     cost = cost_over_phases(phases, names, followers, orders)
     remedy = "Raise solver.memory, compute a part of the machine, or give it fewer faults"
     refuse_memory(cost, solver.memory, "solver.memory", remedy)

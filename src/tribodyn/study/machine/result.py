@@ -60,15 +60,15 @@ def steady_motion(
 
     if start is not None and start.names != tuple(system.names):
         start = None
+    search: dict[str, Any] = {"start": start, "steps": steps_of(structure)}
+    frequency: Any = structure.machine.clock.frequency
     if system.phases:
-        start = start if isinstance(start, PhaseResponse) else None
-        return harmonic_balance(system, structure.machine.phases.frequency, start=start)
-    supports, frequency = clearance_supports(structure), structure.machine.clock.frequency
-    steps = steps_of(structure)
-    if supports:
+        search = {"start": start if isinstance(start, PhaseResponse) else None}
+        frequency = structure.machine.phases.frequency
+    if supports := clearance_supports(structure):
         system = without_clearance_supports(structure, system)
-        return clearance_motion(system, [*supports.values()], frequency, steps=steps, start=start)
-    return harmonic_balance(system, frequency, steps=steps, start=start)
+        return clearance_motion(system, [*supports.values()], frequency, **search)
+    return harmonic_balance(system, frequency, **search)
 
 
 def power_with_friction(
