@@ -149,3 +149,9 @@ def test_the_figure_shows_severity_and_growth_of_the_lines() -> None:
     assert [curves[f"end of zone {zone}"][0] for zone in "ABC"] == pytest.approx([1.0, 2.0, 4.0])
     assert curves["bearing A, outer ring"] == pytest.approx([1.0, 3.0])
     assert figure.layout.title.text == "Zone C; bearing A, outer ring"
+
+
+def test_a_channel_in_volts_is_told_what_it_lacks(lines):
+    verdict = judge_recordings([recorded(sound(lines), "V")], lines, limits="II")
+    assert verdict.zone == ""
+    assert "needs the sensitivity of its sensor" in verdict.statements[0]
