@@ -114,7 +114,7 @@ LINES: dict[str, int] = {
     "contact": 422,
     "cookbook": 107,
     "drawing": 195,
-    "dynamics": 15635,
+    "dynamics": 15643,
     "ehl": 9588,
     "errors": 224,
     "exchange": 2202,

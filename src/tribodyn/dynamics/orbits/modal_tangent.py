@@ -16,8 +16,8 @@ from tribodyn.dynamics.equations.nodes import carried_load, friction_tangent
 from tribodyn.dynamics.modal.modal_march import ModalMotion
 from tribodyn.types import Array, ComplexArray, Mask
 
-#: Changes of side in a period that are logged at first.
-_LOGGED = 1024
+#: Changes of side in a period that are logged at first; parts whose factors are computed together.
+_LOGGED, _CHUNK = 1024, 256
 
 
 class Tangent(NamedTuple):
@@ -40,11 +40,9 @@ class _Weights(NamedTuple):
     """Weights of a step: of modes and forces in modes and in motions at the contacts."""
 
     decay: ComplexArray  #: (m,)
-    signals: (
-        Array  #: of real and imaginary parts of modes in motion and rate at the nodes (6 r, 2 m)
-    )
+    signals: Array  #: of real and imaginary parts of modes in motion and rate at nodes (2 m, 6 r)
     direct: Array  #: of forces at the nodes in motion and rate at the middle and end (4 r, 3 s)
-    force: ComplexArray  #: of forces at the nodes in modes (m, 3 s)
+    force: Array  #: of forces at the nodes in real and imaginary parts of modes (3 s, 2 m)
 
 
 class _Part(NamedTuple):
@@ -72,22 +70,22 @@ class ModalTangent:
         parts = list(self._parts(log))
         tangents = self._tangents(parts, nodes)
         ends = np.linspace(0, self.width.size, sections + 1).astype(np.int64)[1:]
-        first = self.motion.split(np.eye(state.size))
-        z, sums = first, np.zeros((self.motion.input.shape[1], state.size))
+        # Disturbances are rows: the parts of their modes are then as real numbers in a row too.
+        first = np.ascontiguousarray(self.motion.split(np.eye(state.size)).T)
+        z, sums = first.copy(), np.zeros((state.size, self.motion.input.shape[1]))
         square = (sections, state.size, state.size)
-        tangent = Tangent(end, np.empty(square), np.empty((sections, *sums.shape)))
+        tangent = Tangent(end, np.empty(square), np.empty((sections, *sums.T.shape)))
         number = 0
-        for part, slopes in zip(parts, tangents, strict=True):
+        for part, slopes, weights in zip(parts, tangents, self._weights(parts), strict=True):
             h = (part.end - part.begin) * float(self.width[part.step])
-            z, force = _advanced(z, self._weights(h, part), slopes)
-            left, middle, right = np.split(force, 3)
+            left, middle, right = np.split(_advance(z, weights, slopes), 3, axis=1)
             sums = sums + h * (left + 4.0 * middle + right) / 6.0
             for entry in part.entries:
                 impulse = self._impulse(log[entry], part, z)
-                z, sums = z + self.motion.input @ impulse, sums + impulse
+                z, sums = z + impulse @ self.motion.input.T, sums + impulse
             if part.end == 1.0 and part.step + 1 == ends[number]:
-                tangent.products[number], tangent.sums[number] = self.motion.joined(z), sums
-                z, sums, number = first, 0.0 * sums, number + 1
+                tangent.products[number], tangent.sums[number] = self.motion.joined(z.T), sums.T
+                z, sums, number = first.copy(), 0.0 * sums, number + 1
         return tangent
 
     def _marched(self, state: Array) -> tuple[Array, Array, Array]:
@@ -175,21 +173,25 @@ class ModalTangent:
         members = self.motion.contacts.members
         return np.asarray(push + np.einsum("...f,fj,...fs->...js", ratio, members, entries[9]))
 
-    def _weights(self, h: float, part: _Part) -> _Weights:
-        """Weights of a part of ``h`` seconds; those of whole steps are kept."""
-        key = round(h, 18)
-        if key in self._known:
-            return self._known[key]
-        weights = _step_weights(self.motion, h)
-        if part.end - part.begin == 1.0:
-            self._known[key] = weights
-        return weights
+    def _weights(self, parts: list[_Part]) -> Iterator[_Weights]:
+        """Weights of parts; those of whole steps are kept."""
+        for first in range(0, len(parts), _CHUNK):
+            chunk = parts[first : first + _CHUNK]
+            width = np.array([(p.end - p.begin) * self.width[p.step] for p in chunk])
+            keys = [round(float(h), 18) for h in width]
+            new = [i for i, key in enumerate(keys) if key not in self._known]
+            factors = dict(zip(new, _factors(self.modes.values, width[new]), strict=True))
+            for i, (part, key) in enumerate(zip(chunk, keys, strict=True)):
+                weights = self._known.get(key) or _step_weights(self.motion, factors[i])
+                if part.end - part.begin == 1.0:
+                    self._known[key] = weights
+                yield weights
 
     def _impulse(self, entry: Array, part: _Part, z: ComplexArray) -> Array:
         """Forces of the delay of a disturbance where the first spring of a contact changes."""
         tau, contact, spring = float(entry[1]), int(entry[2]), int(entry[3])
         contacts = self.motion.contacts
-        r, none = len(self.motion.output) // 2, np.zeros((self.motion.input.shape[1], z.shape[1]))
+        r, none = len(self.motion.output) // 2, np.zeros((len(z), self.motion.input.shape[1]))
         if spring or contacts.damped_in_gap[contact]:
             return none
         table = self.rows[part.step]
@@ -207,8 +209,8 @@ class ModalTangent:
         strength = closing * entries[1][contact] * speed / relative
         damped = self._springs(entries, part.side)
         push = self._push(entries, *damped, part.side, entry[5:])[contact]
-        felt = along @ (self.motion.output[:r] @ z).real
-        return np.asarray(-strength * np.outer(push, felt))
+        felt = (z @ (along @ self.motion.output[:r])).real
+        return np.asarray(-strength * np.outer(felt, push))
 
 
 def _parabola(tau: Array) -> Array:
@@ -218,37 +220,47 @@ def _parabola(tau: Array) -> Array:
     )
 
 
-def _advanced(z: ComplexArray, weights: _Weights, tangent: Array) -> tuple[ComplexArray, Array]:
-    """Disturbance of the modes (m, k) at the end of a part, and of the forces (3 s, k)."""
-    signals = weights.signals @ np.concatenate((z.real, z.imag))
+def _advance(z: ComplexArray, weights: _Weights, tangent: Array) -> Array:
+    """Take disturbances of the modes (k, m) to the end of a part; those of the forces (k, 3 s)."""
+    signals = z.view(float) @ weights.signals
     r2, s = tangent.shape[2], tangent.shape[1]
-    first = tangent[0] @ signals[:r2]
+    first = signals[:, :r2] @ tangent[0].T
     later = np.zeros((2 * s, 2 * r2))
     later[:s, :r2], later[s:, r2:] = tangent[1], tangent[2]
     direct = later @ weights.direct
-    right = later @ signals[r2:] + direct[:, :s] @ first
-    forces = np.concatenate((first, np.linalg.solve(np.eye(2 * s) - direct[:, s:], right)))
-    return weights.decay[:, None] * z + weights.force @ forces, forces
+    right = later @ signals[:, r2:].T + direct[:, :s] @ first.T
+    others = np.linalg.solve(np.eye(2 * s) - direct[:, s:], right)
+    forces = np.hstack((first, others.T))
+    z *= weights.decay
+    parts = z.view(float)
+    parts += forces @ weights.force
+    return forces
 
 
-def _step_weights(motion: ModalMotion, h: float) -> _Weights:
-    """Weights of a step of ``h`` seconds, as those of the engine."""
-    values, output = motion.modes.values, motion.output
-    full_step, full = _integrals(values * h)
-    half_step, half = _integrals(0.5 * values * h)
-    first, second, third = full
-    step_weights = h * np.stack((first - 3.0 * second + 4.0 * third, 4.0 * second - 8.0 * third,
-                          4.0 * third - second))  # fmt: skip
-    begin, middle, end = half
-    part = h * np.stack((0.5 * (begin - 1.5 * middle + end), middle - end,
-                         0.5 * (end - 0.5 * middle)))  # fmt: skip
-    force, inner = (
-        np.concatenate([each[:, None] * motion.input for each in parts], axis=1)
-        for parts in (step_weights, part)
+def _step_weights(motion: ModalMotion, factors: ComplexArray) -> _Weights:
+    """Weights of a step, as those of the engine, from its factors (8, m)."""
+    output, size = motion.output, motion.input.shape[1]
+    half, full = factors[0], factors[4]
+    inner, force = (
+        (factors[at : at + 3, None] * motion.input.T).reshape(3 * size, -1).view(float)
+        for at in (1, 5)
     )
-    signals = np.concatenate((output, output * half_step, output * full_step))
-    direct = np.concatenate(((output @ inner).real, (output @ force).real))
-    return _Weights(full_step, np.hstack((signals.real, -signals.imag)), direct, force)
+    signals = np.conj(np.concatenate((output, output * half, output * full))).view(float)
+    direct = np.concatenate((signals[: len(output)] @ inner.T, signals[: len(output)] @ force.T))
+    return _Weights(full, signals.T, direct, force)
+
+
+def _factors(values: ComplexArray, width: Array) -> ComplexArray:
+    """Factors of modes in steps (n,), at the middle and the end: of modes, forces (n, 8, m)."""
+    h = width[:, None]
+    factors = np.empty((width.size, 8, values.size), dtype=complex)
+    factors[:, 0], (begin, middle, end) = _integrals(0.5 * h * values)
+    factors[:, 1] = 0.5 * h * (begin - 1.5 * middle + end)
+    factors[:, 2], factors[:, 3] = h * (middle - end), 0.5 * h * (end - 0.5 * middle)
+    factors[:, 4], (first, second, third) = _integrals(h * values)
+    factors[:, 5] = h * (first - 3.0 * second + 4.0 * third)
+    factors[:, 6], factors[:, 7] = h * (4.0 * second - 8.0 * third), h * (4.0 * third - second)
+    return factors
 
 
 def _integrals(x: ComplexArray) -> tuple[ComplexArray, tuple[ComplexArray, ...]]:
