@@ -16,6 +16,7 @@ import tribodyn as td
 from fuzz.damage import at_most
 from tribodyn.errors import InputError
 from tribodyn.study.machine.housing_files import _market
+from unit.study.test_superelement_files import FORMATS
 
 CASE = """
 [gears.z1]
@@ -82,6 +83,27 @@ def test_matrices_are_those_that_were_written(make, symmetry):
     mmwrite(file, make(matrix), symmetry=symmetry, comment="of a test")
     file.seek(0)
     assert np.array_equal(_market(file), matrix)
+
+
+@pytest.mark.parametrize("form", FORMATS)
+def test_damaged_files_of_other_programs(form, draws, tmp_path):
+    files, keys = FORMATS[form]
+    messages = []
+    for rng in draws(12):
+        for name, content in files.items():
+            changed = rng.random() < 0.7 or name == next(iter(files))
+            raw = content.encode()
+            (tmp_path / name).write_bytes(damaged(raw, rng) if changed else raw)
+        path = tmp_path / "m.toml"
+        body = CASE.partition("[housing.nodes]")[0]
+        path.write_text(f"{body}\n[housing]\n{keys}\n", "utf-8")
+        try:
+            with at_most(5.0):
+                td.load_case(path)
+        except InputError as error:
+            messages += [str(problem) for problem in error.problems]
+    assert messages
+    assert [text for text in messages if "m.toml" not in text or "housing" not in text] == []
 
 
 def test_damaged_files(draws, tmp_path):

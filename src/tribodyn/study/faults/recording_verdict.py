@@ -106,10 +106,9 @@ class RecordingVerdict(Record):
                 f"to 1000 Hz; the zones A/B/C end at {ends} mm/s."
             )
         elif self.limits:
-            yield (
-                "Severity: not known; it needs an acceleration or velocity up to 1000 Hz. A channel "
-                'in volts needs the sensitivity of its sensor, such as "100 mV/g".'
-            )
+            needed = "it needs an acceleration or velocity up to 1000 Hz"
+            remedy = 'A channel in volts needs the sensitivity of its sensor, such as "100 mV/g"'
+            yield f"Severity: not known; {needed}. {remedy}."
 
     def _trend(self) -> Iterator[str]:
         if self.kurtosis.size < 2:

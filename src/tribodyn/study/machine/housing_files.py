@@ -270,8 +270,8 @@ def _user_element(text: str) -> Superelement:
     for number, node in enumerate(nodes, 1):
         components = changes.get(number, components)
         points += [(node, component) for component in components]
-    if len(set(points)) < len(points):
-        raise ValueError("a component of a node is listed twice")
+    if len(set(points)) < len(points) or len(points) >= _MOST:
+        raise ValueError(f"a component of a node is listed twice, or there are {_MOST} or more")
     element, square = Superelement(), "UNSYM" in options.upper()
     for part in parts:
         option, _, data = part.partition("\n")
