@@ -141,7 +141,7 @@ LINES: dict[str, int] = {
     "scope": 55,
     "signals": 1782,
     "stiffness": 5353,
-    "study": 19874,
+    "study": 19873,
     "surrogate": 767,
     "types": 8,
     "uncertainty": 289,
