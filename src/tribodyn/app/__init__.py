@@ -12,6 +12,7 @@ module              what it does
 ``worker``          main program of a worker process
 ``authentication``  token, sessions, host and origin of a request
 ``studies``         studies that the page offers
+``script``          what was done in a tab as a Python script
 ``results``         layout of case, results and studies on the page
 ``server``          the web server and its requests
 ==================  ===================================================================

@@ -8,6 +8,7 @@
 | ``modulating_shaft`` | which of two meshing gears modulates the mesh |
 | ``orders`` | order spectrum of a recording, and order map over the speed |
 | ``vold_kalman`` | amplitude and phase of single orders over time |
+| ``load_history`` | load classes of a recorded torque |
 | ``comparison`` | comparison of a computed with a measured response |
 | ``shaft_speed`` | shaft angle and speed from the best available source |
 | ``sideband_cursors`` | amplitudes of an order spectrum at a carrier and its sidebands |
