@@ -5,18 +5,22 @@ from __future__ import annotations
 from collections.abc import Iterator
 from contextlib import suppress
 from copy import deepcopy
+from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
+from broken import SOUND
 
 import tribodyn as td
+from tribodyn.cli import call
 from tribodyn.errors import ComputationError, InputError
 from tribodyn.model import Option
-from tribodyn.study import MachineCase
+from tribodyn.study import MachineCase, read_case
 from tribodyn.study.case.checks import case_options
 from tribodyn.study.case.gears import Modification
 from tribodyn.study.case.section import Section
+from tribodyn.study.machine.first_look import idle_keys
 from tribodyn.study.machine.tables import (
     MESH_KEYS,
     BearingTable,
@@ -29,6 +33,7 @@ from tribodyn.study.machine.tables import (
     SolverTable,
 )
 from tribodyn.study.machine_tables import PlanetsTable
+from tribodyn.study.pipeline.cautions import idle_values
 
 pytestmark = pytest.mark.filterwarnings("ignore::tribodyn.errors.ModelWarning")
 
@@ -257,3 +262,53 @@ def test_a_change_drops_what_it_leaves_without_effect() -> None:
         case.replace({**stiff, "film.model": "moes"})
     with pytest.raises(InputError, match=r"gears\.z1\.roughness_ra"):
         constant.replace({"gears.z1.roughness_ra": 3e-7})
+
+
+#: Values without effect beside others, and others of them.
+IDLE = {
+    "hand": ("left", "right"),
+    "modification.tip_relief_length": ("2 mm", "3 mm"),
+    "modification.root_relief_shape": ("parabolic", "linear"),
+    "modification.run_out_phase": ("10 deg", "20 deg"),
+    "roughness_rms": ("0.2 um", "0.4 um"),
+}
+
+
+def test_a_check_names_what_has_no_effect_in_a_pair(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    file = tmp_path / "pair.toml"
+    file.write_text(SOUND, encoding="utf-8")
+    first, second = (
+        {f"gears.pinion.{key}": values[place] for key, values in IDLE.items()}
+        | {"gears.composite_roughness": None, "gears.wheel.roughness_rms": "0.2 um"}
+        | {"lubricant.temperature": ("60 degC", "80 degC")[place]}
+        for place in (0, 1)
+    )
+    case = read_case(SOUND, "pair.toml").replace(first)
+    named = dict(idle_values(case))
+    assert {key for key, value in first.items() if value is not None} <= set(named)
+    before, after = (td.run(each).summary() for each in (case, case.replace(second)))
+    moved = {key for key in before if before[key] != after[key]}
+    assert all(key.startswith("oil_") for key in moved)
+    call(["check", str(file)])
+    line = 1 + SOUND[: SOUND.index('name = "80W"')].count("\n")
+    assert (
+        f"pair.toml:{line}: lubricant.name has no effect: neither film" in capsys.readouterr().err
+    )
+
+
+def test_a_check_names_what_has_no_effect_in_a_machine() -> None:
+    data = {**spur(hand="left"), "friction": {"law": "constant", "coefficient": 0.05}}
+    data["meshes"]["first"] |= {"transmission_error_amplitude": "0 um"}
+    data["gears"]["z1"]["modification"] = {"tip_relief_length": "2 mm"}
+    case = MachineCase(**data)
+    named = {"meshes.first.hand", "gears.z1.modification.tip_relief_length"}
+    named |= {"gears.z1.roughness_ra", "gears.z2.roughness_ra"}
+    assert set(idle_keys(case)) == named
+    other = case.replace({
+        "meshes.first.hand": "right", "gears.z1.modification.tip_relief_length": "3 mm",
+        "gears.z1.roughness_ra": "0.5 um",
+    })  # fmt: skip
+    assert td.run(case).summary() == td.run(other).summary()
+    assert idle_keys(td.load_case("planetary-stage")) == {}

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -42,7 +43,7 @@ def check(case: CaseName, /, *, set_: Settings = None, json: Flag = False) -> No
         Write one flat JSON object in SI to stdout.
     """
     from tribodyn.study.pipeline.assembly import geometry
-    from tribodyn.study.pipeline.cautions import case_cautions
+    from tribodyn.study.pipeline.cautions import case_cautions, idle_values
     from tribodyn.study.pipeline.preview import operating_figures
     from tribodyn.study.pipeline.run import rehearse
     from tribodyn.study.pipeline.summary_figures import summary_rows
@@ -62,6 +63,7 @@ def check(case: CaseName, /, *, set_: Settings = None, json: Flag = False) -> No
 
             say(f"The motion with its faults repeats after {turning_clock(ready)}.")
     show_warnings([*case_cautions(ready), *warnings])
+    _tell_of_idle(ready, dict(idle_values(ready)))
     kinds = [assumption.kind for assumption in ready.assumptions]
     tell(
         f"The case is in order; {kinds.count('assumed')} values are assumed, "
@@ -69,11 +71,17 @@ def check(case: CaseName, /, *, set_: Settings = None, json: Flag = False) -> No
     )
 
 
+def _tell_of_idle(case: AnyCase, keys: Mapping[str, str]) -> None:
+    """Name the keys that have no effect beside the other values of a case."""
+    for key, why in keys.items():
+        tell(f"{case.source.where(key)} has no effect: {why}.")
+
+
 def _check_machine(case: MachineCase, json: bool) -> None:
     """Show speeds, torques and power of a machine, after rehearsing its teeth."""
     from tribodyn.errors import collected
     from tribodyn.study.faults.machine_motion import rehearse_faults
-    from tribodyn.study.machine.first_look import kinematic_figures
+    from tribodyn.study.machine.first_look import idle_keys, kinematic_figures
     from tribodyn.study.machine.run import rehearse_machine
     from tribodyn.study.pipeline.summary_figures import summary_rows
 
@@ -88,6 +96,7 @@ def _check_machine(case: MachineCase, json: bool) -> None:
         text = ", ".join(filter(None, (assumption.value, assumption.reason)))
         tell(f"assumed: {assumption.key}: {text}")
     show_warnings(warnings)
+    _tell_of_idle(case, idle_keys(case))
     for cost in costs:
         tell(cost)
     tell("The case is in order.")

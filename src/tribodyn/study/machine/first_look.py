@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 from tribodyn.arrays.memory import machine_memory
 from tribodyn.errors import ComputationError, ModelWarning, Problem, warn
 from tribodyn.machine import machine_structure
+from tribodyn.study.case.section import flat_keys
 from tribodyn.study.machine.motion import phase_names
 from tribodyn.study.machine.pair_cases import TeethUnder, inputs_under, read_teeth, teeth_under
 from tribodyn.study.machine.summary import geometry_figures
@@ -17,6 +18,7 @@ from tribodyn.study.pipeline.assembly import geometry
 from tribodyn.study.pipeline.cautions import (
     MeshWarning,
     case_cautions,
+    idle_values,
     teeth_cautions,
     warn_of_meshes,
 )
@@ -221,6 +223,22 @@ def computed_pairs(case: MachineCase) -> Iterator[tuple[str, PairCase, TeethUnde
         speed, torque = under.operation
         pair, _ = read_teeth(case, name, under)
         yield name, pair.replace({"operation.speed": speed, "operation.torque": torque}), under
+
+
+def idle_keys(case: MachineCase) -> dict[str, str]:
+    """Keys of teeth that have no effect in any mesh beside other values, and why."""
+    idle: dict[str, str] = {}
+    used: set[str] = set()
+    for _, pair, _ in computed_pairs(case):
+        why = dict(idle_values(pair))
+        idle |= {pair.source.key(key): reason for key, reason in why.items()}
+        used |= {pair.source.key(key) for key, _ in flat_keys(pair.data) if key not in why}
+    has_oil = case.losses is not None or case.is_rated or case.heat is not None
+    return {
+        key: why
+        for key, why in idle.items()
+        if key not in used and not (has_oil and key.startswith("lubricant"))
+    }
 
 
 def kinematic_figures(case: MachineCase) -> dict[str, float]:

@@ -15,6 +15,7 @@ from tribodyn.ehl import film_load_share
 from tribodyn.errors import ComputationError, ModelWarning, Problem, collected, warn
 from tribodyn.study.case.hypoid import hypoid_warnings
 from tribodyn.study.case.provenance import body, changed_keys, effective
+from tribodyn.study.case.section import flat_keys
 from tribodyn.study.case.to_models import gear_warnings
 from tribodyn.study.pipeline.response_series import (
     compression,
@@ -44,6 +45,17 @@ _RUBS = 0.3
 _COUNT = 'Set friction.law = "mixed", which counts the asperities. '
 #: Results of the film model that asperities do not change.
 _FILMS = "Film and film stiffness are those"
+#: Keys of a length, a shape or a phase, and those of what has it.
+_OWNERS = {
+    **{
+        f"{end}_{of}": end
+        for end in ("tip_relief", "root_relief", "end_relief")
+        for of in ("length", "shape")
+    },
+    "run_out_phase": "run_out",
+    "profile_map_interpolation": "profile_map",
+    "transmission_error_phase": "transmission_error_amplitude",
+}
 #: Rim under the root below which the body bends with the teeth [modules].
 _RIM = 1.0
 #: Ratio of a given mass or inertia to that of the solid gear, or its inverse, above which a warning
@@ -363,6 +375,24 @@ def contact_cautions(share: float, *, touches_back: bool) -> tuple[ModelWarning,
         "prevents this; other steady motions may exist as well"
     )
     return (ModelWarning("contact-loss", message),)
+
+
+def idle_values(case: PairCase) -> Iterator[tuple[str, str]]:
+    """Keys that a case gives and that have no effect beside its other values, and why."""
+    dry = case.film.model == "none" and case.friction.law == "constant"
+    dry = dry and case.rating is None and case.losses is None
+    dry = dry and (case.lubricant is None or case.lubricant.heat_transfer is None)
+    for key, _ in flat_keys({k: v for k, v in case.data.items() if k != "assumed"}):
+        table, _, name = key.rpartition(".")
+        owner = _OWNERS.get(name)
+        if owner and not case.get(f"{table}.{owner}"):
+            yield key, f"there is no {owner}"
+        elif name == "hand" and case.spur_pair is not None and not case.gears.helix_angle:
+            yield key, "the teeth are straight"
+        elif key == "solver.coupling_tolerance" and case.solver.coupling == "none":
+            yield key, "solver.coupling is none"
+        elif dry and (table == "lubricant" or "roughness" in name):
+            yield key, "neither film nor friction is computed of it"
 
 
 def teeth_cautions(case: PairCase) -> tuple[ModelWarning, ...]:
