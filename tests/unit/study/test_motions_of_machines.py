@@ -16,7 +16,7 @@ from tribodyn.errors import InputError
 from tribodyn.nonlinear import bifurcation
 from tribodyn.study import read_case
 from tribodyn.study.studies.case_grid import moving, moving_at, settling_periods
-from tribodyn.study.studies.needs import STUDIES, needs_table, takes
+from tribodyn.study.studies.needs import STUDIES, needs_table, require_short, takes
 
 pytestmark = pytest.mark.filterwarnings("ignore::tribodyn.errors.ModelWarning")
 
@@ -131,6 +131,19 @@ def test_a_motion_settles_as_long_as_its_slowest_mode_decays(small: Any) -> None
     contacts = [replace(each, damping=0.0) for each in member.system.contacts]
     undamped = replace(member.system, damping=0.0 * member.system.damping, contacts=contacts)
     assert settling_periods(member._replace(system=undamped)) == 500
+
+
+def test_a_branch_with_too_many_derivatives_is_refused_with_a_remedy(
+    small: Any, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    require_short("continuation", 2432, 114)
+    require_short("bifurcation", 6528, 109)
+    with pytest.raises(InputError, match=r"would follow 3.1e\+08 derivatives"):
+        require_short("continuation", 6528, 109)
+    monkeypatch.setitem(STUDIES, "continuation", STUDIES["continuation"]._replace(most=1e4))
+    with pytest.raises(InputError, match="derivatives over each period") as caught:
+        td.continuation(small, between=("1200 rpm", "1234 rpm"), mesh="second")
+    assert "bifurcation, which needs none" in str(caught.value)
 
 
 def test_the_time_of_a_long_diagram_is_said_before_it_is_computed(

@@ -6,6 +6,7 @@ from :data:`STUDIES`.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any, NamedTuple
 
@@ -30,6 +31,7 @@ class Need(NamedTuple):
     kinds: tuple[str, ...] = KINDS  #: that have it; of a study about one mesh those of its pair
     why: str = ""  #: reason why the other kinds do not do
     of_mesh: bool = False  #: whether the study is about one mesh, which --mesh names
+    most: float = math.inf  #: values of the derivatives of a motion over a period at most
 
 
 _ANY = Need("a case")
@@ -38,11 +40,18 @@ _PLANE = Need("a pair of cylindrical gears with computed teeth", _CYLINDRICAL, "
 _PAIR = "the case of one pair of gears"
 _REXS = "Models of other programs are written of cylindrical gears with computed teeth"
 _MOTION = Need("a structure that moves", of_mesh=True)
+_DERIVATIVES = (
+    "Steps in a period of the clock times the square of the number of positions and velocities are "
+    "2e8 at most, for its derivatives"
+)
+_BRANCH = _MOTION._replace(why=_DERIVATIVES, most=2e8)
 
 #: What the studies need, by the names of their commands.
 STUDIES: dict[str, Need] = {
     **dict.fromkeys(("run", "sweep", "ensemble", "sobol", "study", "modes", "run-up"), _ANY),
-    **dict.fromkeys(("bifurcation", "continuation", "basins"), _MOTION),
+    "bifurcation": _MOTION,
+    "continuation": _BRANCH,
+    "basins": _MOTION,
     "lyapunov": _ANY,
     **dict.fromkeys(("harris", "losses", "film"), _TEETH),
     "relief": _PLANE._replace(why="Flanks of hypoid gears are relieved by their cutter"),
@@ -81,6 +90,18 @@ def require(study: str, case: AnyCase, where: Any = None) -> None:
     raise InputError(what, where or Argument("case"), why, remedy)
 
 
+def require_short(study: str, steps: int, coordinates: int) -> None:
+    """Refuse a motion whose derivatives over a period are too many for a study."""
+    need, values = STUDIES[study], steps * (2.0 * coordinates) ** 2
+    if values > need.most:
+        what = f"{study} would follow {values:.2g} derivatives over each period"
+        remedy = (
+            "Follow the motions with bifurcation, which needs none, or choose numbers of teeth "
+            "whose meshes come back earlier, fewer steps or a model of fewer coordinates"
+        )
+        raise InputError(what, Argument("case"), need.why, remedy)
+
+
 class MeshPair(NamedTuple):
     """A mesh of a case: its pair of gears, and the tables of both gears in the case."""
 
@@ -116,7 +137,7 @@ def motion_meshes(case: AnyCase) -> tuple[str, ...]:
 def study_meshes(study: str, case: AnyCase) -> tuple[str, ...]:
     """Meshes of a case that have what a study of one mesh needs."""
     parts: Any = case
-    if STUDIES[study] == _MOTION:
+    if STUDIES[study].what == _MOTION.what:
         return motion_meshes(case)
     names = mesh_names(case)
     if kind_of(case) in PAIRS:

@@ -20,7 +20,7 @@ from tribodyn.study.studies.case_grid import (
     moving,
     moving_at,
 )
-from tribodyn.study.studies.needs import mesh_in_motion, require
+from tribodyn.study.studies.needs import mesh_in_motion, require, require_short
 from tribodyn.study.studies.study_axes import ends_of
 
 if TYPE_CHECKING:
@@ -292,8 +292,11 @@ def continuation(
     pair = case if case.lumped else None
     with many_motions(case):
         every = partial(moving_at, case, over, name)
-        structures = {value: every(value) for value in (first, last)}
-        start, count = structures[first], steps or max(each.steps for each in structures.values())
+        start = every(first)
+        if pair is None:
+            period = (steps or start.steps) * start.system.cycles
+            require_short("continuation", period, start.system.size)
+        count = steps or max(start.steps, every(last).steps)
         same = over == "operation.speed" and pair is not None and contact_without_speed(pair)
         smooth = None if pair is not None else family_of(every, (first, last), count)
 
