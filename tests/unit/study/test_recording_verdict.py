@@ -31,11 +31,11 @@ def recorded(signal, unit: str = "m/s^2"):
     return analyse_signal(Recording({"acc": signal}, RATE, {"acc": unit}), "acc")
 
 
-def sound(lines, seed: int = 1) -> np.ndarray:
+def sound(lines, seed: int = 1, speed: float = 1.0) -> np.ndarray:
     """Both meshes with three harmonics and noise."""
     signal = np.random.default_rng(seed).normal(0.0, 0.3, TIME.size)
     for part in ("mesh first", "mesh second"):
-        mesh = frequency(lines, part, "GMF")
+        mesh = speed * frequency(lines, part, "GMF")
         for k in (1, 2, 3):
             signal += 3.0 / k * np.cos(2.0 * np.pi * k * mesh * TIME + k)
     return signal
@@ -138,6 +138,47 @@ def test_the_lines_follow_the_speed_of_the_recording(lines) -> None:
     analysis = analyse_signal(rig, "acc", speed=2.0 * np.pi * 50.0, teeth=23, mate_teeth=57)
     parts = [each.part for each in judge_recordings([analysis], lines).findings]
     assert any(part.startswith("bearing B, outer ring") for part in parts)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("speed", [0.968, 1.027])
+def test_a_speed_that_nobody_states_is_that_of_the_mesh_lines(lines, speed: float) -> None:
+    healthy = judge_recordings([recorded(sound(lines, speed=speed))], lines)
+    assert healthy.speed_ratio == pytest.approx(speed, rel=2e-4)
+    assert not [each for each in healthy.findings if each.part.startswith("bearing")]
+    rate = speed * 0.995 * frequency(lines, "bearing B", "BPFO")
+    damaged = judge_recordings([recorded(sound(lines, speed=speed) + struck(rate))], lines)
+    assert any(each.part.startswith("bearing B, outer ring") for each in damaged.findings)
+    assert not any("not known" in each for each in damaged.statements)
+
+
+def test_a_record_without_mesh_lines_says_that_its_speed_is_not_known(lines) -> None:
+    noise = np.random.default_rng(5).normal(0.0, 0.1, TIME.size)
+    turns = 2.0 * np.pi * frequency(lines, "shaft middle", "f(middle)")
+    verdict = judge_recordings([recorded(noise + 3.0 * np.cos(turns * TIME))], lines)
+    assert math.isnan(verdict.speed_ratio)
+    assert [each.part for each in verdict.findings] == ["shaft middle"]
+    assert "Speed: not known; that of the lines is taken." in verdict.statements
+
+
+@pytest.mark.parametrize("bearing", ["bearing C", "bearing D"])
+def test_turns_of_a_shaft_that_stands_out_nowhere_hide_no_bearing(lines, bearing) -> None:
+    """Impacts half a hertz, two lines, beside a high multiple of the turns of the slow shaft."""
+    turns, ring = frequency(lines, "shaft output", "f(output)"), frequency(lines, bearing, "BPFO")
+    rate = round(ring / turns) * turns + 0.5
+    assert abs(rate / ring - 1.0) < 0.02
+    findings = judge_recordings([recorded(sound(lines) + struck(rate, 4.0))], lines).findings
+    assert any(f"{bearing}, outer ring" in each.part for each in findings)
+
+
+@pytest.mark.parametrize(("size", "named"), [(0.04, False), (0.4, True)])
+def test_the_turns_of_a_slow_shaft_are_looked_at_below_ten_hertz(lines, size, named) -> None:
+    """Named where its velocity alone leaves zone A: 0.04 and 0.4 m/s^2 are 0.65 and 6.5 mm/s."""
+    turns = 2.0 * np.pi * frequency(lines, "shaft output", "f(output)")
+    assert turns < 2.0 * np.pi * 10.0
+    shaking = size * np.cos(turns * TIME) + np.random.default_rng(2).normal(0.0, 0.01, TIME.size)
+    findings = judge_recordings([recorded(shaking)], lines, limits="III").findings
+    assert ("shaft output" in [each.part for each in findings]) == named
 
 
 def test_the_figure_shows_severity_and_growth_of_the_lines() -> None:

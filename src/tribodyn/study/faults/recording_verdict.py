@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from contextlib import suppress
+from itertools import combinations
 from typing import NamedTuple
 
 import numpy as np
 
 from tribodyn.errors import Argument, InputError
-from tribodyn.measurement import SignalAnalysis
+from tribodyn.measurement import SignalAnalysis, mesh_speed
 from tribodyn.record import Record, fact, quantity, record
 from tribodyn.signals.envelope import envelope_spectrum
 from tribodyn.signals.spectrum import SignalSpectrum, spectrum
@@ -83,6 +85,8 @@ class RecordingVerdict(Record):
         Zone of the last recording, ``A`` to ``D``; empty without limits or velocity.
     findings : tuple of Finding
         Parts whose lines stand out in the last recording.
+    speed_ratio : float
+        Speed of the last recording over that of the lines [-]; NaN where it is not known.
     """
 
     velocity: Array = quantity("recording", unit="m/s")
@@ -91,11 +95,14 @@ class RecordingVerdict(Record):
     limits: tuple[float, ...] = ()
     zone: str = fact(default="")
     findings: tuple[Finding, ...] = ()
+    speed_ratio: float = fact(default=float("nan"))
 
     @property
     def statements(self) -> list[str]:
         """The verdict in sentences: severity, its trend, and each finding with its check."""
-        return [*self._severity(), *self._trend(), *map(_sentence, self.findings)]
+        known = bool(np.isfinite(self.speed_ratio)) or not self.findings
+        unknown = [] if known else ["Speed: not known; that of the lines is taken."]
+        return [*self._severity(), *self._trend(), *unknown, *map(_sentence, self.findings)]
 
     def _severity(self) -> Iterator[str]:
         now = 1e3 * float(self.velocity[-1])
@@ -142,8 +149,9 @@ def judge_recordings(
         Results of :func:`tribodyn.measurement.analyse_signal`, the oldest first; the last one is
         judged.
     lines : KinematicFrequencies, optional
-        Result of :func:`kinematic_frequencies` of the machine, at about the same speed. It is
-        scaled to the speed of each recording where the mesh frequency of that is known.
+        Result of :func:`kinematic_frequencies` of the machine, within 5 % of the same speed. It is
+        scaled to the speed of each recording: by its mesh frequency where that is known, else by
+        the mesh lines in its signal.
     limits : str or sequence of three float, optional
         Class of the machine in ISO 10816-1, ``"I"`` to ``"IV"``, or upper ends of the zones A, B
         and C [m/s], such as those agreed after ISO 20816-9.
@@ -163,7 +171,8 @@ def judge_recordings(
     five times above the median of an envelope spectrum about them, away from lines of shafts and
     meshes, in one of four octaves; several where their lines are as near. A gear is named if both
     first sidebands at its turns do so in the spectrum and have a tenth of the mesh, a shaft or
-    mesh if it holds half the mean square of the velocity in its band. Zones: ISO
+    mesh if it holds half the mean square of a velocity beyond zone A, from half the turns of the
+    slowest shaft up where these are below 10 Hz and from 10 Hz else. Zones: ISO
     10816-1:1995, table B.1, by class: I small machines up to 15 kW, II up to 75 kW, or 300 kW on
     special foundations, III large on rigid and IV on soft foundations.
 
@@ -190,9 +199,10 @@ def judge_recordings(
     zone = ""
     if ends and np.isfinite(velocity[-1]):
         zone = "ABCD"[int(np.searchsorted(ends, velocity[-1]))]
-    findings = () if lines is None else tuple(_findings(analyses, lines, velocity[-1]))
+    scales = [float("nan") if lines is None else _speed_ratio(each, lines) for each in analyses]
+    findings = () if lines is None else tuple(_findings(analyses, lines, scales, ends))
     rms, kurtosis = (np.array([n[key] for n in numbers]) for key in ("alternating_rms", "kurtosis"))
-    return RecordingVerdict(velocity, rms, kurtosis, ends, zone, findings)
+    return RecordingVerdict(velocity, rms, kurtosis, ends, zone, findings, scales[-1])
 
 
 def _ends(limits: str | Sequence[float] | None) -> tuple[float, ...]:
@@ -207,13 +217,13 @@ def _ends(limits: str | Sequence[float] | None) -> tuple[float, ...]:
     return ends
 
 
-def _velocity(analysis: SignalAnalysis) -> float:
+def _velocity(analysis: SignalAnalysis, lowest: float = _BAND[0]) -> float:
     """Rms of the velocity in the band of the severity [m/s]; NaN where it is not known."""
     power = {"m/s": 0, "m/s^2": 1}.get(analysis.unit)
     if power is None or 0.5 * analysis.sample_rate < _BAND[1]:
         return float("nan")
     lines = spectrum(analysis.signal, analysis.sample_rate, window="hann", scaling="density")
-    inside = (lines.frequency >= _BAND[0]) & (lines.frequency <= _BAND[1])
+    inside = (lines.frequency >= lowest) & (lines.frequency <= _BAND[1])
     squares = lines.amplitude[inside] / (2.0 * np.pi * lines.frequency[inside]) ** (2 * power)
     width = lines.frequency[1] - lines.frequency[0]
     return float(np.sqrt(squares.sum() * width))
@@ -239,10 +249,13 @@ def _line(lines: SignalSpectrum, frequency: float, within: float) -> _Line:
 
 
 def _findings(
-    analyses: Sequence[SignalAnalysis], lines: KinematicFrequencies, velocity: float
+    analyses: Sequence[SignalAnalysis],
+    lines: KinematicFrequencies,
+    ratios: Sequence[float],
+    ends: tuple[float, ...],
 ) -> Iterator[Finding]:
     """Parts whose lines stand out in the last recording, with those of the earlier ones."""
-    scales = [_speed_ratio(each, lines) for each in analyses]
+    scales = [float(np.nan_to_num(ratio, nan=1.0)) for ratio in ratios]
     yield from _impacts([_bands(each) for each in analyses], lines, scales)
     plain = [
         spectrum(n.signal - n.signal.mean(), n.sample_rate, window="hann", unit=n.unit)
@@ -250,13 +263,18 @@ def _findings(
     ]
     rows = list(zip(lines.part, lines.symbol, lines.frequency.tolist(), strict=True))
     carriers = {part: frequency for part, symbol, frequency in rows if symbol == "GMF"}
+    turns = [frequency for _, symbol, frequency in rows if _kind(symbol) == "f" and frequency > 0.0]
+    lowest = min(_BAND[0], 0.5 * scales[-1] * min(turns, default=_BAND[1]))
+    bands = {low: _velocity(analyses[-1], low) for low in (lowest, _BAND[0])}
     for part, symbol, frequency in rows:
         now, kind, evidence = frequency * scales[-1], _kind(symbol), ""
         if symbol.startswith("GMF - f("):
             carrier = carriers[part] * scales[-1]
             evidence = _sidebands(plain[-1], carrier, carrier - now)
         elif kind in ("f", "GMF"):
-            evidence = _dominance(plain[-1], now, velocity, analyses[-1].unit)
+            whole = bands[lowest if now < _BAND[0] else _BAND[0]]
+            if whole > min(ends, default=0.0):
+                evidence = _dominance(plain[-1], now, whole, analyses[-1].unit)
         if evidence:
             history = tuple(
                 _line(each, frequency * scale, _EXACT).amplitude
@@ -269,8 +287,9 @@ def _impacts(
     bursts: list[list[SignalSpectrum]], lines: KinematicFrequencies, scales: list[float]
 ) -> Iterator[Finding]:
     """Parts that strike: one finding for each rate, with all parts that it may belong to."""
-    exact, rates = _exact_lines(lines) * scales[-1], list(_rates(lines))
+    rates = list(_rates(lines))
     for band, of_band in enumerate(bursts[-1]):
+        exact = _exact_lines(lines, of_band, scales[-1])
         reach, peaks = _LOBE * float(of_band.frequency[1]), list[float]()
         clear: list[tuple[float, str]] = []
         for _, kind, rate in rates:
@@ -320,12 +339,19 @@ def _kind(symbol: str) -> str:
 
 
 def _speed_ratio(analysis: SignalAnalysis, lines: KinematicFrequencies) -> float:
-    """Speed of a recording over that of the lines, by the nearest mesh; 1 where it is unknown."""
-    meshes = [f for s, f in zip(lines.symbol, lines.frequency, strict=True) if s == "GMF"]
-    if analysis.mesh_frequency is None:
-        return 1.0
-    ratios = analysis.mesh_frequency / np.array(meshes)
-    return float(ratios[np.argmin(np.abs(np.log(ratios)))])
+    """Speed of a recording over that of the lines by its meshes; NaN where none is found."""
+    meshes = sorted({f for s, f in zip(lines.symbol, lines.frequency, strict=True) if s == "GMF"})
+    if analysis.mesh_frequency is not None:
+        ratios = analysis.mesh_frequency / np.array(meshes)
+        return float(ratios[np.argmin(np.abs(np.log(ratios)))])
+    seen = []
+    for frequency in meshes:
+        with suppress(InputError):  # a record that is too short, or sampled too slowly
+            seen.append(mesh_speed(analysis.signal, analysis.sample_rate, frequency).ratio)
+    ratios = np.array([ratio for ratio in seen if np.isfinite(ratio)])
+    if not ratios.size:
+        return float("nan")
+    return float(ratios[np.argmin(np.abs(ratios[:, None] - ratios).sum(axis=1))])
 
 
 def _bands(analysis: SignalAnalysis) -> list[SignalSpectrum]:
@@ -340,13 +366,23 @@ def _bands(analysis: SignalAnalysis) -> list[SignalSpectrum]:
     ]  # fmt: skip
 
 
-def _exact_lines(lines: KinematicFrequencies) -> Array:
-    """Frequencies of shafts and meshes with their harmonics and sidebands [Hz]."""
-    rows = list(zip(lines.symbol, lines.frequency.tolist(), strict=True))
+def _exact_lines(lines: KinematicFrequencies, envelope: SignalSpectrum, scale: float) -> Array:
+    """Frequencies of shafts and meshes with their harmonics, sidebands and beats [Hz].
+
+    Of a shaft all harmonics only where it stands out itself; it explains nothing else.
+    """
+    rows = [(s, f * scale) for s, f in zip(lines.symbol, lines.frequency.tolist(), strict=True)]
     turns = [f for symbol, f in rows if symbol.startswith("f(")]
     meshes = [k * f for symbol, f in rows if symbol == "GMF" for k in range(1, 6)]
     sides = [m + k * f for m in meshes for f in turns for k in (-2, -1, 0, 1, 2)]
-    return np.array([*(k * f for f in turns for k in range(1, 21)), *sides])
+    tones = [k * f for symbol, f in rows if symbol == "GMF" for k in range(1, 11)]
+    beats = [abs(first - second) for first, second in combinations(tones, 2)]
+    multiples = [
+        k * f
+        for f in turns
+        for k in range(1, 21 if _line(envelope, f, _EXACT).clear >= _CLEAR else 4)
+    ]
+    return np.array([*multiples, *sides, *beats])
 
 
 def _bursts(
@@ -355,7 +391,7 @@ def _bursts(
     """Rate of impacts and its evidence; empty without, or where a shaft or mesh explains it."""
     step = lines.frequency[1] - lines.frequency[0]
     first = _line(lines, frequency, slip)
-    if first.clear < _CLEAR or np.abs(exact - first.frequency).min(initial=np.inf) < _LOBE * step:
+    if first.clear < _CLEAR or np.abs(exact - first.frequency).min(initial=np.inf) <= step:
         return first.frequency, ""
     others = [_line(lines, k * first.frequency, 0.5 * _EXACT) for k in (2, 3)]
     clear = [first, *(each for each in others if each.clear >= _CLEAR)]
@@ -384,7 +420,7 @@ def _sidebands(lines: SignalSpectrum, mesh: float, turns: float) -> str:
 def _dominance(lines: SignalSpectrum, frequency: float, velocity: float, unit: str) -> str:
     """Evidence that one line holds most of the velocity; empty where it does not."""
     line, power = _line(lines, frequency, _EXACT), {"m/s": 0, "m/s^2": 1}.get(unit)
-    if power is None or not velocity > 0.0 or not _BAND[0] <= frequency <= _BAND[1]:
+    if power is None or not velocity > 0.0 or frequency > _BAND[1]:
         return ""
     size = line.amplitude / (2.0 * np.pi * frequency) ** power / np.sqrt(2.0)
     share = (size / velocity) ** 2
