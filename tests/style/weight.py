@@ -143,7 +143,7 @@ LINES: dict[str, int] = {
     "scope": 55,
     "signals": 1782,
     "stiffness": 5353,
-    "study": 19943,
+    "study": 19964,
     "surrogate": 767,
     "types": 8,
     "uncertainty": 289,
