@@ -100,7 +100,6 @@ __all__ = ["ANY", "FILES", "LINES", "import_circles", "lines_of_code", "measures
 #: study: a verdict in volts names what it lacks.
 #: study: check names keys without effect
 #: study: verdicts on recordings find their speed
-#: dynamics: bearings with a clearance over independent phases
 LINES: dict[str, int] = {
     "__init__": 105,
     "__main__": 3,
