@@ -13,6 +13,7 @@ looks at the record of the handler at every wait and when the threads end.
 
 from __future__ import annotations
 
+import ctypes
 import os
 import signal
 import threading
@@ -22,6 +23,7 @@ from concurrent.futures import Future, wait
 from contextlib import ExitStack, contextmanager, suppress
 from contextvars import copy_context
 from functools import cache
+from importlib.machinery import PathFinder
 from queue import SimpleQueue
 from types import FrameType, TracebackType
 from typing import Any, TypeVar
@@ -226,9 +228,15 @@ _blas_lock = threading.Lock()
 
 @cache
 def _blas() -> Any:
-    import scipy.linalg  # noqa: F401  (brings a library of its own, which has to be limited too)
+    import scipy
     from threadpoolctl import ThreadpoolController
 
+    # SciPy brings a library of its own, which has to be limited too; its package is slow to import.
+    module = PathFinder.find_spec("_fblas", [f"{scipy.__path__[0]}/linalg"])
+    try:
+        ctypes.CDLL(str(module and module.origin))
+    except OSError:
+        import scipy.linalg
     return ThreadpoolController()
 
 

@@ -1,6 +1,9 @@
-"""Array types that every part of the package uses."""
+"""Types that every part of the package uses."""
 
 from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -10,3 +13,7 @@ Index = NDArray[np.int64]
 Mask = NDArray[np.bool_]
 ComplexArray = NDArray[np.complex128]
 Texts = NDArray[np.str_]
+#: One number or an array of them.
+Numbers = float | Array
+#: Options of a model by name: numbers, texts, flags, as the model declares them.
+Options = Mapping[str, Any]

@@ -12,7 +12,7 @@ from numpy.typing import ArrayLike
 from tribodyn.checks import positive
 from tribodyn.errors import require_between, require_positive
 from tribodyn.gear import Material
-from tribodyn.types import Array
+from tribodyn.types import Array, Numbers
 
 
 @dataclass(frozen=True)
@@ -109,7 +109,7 @@ def hertz_line(
     return HertzLine(dry_half_width(load, radius, modulus), maximum, math.pi / 4.0 * maximum)
 
 
-def dry_half_width(load: Any, radius: Any, modulus: Any) -> Any:
+def dry_half_width(load: Numbers, radius: Numbers, modulus: Numbers) -> Any:
     """Half width of a line contact, see :func:`hertz_line`."""
     return np.sqrt(8.0 * load * radius / (math.pi * modulus))
 

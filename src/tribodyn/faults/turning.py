@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import fields, replace
 from functools import cached_property
 from hashlib import sha256
@@ -29,7 +29,7 @@ from tribodyn.stiffness.loaded.problem import (
 )
 from tribodyn.stiffness.loaded.ramps import ramps_about
 from tribodyn.stiffness.model import MODELS
-from tribodyn.types import Array, Index
+from tribodyn.types import Array, Index, Options
 
 #: Phases of a mesh cycle at which the teeth are solved, where the turns are not too many.
 _PHASES, _FEWEST = 256, 32
@@ -207,7 +207,7 @@ def turning_mesh(
     provider: str = "fe2d",
     extended_contact: bool = True,
     material: Material | None = None,
-    options: Mapping[str, Any] = NO_OPTIONS,
+    options: Options = NO_OPTIONS,
     phases: int | None = None,
 ) -> TurningMesh:
     """Solve the loaded tooth contact over whole turns.

@@ -12,9 +12,9 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from tribodyn.errors import ComputationError, require_between
 from tribodyn.types import Array
@@ -79,22 +79,22 @@ class Trochoid:
     def _excess(self) -> float:
         return self.stretch**2 - 1.0
 
-    def _width(self, normal_angle: Any) -> Any:
-        return np.sqrt(1.0 + self._excess * np.cos(normal_angle) ** 2)
+    def _width(self, normal_angle: ArrayLike) -> Array:
+        return np.asarray(np.sqrt(1.0 + self._excess * np.cos(normal_angle) ** 2))
 
-    def _reach(self, normal_angle: Any) -> Array:
+    def _reach(self, normal_angle: ArrayLike) -> Array:
         """Distance from the rolling point to the cutting point along the normal [m]."""
         height = self.tip_radius / self._width(normal_angle)
         return np.asarray(self.center_depth / np.sin(normal_angle) + height, dtype=float)
 
-    def radius(self, normal_angle: Any) -> Array:
+    def radius(self, normal_angle: ArrayLike) -> Array:
         """Radius of the fillet."""
         reach = self._reach(normal_angle)
         across = reach * np.cos(normal_angle)
         radius: Array = np.hypot(across, self.reference_radius - reach * np.sin(normal_angle))
         return radius
 
-    def half_tooth_angle(self, normal_angle: Any) -> Array:
+    def half_tooth_angle(self, normal_angle: ArrayLike) -> Array:
         """Angle between the tooth axis and the fillet."""
         reach = self._reach(normal_angle)
         offset = self.center_offset + (
@@ -107,7 +107,7 @@ class Trochoid:
         half: Array = math.pi / self.teeth - from_space + rolled / self.reference_radius
         return half
 
-    def squared_radius_slope(self, normal_angle: Any) -> Array:
+    def squared_radius_slope(self, normal_angle: ArrayLike) -> Array:
         """Derivative of the squared radius by the angle of the normal."""
         cube, reach = self._width(normal_angle) ** 3, self._reach(normal_angle)
         pull = self.reference_radius * self.tip_radius * (self.stretch**2 / cube) + (
@@ -140,18 +140,18 @@ class RootArc:
     end_angle: float  #: parameter at the flank [rad]
     undercuts: bool = False
 
-    def radius(self, normal_angle: Any) -> Array:
+    def radius(self, normal_angle: ArrayLike) -> Array:
         """Radius of the fillet."""
         out = self.center_radius + self.arc_radius * np.sin(normal_angle)
         return np.asarray(np.hypot(self.arc_radius * np.cos(normal_angle), out))
 
-    def half_tooth_angle(self, normal_angle: Any) -> Array:
+    def half_tooth_angle(self, normal_angle: ArrayLike) -> Array:
         """Angle between the tooth axis and the fillet."""
         out = self.center_radius + self.arc_radius * np.sin(normal_angle)
         across = self.arc_radius * np.cos(normal_angle)
         return np.asarray(self.center_angle - np.arctan2(across, out))
 
-    def squared_radius_slope(self, normal_angle: Any) -> Array:
+    def squared_radius_slope(self, normal_angle: ArrayLike) -> Array:
         """Derivative of the squared radius by the angle of the normal."""
         return np.asarray(2.0 * self.center_radius * self.arc_radius * np.cos(normal_angle))
 

@@ -2,15 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
-from typing import Any
 
 from tribodyn.errors import Argument, InputError
 from tribodyn.gear import Material
 from tribodyn.machine.fields import check_number, quoted
 from tribodyn.machine.section import STEEL, Section
 from tribodyn.model import REQUIRED, Model, Option, Registry, number
+from tribodyn.types import Options
 
 #: Positions on a shaft closer than this are one, and overlaps below it are rounding [m].
 SAME_PLACE = 1e-9
@@ -154,7 +154,7 @@ class CouplingModel(Model):
     source: str = ""
     meaning: str = ""
     papers: tuple[str, ...] = ()
-    options: Mapping[str, Any] = field(default_factory=dict)
+    options: Options = field(default_factory=dict)
 
 
 COUPLINGS: Registry[CouplingModel] = Registry("coupling", "tribodyn.coupling", CouplingModel)

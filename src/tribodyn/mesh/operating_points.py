@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from dataclasses import fields, replace
 from functools import partial
-from typing import Any, NamedTuple
+from typing import Any, NamedTuple, TypeVar
 
 import numpy as np
 
@@ -31,6 +31,9 @@ from tribodyn.types import Array
 
 #: A mesh table, and the warnings of its models.
 TableWithWarnings = tuple[MeshTable, list[ModelWarning]]
+
+
+T = TypeVar("T")
 
 
 class _Point(NamedTuple):
@@ -114,9 +117,9 @@ def _columns(pair: Gears, settings: ToothContact, points: Sequence[_Point]) -> d
 
 def _compute_rows(
     points: Sequence[_Point],
-    compute_together: Callable[[], Any] | None,
-    compute_row: Callable[[int], Any],
-) -> Any:
+    compute_together: Callable[[], T] | None,
+    compute_row: Callable[[int], T],
+) -> T:
     """Compute all rows in one call, or one by one where their warnings may differ."""
     if compute_together is not None:
         with collected() as warnings:
@@ -128,7 +131,8 @@ def _compute_rows(
         with collected() as warnings:
             row_results.append(compute_row(row))
         point.warnings.extend(warnings)
-    return _stacked(row_results)
+    stacked: T = _stacked(row_results)
+    return stacked
 
 
 def _row(bundle: Any, row: int) -> Any:

@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from types import SimpleNamespace
-from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -28,7 +26,7 @@ from tribodyn.progress import SILENT, Progress
 from tribodyn.record import Parts, Record, fact, figure_method, from_parts, quantity, record
 from tribodyn.stiffness import MODELS
 from tribodyn.stiffness.loaded.face_problem import has_slices
-from tribodyn.types import Array, Mask
+from tribodyn.types import Array, Mask, Options
 
 #: Positions for the models that have no such option.
 _POSITIONS = 30
@@ -113,11 +111,11 @@ def film_over_operation(
     *,
     material: Material,
     stiffness_model: str = "potential-energy",
-    stiffness_options: Mapping[str, Any] = NO_OPTIONS,
+    stiffness_options: Options = NO_OPTIONS,
     lubricant: Lubricant,
     composite_roughness: float = 0.0,
     film_model: str = "newton",
-    film_options: Mapping[str, Any] = NO_OPTIONS,
+    film_options: Options = NO_OPTIONS,
     pinion_speed: ArrayLike,
     pinion_torque: ArrayLike,
     progress: Progress = SILENT,
@@ -332,10 +330,10 @@ def comprehensive_stiffness(
     *,
     material: Material,
     stiffness_model: str = "potential-energy",
-    stiffness_options: Mapping[str, Any] = NO_OPTIONS,
+    stiffness_options: Options = NO_OPTIONS,
     lubricant: Lubricant,
     film_model: str = "newton",
-    film_options: Mapping[str, Any] = NO_OPTIONS,
+    film_options: Options = NO_OPTIONS,
     kind: str = "tangent",
     pinion_speed: ArrayLike,
     pinion_torque: ArrayLike,

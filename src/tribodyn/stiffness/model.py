@@ -6,7 +6,7 @@ interface, so the mesh table does not depend on the model.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any, NamedTuple
 
@@ -17,7 +17,7 @@ from tribodyn.gear import Material, SpurPair
 from tribodyn.model import Model, Registry, choice
 from tribodyn.stiffness.teeth.face_influence import FaceInfluence
 from tribodyn.stiffness.teeth.influence import GearInfluence
-from tribodyn.types import Array, Mask
+from tribodyn.types import Array, Mask, Options
 
 
 class MeshState(NamedTuple):
@@ -64,7 +64,7 @@ class StiffnessModel(Model):
 
     name: str
     function: Callable[..., Array]
-    options: Mapping[str, Any]
+    options: Options
     influence: Callable[..., GearInfluence | FaceInfluence] | None = None
     over_face: bool = False
     external_only: bool = False

@@ -17,7 +17,7 @@ from tribodyn.ehl.formulas.dimensionless_groups import (
     warn_outside_elastic_piezoviscous,
 )
 from tribodyn.errors import require_positive
-from tribodyn.types import Array
+from tribodyn.types import Array, Numbers
 
 
 def _power_law(
@@ -151,12 +151,12 @@ def moes_dimensionless_central(load: ArrayLike, material: ArrayLike) -> Array:
     return np.asarray(blended(*thin, *thick))[()]
 
 
-def isoviscous(rigid: Any, elastic: Any) -> Any:
+def isoviscous(rigid: Numbers, elastic: Numbers) -> Any:
     """Film between its asymptotes where pressure thickens no oil."""
     return (rigid ** (7 / 3) + elastic ** (7 / 3)) ** (3 / 7)
 
 
-def blended(rigid: Any, elastic: Any, rigid_thick: Any, elastic_thick: Any) -> Any:
+def blended(rigid: Numbers, elastic: Numbers, rigid_thick: Numbers, elastic_thick: Numbers) -> Any:
     """Film between its four asymptotes, isoviscous and piezoviscous."""
     s = (7.0 + 8.0 * np.exp(-2.0 * elastic / rigid)) / 5.0
     piezoviscous = (rigid_thick**-3.5 + elastic_thick**-3.5) ** (-2 / 7)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -111,7 +111,7 @@ def trace_curvature(
         return np.asarray(1.0 / (across * (np.tan(angle) + bent)))
 
 
-def _excess(cones: Any, pitch_input: PitchInput) -> Array:
+def _excess(cones: PitchCones, pitch_input: PitchInput) -> Array:
     """Limit curvature of cones less that of the trace of their teeth."""
     wheel = (each[1] for each in (cones.pitch_angle, cones.spiral_angle, cones.cone_distance))
     return np.asarray(cones.limit_curvature - trace_curvature(pitch_input, *wheel))
@@ -128,7 +128,7 @@ def limit_pressure_tangent(
     )
 
 
-def _cones_at(offset_angle: ArrayLike, pitch_input: PitchInput) -> Any:
+def _cones_at(offset_angle: ArrayLike, pitch_input: PitchInput) -> PitchCones:
     """Cones for pinion offset angles in the axial plane: clause 6.3.2; NaN where there are none."""
     eta, ratio, offset = np.asarray(offset_angle), pitch_input.ratio, pitch_input.offset
     radius, wanted = pitch_input.mean_radius_wheel, math.tan(pitch_input.mean_spiral_angle_pinion)
@@ -164,7 +164,7 @@ def _cones_at(offset_angle: ArrayLike, pitch_input: PitchInput) -> Any:
     return PitchCones(pitches, spirals, distances, plane, limit, curvature)  # type: ignore[arg-type]
 
 
-def _possible(cones: Any) -> Mask:
+def _possible(cones: PitchCones) -> Mask:
     """Whether cones open towards each other and their teeth are inclined by less than 90 deg."""
     finite = np.isfinite(cones.limit_curvature)
     angles = (*cones.pitch_angle, *cones.spiral_angle)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import fields, replace
 from typing import TYPE_CHECKING, Any, TypeVar
@@ -21,7 +21,7 @@ from tribodyn.mesh.columns import FILM_COLUMNS
 from tribodyn.mesh.face_lines import slice_count
 from tribodyn.mesh.table import MeshTable
 from tribodyn.model import NO_OPTIONS
-from tribodyn.types import Array, Mask
+from tribodyn.types import Array, Mask, Options
 
 if TYPE_CHECKING:
     from tribodyn.ehl import RoughnessProfile, TransientLineContact
@@ -36,7 +36,7 @@ def film_columns(
     lubricant: Lubricant,
     *,
     common_face_width: float = 1.0,
-    film_options: Mapping[str, Any] = NO_OPTIONS,
+    film_options: Options = NO_OPTIONS,
 ) -> dict[str, Array]:
     """Films of the loaded contacts, as far as the model gives them; each contact separately.
 
@@ -144,7 +144,7 @@ def warn_of_loaded(compute: Callable[[], Answer], again: Callable[[], object]) -
 
 
 def friction_by_law(
-    law: str, contact: TribologicalContact, options: Mapping[str, object]
+    law: str, contact: TribologicalContact, options: Options
 ) -> Array | FrictionParts:
     """Friction of every contact; warn where a real part of the load is outside of the law."""
     load = np.asarray(contact.load_per_width)

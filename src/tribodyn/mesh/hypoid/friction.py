@@ -2,10 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import field
 from types import SimpleNamespace
-from typing import Any
 
 import numpy as np
 
@@ -23,7 +21,7 @@ from tribodyn.mesh.sharing import ToothContact
 from tribodyn.mesh.table import MeshTable
 from tribodyn.model import NO_OPTIONS
 from tribodyn.record import Record, fact, figure_method, from_parts, quantity, record
-from tribodyn.types import Array, Mask
+from tribodyn.types import Array, Mask, Options
 
 _PHASES, _CELLS = ("phase",), ("phase", "pair", "cell")
 
@@ -156,9 +154,9 @@ def hypoid_friction(
     lubricant: Lubricant,
     composite_roughness: float,
     friction_law: str = "mixed-ehl",
-    friction_options: Mapping[str, Any] = NO_OPTIONS,
+    friction_options: Options = NO_OPTIONS,
     film_model: str = ELLIPTICAL,
-    film_options: Mapping[str, Any] = NO_OPTIONS,
+    film_options: Options = NO_OPTIONS,
     entrainment: str = "contact",
 ) -> HypoidFriction:
     """Film and friction in every cell of a hypoid pair under load.

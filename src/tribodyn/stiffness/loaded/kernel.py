@@ -189,6 +189,18 @@ def _total_force(
 
 
 @nb.njit(**_INNER)
+def _least(gaps: Array) -> float:
+    """Smallest gap of all slices; NaN if there is one."""
+    # Sums and minima of NumPy are slow to compile, and bring SciPy where compiled code is loaded.
+    least = gaps[0, 0]
+    for s in range(gaps.shape[0]):
+        for i in range(gaps.shape[1]):
+            if gaps[s, i] < least or gaps[s, i] != gaps[s, i]:
+                least = gaps[s, i]
+    return float(least)
+
+
+@nb.njit(**_INNER)
 def _approach(
     C: Array,
     A: Array,
@@ -204,12 +216,15 @@ def _approach(
     sums: Array,
 ) -> tuple[float, int]:
     """Approach at which all slices together carry ``total``, by safeguarded Newton steps."""
-    n, low, high = A.size, gaps.min(), np.inf
+    n, low, high = A.size, _least(gaps), np.inf
     delta = start
     if not delta > low:
         widest = 0.0
         for i in range(n):
-            widest = max(widest, width[:, i].sum())
+            across = 0.0
+            for each in width[:, i]:
+                across += each
+            widest = max(widest, across)
         delta = low + total / widest * (C[0, 0] + A[0])
     for _ in range(_OUTER_STEPS):
         status = _total_force(n, C, A, B, gaps, width, delta, f, a, b, place, sums)
@@ -230,7 +245,7 @@ def _approach(
             low = delta
         new = delta - excess / sums[1] if sums[1] > 0.0 else np.inf
         if not low < new < high:
-            new = 0.5 * (low + high) if high < np.inf else delta + 2.0 * (delta - gaps.min())
+            new = 0.5 * (low + high) if high < np.inf else delta + 2.0 * (delta - _least(gaps))
         if new == delta:
             return delta, 0
         delta = new
@@ -325,7 +340,7 @@ def _build(digest: str) -> tuple[Any, Any, Any]:
                 for j in range(n):
                     alone[j] = gaps[p, 0, j]
                 alone[i] = _APART
-                low, high = gaps[p, 0].min(), most[p]
+                low, high = _least(gaps[p]), most[p]
                 pickup[p, i] = min(low, high)
                 if not low < high or low == gaps[p, 0, i]:
                     continue
