@@ -180,7 +180,7 @@ _LONG = {
     (command, name)
     for command in ("basins", "bifurcation", "continuation", "lyapunov")
     for name in ("planetary-stage", "two-stage-helical", "two-stage-spur", "wind-turbine-gearbox")
-    if command != "bifurcation" or name in ("planetary-stage", "wind-turbine-gearbox")
+    if command in ("basins", "continuation") or name == "wind-turbine-gearbox"
 }
 
 
