@@ -18,7 +18,7 @@ from pathlib import Path
 from race import arguments
 from tribodyn.interrupt import alone
 from tribodyn.variants import read_study, run_study
-from tribodyn.variants.members import Plan
+from tribodyn.variants.compute import Plan
 
 STUDY = """
 case = "fzg-roughness"

@@ -8,13 +8,13 @@ import secrets
 import shutil
 import threading
 import zlib
-from collections.abc import Mapping
 from pathlib import Path
 from typing import Any, BinaryIO
 
 from tribodyn.aliases import old_module
 from tribodyn.errors import ComputationError, InputError
 from tribodyn.files import absolute_target, cannot_write, lock
+from tribodyn.types import ByName, Tree
 
 __all__ = ["NAME", "Checkpoints", "read_lines"]
 
@@ -43,12 +43,12 @@ class Checkpoints:
     ) -> None:
         self.target, self.anew, self.inside = target, anew, inside
         self.folder: Path | None = None
-        self._earlier: dict[str, Any] = {}
+        self._earlier: Tree = {}
         self._descriptor, self._stored_new = -1, False
         self._file: BinaryIO | None = None
         self._writing = threading.Lock()
 
-    def begin(self, identity: Mapping[str, Any]) -> Checkpoints:
+    def begin(self, identity: ByName) -> Checkpoints:
         """Open the checkpoints of a study; runs that the same study has finished are loaded."""
         if self.target is None:
             return self
@@ -76,7 +76,7 @@ class Checkpoints:
                 return
             os.close(descriptor)
 
-    def _open(self, folder: Path, identity: dict[str, Any]) -> None:
+    def _open(self, folder: Path, identity: Tree) -> None:
         path = folder / NAME
         lines, size = read_lines(path)
         if lines and lines[0] != identity:
@@ -96,7 +96,7 @@ class Checkpoints:
         """Number of runs that an earlier process has finished."""
         return len(self._earlier)
 
-    def all(self) -> dict[str, Any]:
+    def all(self) -> Tree:
         """All runs that an earlier process has finished, by name."""
         return dict(self._earlier)
 
@@ -110,7 +110,7 @@ class Checkpoints:
             self._write({"name": name, "value": value})
             self._stored_new = True
 
-    def _write(self, line: Mapping[str, Any]) -> None:
+    def _write(self, line: ByName) -> None:
         text = json.dumps(line, default=lambda array: array.tolist()).encode()
         with self._writing:
             if self._file is None:  # closed: a thread is still running after an interruption
@@ -171,7 +171,7 @@ def read_lines(path: Path) -> tuple[list[Any], int]:
     return lines, size
 
 
-def _other(target: str, stored: Any, requested: Mapping[str, Any]) -> tuple[str, str, str, str]:
+def _other(target: str, stored: Any, requested: ByName) -> tuple[str, str, str, str]:
     """Message for an unfinished study in a folder that differs from the requested one."""
     differ = [
         difference

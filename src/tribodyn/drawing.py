@@ -27,6 +27,7 @@ import numpy as np
 from tribodyn.arguments.reading import checked
 from tribodyn.errors import InputError, did_you_mean
 from tribodyn.model import Registry
+from tribodyn.types import Tree
 
 Writer = TypeVar("Writer", bound=Callable[..., Path])
 
@@ -51,9 +52,9 @@ class Need:
 class Sketch:
     """Figure as plain data; plotly is imported only if its figure object is requested."""
 
-    data: list[dict[str, Any]]
-    layout: dict[str, Any]
-    frames: list[dict[str, Any]] = field(default_factory=list)
+    data: list[Tree]
+    layout: Tree
+    frames: list[Tree] = field(default_factory=list)
 
     def figure(self) -> Any:
         """Figure object of plotly, which validates the data."""

@@ -19,6 +19,7 @@ from types import MappingProxyType
 from typing import TYPE_CHECKING, Any, Generic, TypeVar
 
 from tribodyn.errors import InputError, did_you_mean
+from tribodyn.types import ByName
 
 if TYPE_CHECKING:
     from tribodyn.nomenclature import Quantity
@@ -28,7 +29,7 @@ Names = Callable[[], list[str]]
 
 #: The default of an option that must be given, and what no options are.
 REQUIRED: Any = ...
-NO_OPTIONS: Mapping[str, Any] = MappingProxyType({})
+NO_OPTIONS: ByName = MappingProxyType({})
 
 
 @dataclass(frozen=True)
@@ -217,7 +218,7 @@ class Model:
     source: str
     meaning: str
     papers: tuple[str, ...]
-    options: Mapping[str, Any]
+    options: ByName
     declared: Mapping[str, Option]
     case_options: Mapping[str, Option]  #: those of them that are keys of the case file
 
@@ -225,7 +226,7 @@ class Model:
         """Separate options from defaults."""
         self.declare(self.options)
 
-    def declare(self, options: Mapping[str, Any]) -> None:
+    def declare(self, options: ByName) -> None:
         """Separate the options from their defaults."""
         declared = {name: _declared(option) for name, option in options.items()}
         defaults = {n: None if o.required else o.default for n, o in declared.items()}

@@ -32,6 +32,7 @@ from tribodyn.drawing import draw
 from tribodyn.errors import Argument, InputError, did_you_mean
 from tribodyn.files import atomic_write, check_new
 from tribodyn.nomenclature import QUANTITIES
+from tribodyn.types import Tree
 from tribodyn.validated_files import write_dataset
 
 T = TypeVar("T")
@@ -97,9 +98,9 @@ def from_parts(kind: type[T], /, *parts: object, **values: Any) -> T:
 class Parts(NamedTuple):
     """Variables, coordinates and attributes of a data set."""
 
-    variables: dict[str, Any]
-    coordinates: dict[str, Any]
-    attributes: dict[str, Any]
+    variables: Tree
+    coordinates: Tree
+    attributes: Tree
 
     def over(self, names: tuple[str, str], units: tuple[str, str]) -> Parts:
         """Rename the dimensions ``first`` and ``second``, and set their units."""
@@ -303,7 +304,7 @@ def default_table(data: Any, over: str = "") -> Any:
         remedy = did_you_mean(over, firsts, "Choose one of these")
         raise InputError(f'no variable over "{over}"', Argument("over"), f"It has {listed}", remedy)
     over = over or max(dict.fromkeys(firsts), key=lambda dim: (firsts.count(dim), data.sizes[dim]))
-    columns: dict[str, Any] = {}
+    columns: Tree = {}
     units: dict[str, str] = {}
     left_out = []
     for name, array in data.data_vars.items():

@@ -21,7 +21,7 @@ import numpy as np
 
 from tribodyn.errors import InputError
 from tribodyn.interrupt import deferred
-from tribodyn.types import Array
+from tribodyn.types import Array, ByName, Tree
 
 if TYPE_CHECKING:
     import xarray
@@ -96,9 +96,9 @@ def csv_text(rows: Iterable[Iterable[Any]]) -> str:
 class _Content(NamedTuple):
     """Content of a netCDF file: variables with dimensions and attributes, and global attributes."""
 
-    variables: dict[str, tuple[tuple[str, ...], Array, Mapping[str, Any]]]
+    variables: dict[str, tuple[tuple[str, ...], Array, ByName]]
     coordinates: set[str]
-    attributes: Mapping[str, Any]
+    attributes: ByName
 
 
 def _content(data: Any) -> _Content:
@@ -107,7 +107,7 @@ def _content(data: Any) -> _Content:
         dataset = data.to_dataset() if hasattr(data, "to_dataset") else data
         variables = {str(n): (v.dims, v.values, v.attrs) for n, v in dataset.variables.items()}
         return _Content(variables, set(map(str, dataset.coords)), dataset.attrs)
-    columns: dict[str, Any] = {}
+    columns: Tree = {}
     for name, entry in {**data.variables, **data.coordinates}.items():
         # The values of an axis may come without dimensions.
         dims, values, *attributes = entry if isinstance(entry, tuple) else (name, entry)
@@ -162,7 +162,7 @@ def _write(content: _Content, path: str | PathLike[str] | io.BytesIO) -> None:
         file.attrs[_ORIGIN] = np.bytes_(f"{writer},tribodyn={_digest(content)}")
 
 
-def _with_coordinates(content: _Content, sizes: Mapping[str, int]) -> dict[str, dict[str, Any]]:
+def _with_coordinates(content: _Content, sizes: Mapping[str, int]) -> dict[str, Tree]:
     """Attributes of all variables and, under "", of the file, with the names of coordinates."""
     auxiliary = {name for name in content.coordinates if name not in sizes}
     unreferenced, attributes = set(auxiliary), {"": dict(content.attributes)}
@@ -179,11 +179,11 @@ def _with_coordinates(content: _Content, sizes: Mapping[str, int]) -> dict[str, 
     return attributes
 
 
-def _put(file: Any, name: str, values: Array, attributes: Mapping[str, Any]) -> Any:
+def _put(file: Any, name: str, values: Array, attributes: ByName) -> Any:
     """Write a variable with its attributes; an empty axis is unlimited, as netCDF has it."""
     import h5py
 
-    kind, options = values.dtype.kind, dict[str, Any]()
+    kind, options = values.dtype.kind, Tree()
     if kind in "OU":
         values, options["dtype"] = values.astype(object), h5py.string_dtype()
     elif kind == "b":
@@ -199,7 +199,7 @@ def _put(file: Any, name: str, values: Array, attributes: Mapping[str, Any]) -> 
     return variable
 
 
-def _put_attributes(item: Any, attributes: Mapping[str, Any]) -> None:
+def _put_attributes(item: Any, attributes: ByName) -> None:
     """Write attributes, numbers as arrays of one."""
     for key, value in attributes.items():
         number = np.isscalar(value) and np.asarray(value).dtype.kind not in "SU"

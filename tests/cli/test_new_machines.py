@@ -9,7 +9,7 @@ import pytest
 
 import tribodyn as td
 from tribodyn.cli import call
-from tribodyn.study.parts_reference import STARTS, machine_keys, machine_tables
+from tribodyn.study.machine_tables import STARTS, machine_keys, machine_tables
 
 
 @pytest.mark.parametrize("kind", STARTS)

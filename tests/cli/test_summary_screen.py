@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from tribodyn.cli import call
-from tribodyn.cli.summary_screen import screen
+from tribodyn.cli.commands.run_command import screen
 from tribodyn.study import SUMMARY
 from tribodyn.study.pipeline.summary_figures import figure_of, is_chief, part_figures
 

@@ -18,7 +18,7 @@ from tribodyn.study.case.reference import reference_tables, start_toml
 from tribodyn.study.case.section import Table
 from tribodyn.study.case.values import Term, find_term, listed_terms
 from tribodyn.study.faults.kinds import kind_table
-from tribodyn.study.parts_reference import machine_tables
+from tribodyn.study.machine_tables import machine_tables
 from tribodyn.study.pipeline.citations import bibliography
 from tribodyn.study.studies.needs import needs_table
 

@@ -20,7 +20,7 @@ from tribodyn.study import read_case
 from tribodyn.study.case.checks import case_options
 from tribodyn.study.case.provenance import derived_values
 from tribodyn.study.case.reference import case_keys, reference_tables, start_toml
-from tribodyn.study.parts_reference import machine_tables
+from tribodyn.study.machine_tables import machine_tables
 
 _ROW = r"^\| `([\w-]+)` \| (.*) \|$"
 _INERTIAS = ("mass", "moment_of_inertia")

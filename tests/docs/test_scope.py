@@ -14,7 +14,7 @@ from tribodyn.cookbook import write_skill
 from tribodyn.scope import PROGRAMS, features, not_modelled, program_table, statement
 from tribodyn.study.case.reference import case_keys
 from tribodyn.study.case.values import find_term, listed_terms
-from tribodyn.study.parts_reference import machine_keys
+from tribodyn.study.machine_tables import machine_keys
 
 MODELLED = [each for each in features() if each.modelled]
 MISSING = [each for each in features() if not each.modelled]

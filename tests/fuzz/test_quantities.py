@@ -18,7 +18,7 @@ from fuzz.public_calls import methods, parameters, public, working_calls
 from fuzz.test_arguments import call, quietly
 from registries import as_before
 from tribodyn import load_case
-from tribodyn.arguments.quantities import angle_power
+from tribodyn.arguments.annotations import angle_power
 from tribodyn.arguments.reading import _unit
 from tribodyn.contact import hertz_line
 from tribodyn.drawing import Drawing

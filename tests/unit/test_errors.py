@@ -6,7 +6,6 @@ import warnings
 import numpy as np
 import pytest
 
-from tribodyn.checks import require_flag, require_number, require_whole
 from tribodyn.dynamics import Resonance
 from tribodyn.errors import (
     Argument,
@@ -22,6 +21,7 @@ from tribodyn.errors import (
     require_positive,
     warn,
 )
+from tribodyn.nomenclature import require_flag, require_number, require_whole
 
 
 def test_problem_reads_as_one_paragraph() -> None:

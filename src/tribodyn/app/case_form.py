@@ -15,6 +15,7 @@ from tribodyn.study.case.reference import choice_meanings, explanations, start_t
 from tribodyn.study.case.section import Section, Table, table_in
 from tribodyn.study.machine.tables import SHARED
 from tribodyn.study.pipeline.citations import sources_of
+from tribodyn.types import ByName, Tree
 from tribodyn.units import UnitProblemError, convert, split, usual_units
 
 #: Typed text by key that is not part of the case yet.
@@ -60,7 +61,7 @@ def essential() -> frozenset[str]:
 
 def field_of(
     key: str, option: Option, text: str = "", default: object = None, unit: str = ""
-) -> dict[str, Any]:
+) -> Tree:
     """Data of one form field: ``text`` as typed, ``default`` in SI for an empty field."""
     units = usual_units(option.unit) if option.unit else []
     if option.display_unit and option.display_unit not in units:
@@ -143,7 +144,7 @@ class _Place(NamedTuple):
 
     key: str
     section: type[Section]
-    data: Mapping[str, Any]
+    data: ByName
     meaning: str
 
     @property
@@ -167,7 +168,7 @@ class CaseForm:
         #: Pair of gears whose models stand for those of all meshes.
         self._pair = case if case.lumped else next((pair for _, pair, _ in pairs), None)
 
-    def groups(self) -> list[dict[str, Any]]:
+    def groups(self) -> list[Tree]:
         """All tables with their fields: the essential ones first, the others collapsed."""
         root = _Place("", self.case.root, self.case.user_input.data, "")
         top = [self._group(root, []), *map(self._table_group, self._inside(root))]
@@ -219,12 +220,12 @@ class CaseForm:
             if option.kind != "list" and not self._idle(key := place.inside(name)):
                 yield key, option
 
-    def _table_group(self, place: _Place) -> dict[str, Any]:
+    def _table_group(self, place: _Place) -> Tree:
         """A table with the tables in it."""
         inner = map(self._table_group, self._inside(place))
         return self._group(place, [group for group in inner if _is_filled(group)])
 
-    def _group(self, place: _Place, inner: list[dict[str, Any]]) -> dict[str, Any]:
+    def _group(self, place: _Place, inner: list[Tree]) -> Tree:
         key, selector = place.key, place.section.selector
         fields = [(name, self._field(name, option)) for name, option in self._options(place)]
         chosen = f"{key}.{selector}" if selector else ""
@@ -244,7 +245,7 @@ class CaseForm:
             "groups": inner,
         }
 
-    def _field(self, key: str, option: Option) -> dict[str, Any]:
+    def _field(self, key: str, option: Option) -> Tree:
         default = self._effective.get(key)
         default = self._derived.get(key, self._of_pair(key)) if default is None else default
         if default is None and not option.required:

@@ -19,6 +19,8 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import IO, Any
 
+from tribodyn.types import ByName, Tree
+
 #: Limits of concurrent and of waiting computations.
 _AT_A_TIME, _WAITING = 2, 12
 #: Characters of a progress message, and of the error stream, that are read.
@@ -34,7 +36,7 @@ class Job:
     number: int
     kind: str
     title: str
-    order: Mapping[str, Any]
+    order: ByName
     folder: Path
     case: Any = None  #: that is computed
     state: str = "waiting"  #: then "running", and one of ``ENDED``
@@ -42,7 +44,7 @@ class Job:
     done: int = 0
     total: int | None = None
     started: float = field(default_factory=time.monotonic)
-    content: dict[str, Any] = field(default_factory=dict)  #: of the page
+    content: Tree = field(default_factory=dict)  #: of the page
     saved: bool = False  #: whether its directory of results is complete
     problems: list[str] = field(default_factory=list)
     version: int = 0  #: increases with every message
@@ -82,7 +84,7 @@ class _Process:
             command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=self._errors
         )
 
-    def order(self, order: Mapping[str, Any]) -> None:
+    def order(self, order: ByName) -> None:
         """Send the order to the process."""
         assert self._process.stdin is not None
         self._process.stdin.write(json.dumps(order).encode() + b"\n")

@@ -13,6 +13,7 @@ from tribodyn.app.studies import STUDIES, offered
 from tribodyn.errors import InputError, TribodynError, collected
 from tribodyn.report.figure_blocks import block_of_figure
 from tribodyn.study.studies.needs import PAIRS, kind_of
+from tribodyn.types import Tree
 
 if TYPE_CHECKING:
     from tribodyn.app.jobs import Job
@@ -52,7 +53,7 @@ def button(text: object, do: str, of: str = "", **more: object) -> html.Button:
     return html.Button(text, type="button", **{"data-do": do, "data-of": of, **data}, **plain)
 
 
-def graph(name: str, figure: dict[str, Any], title: str) -> html.Div:
+def graph(name: str, figure: Tree, title: str) -> html.Div:
     """Figure with a label for screen readers."""
     height = figure["layout"].get("height", 420)
     plot = dcc.Graph(figure=figure, config=_CONFIG, id=name, style={"height": f"{height}px"})
@@ -242,7 +243,7 @@ def _topic_tab(name: str, chosen: str) -> html.Button:
     return button(name, "topic", name, role="tab", aria_selected=str(name == chosen).lower())
 
 
-def _overview(content: dict[str, Any]) -> list[Any]:
+def _overview(content: Tree) -> list[Any]:
     """Cards, statements and warnings at the top of a result."""
     return [
         *([cards(content["cards"])] if content.get("cards") else []),
@@ -251,7 +252,7 @@ def _overview(content: dict[str, Any]) -> list[Any]:
     ]
 
 
-def _topics(content: dict[str, Any]) -> dict[str, list[Any]]:
+def _topics(content: Tree) -> dict[str, list[Any]]:
     """Overview, figures by topic, and tables of a result."""
     blocks = content.get("blocks", [])
     figures = [block for block in blocks if not block["missing"]]
@@ -267,7 +268,7 @@ def _topics(content: dict[str, Any]) -> dict[str, list[Any]]:
     return topics
 
 
-def _part(job: Job, part: dict[str, Any]) -> html.Section:
+def _part(job: Job, part: Tree) -> html.Section:
     if "rows" in part:
         inner = [html.H3(part["heading"]), table(part["head"], part["rows"])]
         return html.Section(inner, className="block")

@@ -22,6 +22,7 @@ from tribodyn.app.study_functions import (
 from tribodyn.cases.catalogue import cases
 from tribodyn.cases.load import load_case
 from tribodyn.errors import TribodynError, collected
+from tribodyn.types import Tree
 
 if TYPE_CHECKING:
     from tribodyn.app.jobs import Job
@@ -127,7 +128,7 @@ def _call(function: str, *arguments: object, **options: object) -> str:
     return f"{function}({', '.join(['case', *map(repr, arguments), *stated])})"
 
 
-def _operation(values: Values) -> dict[str, Any]:
+def _operation(values: Values) -> Tree:
     return {key: in_values(key, values[key]) for key in ("torque", "speed") if values[key]}
 
 

@@ -26,6 +26,7 @@ from tribodyn.app.session import TabSession, initial_case, number_of
 from tribodyn.app.workspace import Workspace
 from tribodyn.errors import InputError, TribodynError
 from tribodyn.report.html import text_of
+from tribodyn.types import Tree
 
 _PARTS = ("form", "rail", "tools", "bench", "notice", "title")
 #: Content security policy of a report, which is a self-contained page without requests.
@@ -294,7 +295,7 @@ _ACTS: dict[str, Callable[[TabSession, str, str], None]] = {
 }
 
 
-def _versions(desk: TabSession) -> dict[str, Any]:
+def _versions(desk: TabSession) -> Tree:
     """Version of each part of the page, which changes with its content."""
     job = desk.job_in_view
     jobs = [[j.number, j.state] for j in desk.all_jobs()]

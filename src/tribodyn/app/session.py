@@ -24,6 +24,7 @@ from tribodyn.cases.load import load_case
 from tribodyn.errors import InputError, TribodynError, collected
 from tribodyn.model import Option
 from tribodyn.study.result_comparison import differing
+from tribodyn.types import ByName, Tree
 from tribodyn.units import UnitProblemError, format_quantity, parse, split
 from tribodyn.validated_files import plain_number
 
@@ -44,7 +45,7 @@ class Edited(NamedTuple):
 
     opened: Any
     file: str  #: name in the folder; empty for a built-in or a new case
-    changes: tuple[Mapping[str, Any], ...] = ()
+    changes: tuple[ByName, ...] = ()
 
     def follows(self, other: Edited | None) -> bool:
         """Whether it is another state with further changes."""
@@ -94,7 +95,7 @@ class TabSession:
         """The case in the form, as the script makes it."""
         return self._made
 
-    def _change(self, changes: Mapping[str, Any]) -> None:
+    def _change(self, changes: ByName) -> None:
         """Change the case; one step of the script takes edits as long as it gives the same case."""
         with collected():
             case = self.case.replace(changes, by=_BY)
@@ -150,10 +151,10 @@ class TabSession:
         self._acted = max(number, self._acted)
         return newer
 
-    def forms(self) -> dict[str, Any]:
+    def forms(self) -> Tree:
         """The forms of the page as data."""
         form = self.form
-        form_data: dict[str, Any] = {"case": {"groups": form.groups(), "faults": self.faults}}
+        form_data: Tree = {"case": {"groups": form.groups(), "faults": self.faults}}
         if self.study:
             keys = numeric_keys(form.options())
             form_data["study"] = form_of(self.study, self.values[self.study], self.case, keys)
@@ -223,7 +224,7 @@ class TabSession:
 
     def _check_typed(self, options: Mapping[str, Option]) -> None:
         """Check the case with all typed values; if valid, it replaces the current case."""
-        changes: dict[str, Any] = {}
+        changes: Tree = {}
         self.faults = []
         for key, text in self.typed.items():
             try:

@@ -8,15 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from tribodyn.app.case_form import field_of
-from tribodyn.app.study_functions import (
-    FUNCTIONS,
-    MEASURED,
-    RANGE,
-    WRITERS,
-    Shown,
-    Values,
-    shown,
-)
+from tribodyn.app.study_functions import FUNCTIONS, MEASURED, RANGE, WRITERS, Shown, Values, shown
 from tribodyn.errors import InputError
 from tribodyn.model import REQUIRED, Option, choice, file_path, integer, number, text
 from tribodyn.nomenclature import GEARS
@@ -25,7 +17,8 @@ from tribodyn.study.case.values import FaultError, Plain, read_value
 from tribodyn.study.mesh_inputs import PAIR_MESH
 from tribodyn.study.studies.needs import STUDIES as NEEDS
 from tribodyn.study.studies.needs import study_meshes, takes
-from tribodyn.study.studies.range_syntax import toml_value
+from tribodyn.study.studies.study_axes import toml_value
+from tribodyn.types import Tree
 
 if TYPE_CHECKING:
     from tribodyn.app.workspace import Workspace
@@ -52,7 +45,7 @@ class Study:
 
     def read(self, texts: Mapping[str, str]) -> Values:
         """Check the typed values."""
-        values: dict[str, Any] = {}
+        values: Tree = {}
         problems = []
         for name, option in self.options.items():
             values[name] = text = texts.get(name) or default_of(option)
@@ -282,7 +275,7 @@ def _listed(kind: str, case: AnyCase) -> dict[str, tuple[str, ...]]:
     return {**listed, **({"sensor": sensors_of(case).names} if kind == "recording" else {})}
 
 
-def form_of(kind: str, values: Values, case: AnyCase, keys: Sequence[str]) -> dict[str, Any]:
+def form_of(kind: str, values: Values, case: AnyCase, keys: Sequence[str]) -> Tree:
     """The form of a study as data; ``keys`` of the case can vary."""
     study, fields = STUDIES[kind], []
     listed = {"key": keys, "second_key": keys, **_listed(kind, case)}
@@ -296,7 +289,7 @@ def form_of(kind: str, values: Values, case: AnyCase, keys: Sequence[str]) -> di
         if option.unit:  # what is typed may have a unit of its own
             field |= {"value": values.get(name, ""), "units": [option.display_unit]}
         fields.append(field)
-    group: dict[str, Any] = {"key": kind, "title": study.title, "meaning": study.meaning}
+    group: Tree = {"key": kind, "title": study.title, "meaning": study.meaning}
     group |= {"note": "", "open": True, "fields": fields, "more": [], "groups": []}
     return {"groups": [group], "faults": []}
 

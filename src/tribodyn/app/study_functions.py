@@ -11,16 +11,17 @@ from tribodyn.errors import InputError
 from tribodyn.report import nonlinear_report_data as nonlinear
 from tribodyn.report import study_report_data as of_studies
 from tribodyn.report.study_report_data import StudyReportData, figure_with_caption, save_study
-from tribodyn.study.studies.range_syntax import UnreadError, read_list, read_range, read_values
+from tribodyn.study.studies.study_axes import UnreadError, read_list, read_range, read_values
+from tribodyn.types import ByName, Tree
 
 if TYPE_CHECKING:
     from tribodyn.progress import Progress
     from tribodyn.study.case.pair import PairCase
 
 #: Values of a study by name: numbers and choices checked, others as text; None or empty: default.
-Values = Mapping[str, Any]
+Values = ByName
 #: What a study shows: ``sentences``, ``tables``, and figures as (heading, figure, caption).
-Shown = dict[str, Any]
+Shown = Tree
 
 RANGE = "400..3500 rpm:20, or 50, 150, 300 N*m"
 #: Studies that the report calls differently.
@@ -170,7 +171,7 @@ def _harris(case: PairCase, values: Values, progress: Progress) -> StudyReportDa
 
 
 def _modes(case: PairCase, values: Values, progress: Progress) -> StudyReportData:
-    from tribodyn.report.modes_report_data import any_modes_report_data
+    from tribodyn.report.nonlinear_report_data import any_modes_report_data
 
     ends = ends_in("speeds", values["speeds"]) if values["speeds"] else None
     return any_modes_report_data(case, ends, progress)

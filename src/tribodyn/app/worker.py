@@ -15,6 +15,8 @@ from queue import SimpleQueue
 from typing import TYPE_CHECKING, Any
 from warnings import catch_warnings, simplefilter
 
+from tribodyn.types import ByName, Tree
+
 if TYPE_CHECKING:
     from tribodyn.study.machine.case import AnyCase
 
@@ -88,7 +90,7 @@ def _get_ready(wanted: Callable[[], bool]) -> None:
         import_module("h5py")  # to store what is found
 
 
-def _carry_out(order: Mapping[str, Any], tell: Tell) -> None:
+def _carry_out(order: ByName, tell: Tell) -> None:
     from tribodyn.compiled import announcing_to
     from tribodyn.errors import TribodynError
 
@@ -103,7 +105,7 @@ def _carry_out(order: Mapping[str, Any], tell: Tell) -> None:
         tell(state="failed", problems=[f"{what}. This is a fault of tribodyn, not of the input."])
 
 
-def _case(order: Mapping[str, Any]) -> AnyCase:
+def _case(order: ByName) -> AnyCase:
     from tribodyn.study.machine.read import read_case
 
     case: AnyCase = read_case(order["case"], "case.toml")
@@ -126,7 +128,7 @@ def _run(order: Mapping[str, object], folder: Path, tell: Tell) -> None:
     tell(saved=True)
 
 
-def _written(blocks: Any, folder: Path) -> list[dict[str, Any]]:
+def _written(blocks: Any, folder: Path) -> list[Tree]:
     """Write figures as files of a folder and return their descriptions."""
     for block in blocks:
         if block.json:
@@ -134,7 +136,7 @@ def _written(blocks: Any, folder: Path) -> list[dict[str, Any]]:
     return [{k: v for k, v in vars(block).items() if k != "json"} for block in blocks]
 
 
-def _overlay(order: Mapping[str, Any], folder: Path, tell: Tell) -> None:
+def _overlay(order: ByName, folder: Path, tell: Tell) -> None:
     """Overlay stored results."""
     from tribodyn.cases.load import load_result
     from tribodyn.drawing import FIGURES
@@ -155,7 +157,7 @@ def _overlay(order: Mapping[str, Any], folder: Path, tell: Tell) -> None:
     tell(state="done", content=content, task="")
 
 
-def _study(order: Mapping[str, Any], folder: Path, tell: Tell) -> None:
+def _study(order: ByName, folder: Path, tell: Tell) -> None:
     """Compute a study, send its contents, and write the directory of its command."""
     from tribodyn.app.studies import compute
     from tribodyn.errors import ModelWarning, collected
@@ -174,7 +176,7 @@ def _study(order: Mapping[str, Any], folder: Path, tell: Tell) -> None:
     tell(state="done", content={**content, "blocks": _written(blocks, folder)}, task="", saved=True)
 
 
-_KINDS: dict[str, Callable[[Mapping[str, Any], Path, Tell], None]] = {
+_KINDS: dict[str, Callable[[ByName, Path, Tell], None]] = {
     "run": _run,
     "overlay": _overlay,
     "study": _study,

@@ -27,9 +27,16 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from tribodyn import progress
-from tribodyn.arguments.annotations import ANYTHING, Wanted, wanted
-from tribodyn.arguments.quantities import UnitRefusedError, ValueRefusedError, without_units
+from tribodyn.arguments.annotations import (
+    ANYTHING,
+    UnitRefusedError,
+    ValueRefusedError,
+    Wanted,
+    wanted,
+    without_units,
+)
 from tribodyn.errors import Argument, ComputationError, InputError, Problem, shortened
+from tribodyn.types import ByName, Tree
 
 #: Most characters of a value, and of a line.
 _VALUE, _LINE = 240, 400
@@ -67,7 +74,7 @@ _PACKAGES = re.compile(r"[/\\](site|dist)-packages[/\\]")
 _WRITES = {"path", "directory", "folder", "place", "force"}
 #: What NumPy does about numbers out of range, whatever the user's script has set: what is computed
 #: here rounds to zero where it does so on purpose.
-_USUAL: dict[str, Any] = {"divide": "warn", "over": "warn", "under": "ignore", "invalid": "warn"}
+_USUAL: Tree = {"divide": "warn", "over": "warn", "under": "ignore", "invalid": "warn"}
 _REFUSED = (TypeError, ValueError, OverflowError)
 #: Packages whose values without an annotation are those of cases, which read units themselves.
 _CASES = re.compile(r"tribodyn\.(study|exchange|cases|variants|plot|report)\b")
@@ -79,7 +86,7 @@ _OTHERS = "**"
 _INSIDE = f"{__name__.partition('.')[0]}."
 
 
-class _Names(dict[str, Any]):
+class _Names(Tree):
     """Names of modules, those that are imported for type checks alone among them."""
 
     def __init__(self, modules: Iterable[str]) -> None:
@@ -242,15 +249,13 @@ class _Reader:
         reports = inspect.signature(function).parameters.get("progress")
         self.reports = reports is not None and reports.default is progress.SILENT
 
-    def named_values(
-        self, args: Sequence[Any], named: Mapping[str, Any]
-    ) -> Iterator[tuple[str, Any]]:
+    def named_values(self, args: Sequence[Any], named: ByName) -> Iterator[tuple[str, Any]]:
         """Arguments with the names of their parameters."""
         more = len(args) - len(self.names) if self.several else 0
         names = [*self.names, *self.names[-1:] * more]
         return chain(zip(names, args, strict=False), named.items())
 
-    def fitting(self, args: Any, named: dict[str, Any]) -> bool:
+    def fitting(self, args: Any, named: Tree) -> bool:
         """Whether all arguments pass the quick check."""
         if self.several:
             return False
@@ -260,13 +265,13 @@ class _Reader:
         fits, other = self.fits, self.other_fits
         return all(fits.get(name, other)(value) for name, value in named.items())
 
-    def with_progress(self, args: Any, named: dict[str, Any]) -> dict[str, Any]:
+    def with_progress(self, args: Any, named: Tree) -> Tree:
         """Named arguments with the receiver of progress of the session where none is passed."""
         if not self.reports or "progress" in named or "progress" in self.names[: len(args)]:
             return named
         return {**named, "progress": progress.automatic()}
 
-    def read(self, args: Any, named: dict[str, Any]) -> tuple[Any, dict[str, Any]]:
+    def read(self, args: Any, named: Tree) -> tuple[Any, Tree]:
         wants, other = self.wanted, self.wanted.get(_OTHERS, ANYTHING)
         args = [list(value) if isinstance(value, _ONCE) else value for value in args]
         named = {k: list(v) if isinstance(v, _ONCE) else v for k, v in named.items()}
@@ -294,7 +299,7 @@ class _Reader:
         values = ((n, v, wants.get(n, other)) for n, v in self.named_values(args, named))
         return [fault for fault in (fault_of(*each) for each in values) if fault]
 
-    def explain(self, error: Exception, args: Any, named: dict[str, Any]) -> Exception:
+    def explain(self, error: Exception, args: Any, named: Tree) -> Exception:
         """Error of the package that explains the failure of a function."""
         name = self.function.__qualname__.removesuffix(".__init__").removesuffix(".__new__")
         where, what = f"{name}()", f"{type(error).__name__}: {error}"

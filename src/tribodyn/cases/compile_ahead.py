@@ -15,9 +15,10 @@ from typing import Any
 
 from tribodyn.cases.catalogue import cases
 from tribodyn.cases.load import load_case
-from tribodyn.checks import require_whole
 from tribodyn.errors import ComputationError
+from tribodyn.nomenclature import require_whole
 from tribodyn.progress import SILENT, Progress
+from tribodyn.types import Tree
 
 #: The job that needs no case: the time integration of all studies. Other processes start with
 #: teeth and films.
@@ -25,9 +26,7 @@ _ENGINE = ""
 _CALL = "import sys; from {0} import compile_for; compile_for(sys.argv[1])"
 
 
-def warm_up(
-    case: str | None = None, jobs: int | None = None, progress: Progress = SILENT
-) -> dict[str, Any]:
+def warm_up(case: str | None = None, jobs: int | None = None, progress: Progress = SILENT) -> Tree:
     """Compile what a case needs into the disk cache, by a run whose result is discarded.
 
     Parameters
@@ -84,16 +83,16 @@ def warm_up(
 
 
 @contextmanager
-def _children(todo: list[str], most: int) -> Iterator[Iterator[dict[str, Any]]]:
+def _children(todo: list[str], most: int) -> Iterator[Iterator[Tree]]:
     """Yield what the processes compiled for each job as it ends; stop all of them on exit."""
     running: set[subprocess.Popen[str]] = set()
     stopped: list[bool] = []
 
-    def work(job: str) -> dict[str, Any]:
+    def work(job: str) -> Tree:
         if stopped:
             return {}
         call = [sys.executable, "-c", _CALL.format(__name__), job]
-        pipes: dict[str, Any] = {"stdout": subprocess.PIPE, "stderr": subprocess.PIPE}
+        pipes: Tree = {"stdout": subprocess.PIPE, "stderr": subprocess.PIPE}
         child = subprocess.Popen(call, text=True, start_new_session=True, **pipes)
         running.add(child)
         output, errors = child.communicate()

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from keyword import iskeyword
 from typing import Annotated, Any, NamedTuple
 
 from cyclopts import App, Parameter
@@ -21,197 +22,88 @@ tribodyn --help shows all commands."""
 
 
 class Command(NamedTuple):
-    """A command: its function within ``commands``, and what it takes."""
+    """A command and its module within ``commands``."""
 
     name: str
-    place: str
+    module: str
     help: str  #: one line
     example: str = ""  #: what to write after it
-    takes_case: bool = True
 
 
 COMMANDS = (
-    Command("cases", "case_commands:cases", "List the built-in cases.", takes_case=False),
-    Command(
-        "app", "run_command:app", "Serve a page in the browser for the whole job.", "fzg-roughness"
-    ),
-    Command("run", "run_command:run", "Compute a case and write its report.", "fzg-roughness"),
-    Command(
-        "sweep",
-        "sweep_command:sweep",
-        "Compute a case at many values of its keys.",
-        'fzg-roughness "operation.speed=400..3500 rpm:60"',
-    ),
-    Command(
-        "ensemble",
-        "ensemble_command:ensemble",
-        "Compute many variants of a case with spread inputs, and draw bands.",
-        'fzg-roughness --set "operation.torque=150 N*m +- 2 %"',
-    ),
-    Command(
-        "bifurcation",
-        "nonlinear_commands:bifurcation",
-        "Follow the motion of a case over one value.",
-        'fzg-roughness "operation.speed=400..3500 rpm:300"',
-    ),
-    Command(
-        "continuation",
-        "nonlinear_commands:continuation",
-        "Follow the periodic motion of a case over one value, stable or not.",
-        'fzg-roughness "operation.speed=400..3500 rpm"',
-    ),
-    Command(
-        "basins",
-        "nonlinear_commands:basins",
-        "Find which motion of a case a disturbed start comes to.",
-        "fzg-roughness",
-    ),
-    Command(
-        "lyapunov",
-        "nonlinear_commands:lyapunov",
-        "Find the Lyapunov exponents of a case: whether it is chaos.",
-        "fzg-roughness",
-    ),
-    Command(
-        "sobol",
-        "ensemble_command:sobol",
-        "Find which tolerance of a case the spread of its figures comes from.",
-        'fzg-roughness peak_mesh_force --set "operation.torque=150 N*m +- 2 %"',
-    ),
-    Command(
-        "study",
-        "study_command:study",
-        "Compute many runs of a case into a store, here or on a cluster.",
-        "study.toml",
-    ),
-    Command(
-        "rate",
-        "rate_command:rate",
-        "Rate the gears of a case by ISO 6336: pitting, bending, scuffing, micropitting.",
-        "rated.toml",
-    ),
-    Command(
-        "frequencies",
-        "case_commands:frequencies",
-        "List the frequencies of shafts, meshes, bearings and planets.",
-        "two-stage-spur",
-    ),
-    Command(
-        "modes",
-        "study_commands:modes",
-        "Find natural frequencies and critical speeds of a case.",
-        "fzg-roughness",
-    ),
-    Command(
-        "harris",
-        "study_commands:harris",
-        "Find the static transmission error over the torque.",
-        "fzg-roughness",
-    ),
-    Command(
-        "relief",
-        "study_commands:relief",
-        "Find the best tip relief of a case.",
-        "fzg-roughness",
-    ),
-    Command(
-        "lead",
-        "study_commands:lead",
-        "Find the best crowning and lead slope of a case.",
-        "helical-pair",
-    ),
-    Command(
-        "run-up",
-        "study_commands:run_up",
-        "Integrate a case in time while its speed rises.",
-        'fzg-roughness "400..3500 rpm"',
-    ),
-    Command(
-        "losses",
-        "losses_commands:losses",
-        "Find losses and efficiency of a case over torque and speed.",
-        "fzg-roughness",
-    ),
-    Command(
-        "friction-from-loss",
-        "losses_commands:friction_from_loss",
-        "Find friction coefficients from measured torque losses.",
-        "losses.csv --case fzg-roughness",
-    ),
-    Command(
-        "experiment",
-        "experiment_command:experiment",
-        "Judge published claims on one gear pair: friction.",
-        "friction",
-    ),
-    Command(
-        "surrogate",
-        "surrogate_command:surrogate",
-        "Learn the steady response of a case, and predict it at once.",
-        "train fzg-roughness",
-    ),
-    Command(
-        "paper",
-        "experiment_command:paper",
-        "Compare the printed tables of a source with computed figures.",
-    ),
-    Command(
-        "compare",
-        "compare_command:compare",
-        "Show what differs between two results.",
-        "first second",
-    ),
-    Command(
-        "recording",
-        "recordings.recording_command:recording",
-        "Record what a sensor sees of a case with faults, or a labelled set.",
-        "fzg-roughness --sensor pinion_y --out rig.mat",
-    ),
-    Command(
-        "signal",
-        "signal_command:signal",
-        "List the channels of a recording, or analyse one: spectra, orders, indicators.",
-        "rig.csv --channel acc --tacho pulses --pulses 60 --teeth 29",
-    ),
-    Command("check", "case_commands:check", "Check a case and show its geometry.", "fzg-roughness"),
-    Command(
-        "import",
-        "exchange_commands:import_",
-        "List a gearbox model of another program (REXS), and make a case of it.",
-        "gearbox.rexs --out my.toml",
-        takes_case=False,
-    ),
-    Command(
-        "export",
-        "exchange_commands:export",
-        "Write a case for other gear programs (REXS), or the tables of a result.",
-        "fzg-roughness --rexs gearbox.rexs",
-    ),
-    Command("new", "case_commands:new", "Write a commented case file to start from.", "my.toml"),
-    Command(
-        "cookbook",
-        "explain_commands:cookbook",
-        "Print a short script for a common task, or list all of them.",
-        takes_case=False,
-    ),
-    Command(
-        "explain",
-        "explain_commands:explain",
-        "Explain a symbol, key, model or warning.",
-        "epsilon_alpha",
-        takes_case=False,
-    ),
-    Command(
-        "units", "explain_commands:units", "List the units and their spellings.", takes_case=False
-    ),
-    Command(
-        "warm-up",
-        "run_command:warm_up",
-        "Compile what runs need, ahead of the first one.",
-        "fzg-roughness",
-    ),
-    Command("cite", "explain_commands:cite", "Print the papers behind a result.", "fzg-roughness"),
-)
+    Command("cases", "case_commands", "List the built-in cases."),
+    Command("app", "run_command", "Serve a page in the browser for the whole job.",
+            "fzg-roughness"),
+    Command("run", "run_command", "Compute a case and write its report.", "fzg-roughness"),
+    Command("sweep", "sweep_commands", "Compute a case at many values of its keys.",
+            'fzg-roughness "operation.speed=400..3500 rpm:60"'),
+    Command("ensemble", "sweep_commands",
+            "Compute many variants of a case with spread inputs, and draw bands.",
+            'fzg-roughness --set "operation.torque=150 N*m +- 2 %"'),
+    Command("bifurcation", "nonlinear_commands", "Follow the motion of a case over one value.",
+            'fzg-roughness "operation.speed=400..3500 rpm:300"'),
+    Command("continuation", "nonlinear_commands",
+            "Follow the periodic motion of a case over one value, stable or not.",
+            'fzg-roughness "operation.speed=400..3500 rpm"'),
+    Command("basins", "nonlinear_commands",
+            "Find which motion of a case a disturbed start comes to.", "fzg-roughness"),
+    Command("lyapunov", "nonlinear_commands",
+            "Find the Lyapunov exponents of a case: whether it is chaos.", "fzg-roughness"),
+    Command("sobol", "sweep_commands",
+            "Find which tolerance of a case the spread of its figures comes from.",
+            'fzg-roughness peak_mesh_force --set "operation.torque=150 N*m +- 2 %"'),
+    Command("study", "sweep_commands",
+            "Compute many runs of a case into a store, here or on a cluster.", "study.toml"),
+    Command("rate", "study_commands",
+            "Rate the gears of a case by ISO 6336: pitting, bending, scuffing, micropitting.",
+            "rated.toml"),
+    Command("frequencies", "case_commands",
+            "List the frequencies of shafts, meshes, bearings and planets.", "two-stage-spur"),
+    Command("modes", "study_commands", "Find natural frequencies and critical speeds of a case.",
+            "fzg-roughness"),
+    Command("harris", "study_commands", "Find the static transmission error over the torque.",
+            "fzg-roughness"),
+    Command("relief", "study_commands", "Find the best tip relief of a case.", "fzg-roughness"),
+    Command("lead", "study_commands", "Find the best crowning and lead slope of a case.",
+            "helical-pair"),
+    Command("run-up", "study_commands", "Integrate a case in time while its speed rises.",
+            'fzg-roughness "400..3500 rpm"'),
+    Command("losses", "study_commands",
+            "Find losses and efficiency of a case over torque and speed.", "fzg-roughness"),
+    Command("friction-from-loss", "study_commands",
+            "Find friction coefficients from measured torque losses.",
+            "losses.csv --case fzg-roughness"),
+    Command("experiment", "experiment_command",
+            "Judge published claims on one gear pair: friction.", "friction"),
+    Command("surrogate", "surrogate_command",
+            "Learn the steady response of a case, and predict it at once.", "train fzg-roughness"),
+    Command("paper", "experiment_command",
+            "Compare the printed tables of a source with computed figures."),
+    Command("compare", "recording_commands", "Show what differs between two results.",
+            "first second"),
+    Command("recording", "recording_commands",
+            "Record what a sensor sees of a case with faults, or a labelled set.",
+            "fzg-roughness --sensor pinion_y --out rig.mat"),
+    Command("signal", "signal_command",
+            "List the channels of a recording, or analyse one: spectra, orders, indicators.",
+            "rig.csv --channel acc --tacho pulses --pulses 60 --teeth 29"),
+    Command("check", "case_commands", "Check a case and show its geometry.", "fzg-roughness"),
+    Command("import", "exchange_commands",
+            "List a gearbox model of another program (REXS), and make a case of it.",
+            "gearbox.rexs --out my.toml"),
+    Command("export", "exchange_commands",
+            "Write a case for other gear programs (REXS), or the tables of a result.",
+            "fzg-roughness --rexs gearbox.rexs"),
+    Command("new", "case_commands", "Write a commented case file to start from.", "my.toml"),
+    Command("cookbook", "explain_commands",
+            "Print a short script for a common task, or list all of them."),
+    Command("explain", "explain_commands", "Explain a symbol, key, model or warning.",
+            "epsilon_alpha"),
+    Command("units", "explain_commands", "List the units and their spellings."),
+    Command("warm-up", "run_command", "Compile what runs need, ahead of the first one.",
+            "fzg-roughness"),
+    Command("cite", "explain_commands", "Print the papers behind a result.", "fzg-roughness"),
+)  # fmt: skip
 
 
 def _welcome(*, json: Annotated[bool, Parameter(negative="")] = False) -> None:
@@ -275,5 +167,7 @@ def make_app() -> App:
     )
     for each in COMMANDS:
         text = each.help + help_line(each.name)
-        app.command(f"tribodyn.cli.commands.{each.place}", name=each.name, help=text)
+        function = each.name.replace("-", "_") + "_" * iskeyword(each.name)
+        place = f"tribodyn.cli.commands.{each.module}:{function}"
+        app.command(place, name=each.name, help=text)
     return app

@@ -19,7 +19,8 @@ from tribodyn.errors import (
     TribodynError,
     collected,
 )
-from tribodyn.study.studies.range_syntax import UnreadError, read_range, read_values, toml_value
+from tribodyn.study.studies.study_axes import UnreadError, read_range, read_values, toml_value
+from tribodyn.types import Tree
 
 if TYPE_CHECKING:
     from tribodyn.study.machine.case import AnyCase
@@ -150,11 +151,11 @@ def check_file(path: Path, force: bool) -> None:
         raise InputError("there is no such directory", str(path.parent), "", "Create it")
 
 
-def read_changes(settings: Sequence[str]) -> dict[str, Any]:
+def read_changes(settings: Sequence[str]) -> Tree:
     """Read ``KEY=VALUE`` words as in a case file, where quotes may be left out."""
     from tribodyn.study.case.values import written
 
-    changes: dict[str, Any] = {}
+    changes: Tree = {}
     problems = []
     for setting in settings:
         key, equals, value = (part.strip() for part in setting.partition("="))
@@ -192,9 +193,9 @@ RANGE = 'Write "operation.speed=400..3500 rpm:60"'
 GRAMMAR = f'{RANGE} or "operation.torque=50,150,300 N*m"'
 
 
-def read_ranges(texts: Sequence[str], *, lists: bool = True) -> dict[str, Any]:
+def read_ranges(texts: Sequence[str], *, lists: bool = True) -> Tree:
     """Read what varies: a range with its number of points, or a list of values."""
-    ranges: dict[str, Any] = {}
+    ranges: Tree = {}
     problems = []
     grammar = GRAMMAR if lists else RANGE
     if not texts:

@@ -14,6 +14,8 @@ from numba.core.compiler import CompilerBase, DefaultPassBuilder, Flags
 from numba.core.compiler_machinery import register_pass
 from numba.core.typed_passes import NativeLowering
 
+from tribodyn.types import Tree
+
 
 class _NoCodegen:
     """Code generator of functions without machine code of their own."""
@@ -81,11 +83,11 @@ class _InnerCompiler(CompilerBase):  # type: ignore[misc]
 
 
 #: Options of an inner function: no entry point from Python or C either.
-INNER_OPTIONS: dict[str, Any] = {
+INNER_OPTIONS: Tree = {
     "no_cpython_wrapper": True,
     "no_cfunc_wrapper": True,
     "pipeline_class": _InnerCompiler,
 }
 #: Options of one that allocates nothing either: it does not count references to its arrays, which
 #: in a short function takes longer than its work.
-LEAN_OPTIONS: dict[str, Any] = {**INNER_OPTIONS, "_nrt": False}
+LEAN_OPTIONS: Tree = {**INNER_OPTIONS, "_nrt": False}

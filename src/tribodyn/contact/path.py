@@ -15,12 +15,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import ArrayLike
 
-from tribodyn.errors import (
-    Argument,
-    InputError,
-    require_between,
-    require_positive,
-)
+from tribodyn.errors import Argument, InputError, require_between, require_positive
 from tribodyn.gear import CylindricalPair
 from tribodyn.types import Array, Mask
 

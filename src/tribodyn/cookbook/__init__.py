@@ -5,13 +5,11 @@ with the figure that it writes, and runs as it stands. The tests run all of them
 
 | module | what it answers |
 |---|---|
-| ``recipe`` | which recipes there are, by name |
-| ``skill`` | a folder that teaches a coding assistant to use the package (Agent Skills) |
+| ``recipe`` | recipes by name, also as a folder for coding assistants (Agent Skills) |
 """
 
 from tribodyn.arguments import guard
-from tribodyn.cookbook.recipe import TOPICS, Recipe, find_recipe, recipes
-from tribodyn.cookbook.skill import write_skill
+from tribodyn.cookbook.recipe import TOPICS, Recipe, find_recipe, recipes, write_skill
 
 __all__ = ["TOPICS", "Recipe", "find_recipe", "recipes", "write_skill"]
 

@@ -1,4 +1,4 @@
-"""A recipe, and where recipes are found."""
+"""Recipes: where they are found, and a skill for coding assistants with all of them."""
 
 from __future__ import annotations
 
@@ -8,9 +8,10 @@ import json
 from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
-from typing import Any
 
-from tribodyn.errors import InputError
+from tribodyn.errors import InputError, OutputExistsError
+from tribodyn.scope import features, statement
+from tribodyn.types import Tree
 
 _FOLDER = Path(__file__).parent
 #: Folders of the recipes, in the order in which they are listed, with their headings.
@@ -64,7 +65,7 @@ class Recipe:
         """Return the recipe as a notebook: its question and notes, the code, and the figure."""
         code, last = self.code.rstrip().rsplit("\n", 1)
         figure = last.removesuffix(f'.write_html("{self.figure_name}")')
-        cells: list[dict[str, Any]] = [_cell("markdown", f"# {self.question}\n\n{self.notes}")]
+        cells: list[Tree] = [_cell("markdown", f"# {self.question}\n\n{self.notes}")]
         cells += [_cell("code", part) | _NOT_RUN for part in (code, figure)]
         kernel = {"name": "python3", "display_name": "Python 3", "language": "python"}
         data = {"cells": cells, "metadata": {"kernelspec": kernel}}
@@ -77,10 +78,10 @@ class Recipe:
 
 
 #: What a code cell has beside its text before it runs.
-_NOT_RUN: dict[str, Any] = {"execution_count": None, "outputs": []}
+_NOT_RUN: Tree = {"execution_count": None, "outputs": []}
 
 
-def _cell(kind: str, text: str) -> dict[str, Any]:
+def _cell(kind: str, text: str) -> Tree:
     return {"cell_type": kind, "metadata": {}, "source": text.splitlines(keepends=True)}
 
 
@@ -140,3 +141,60 @@ def find_recipe(name: str) -> Recipe:
     remedy = f"Did you mean {' or '.join(similar[:3])}? " if similar else ""
     remedy += f"tribodyn cookbook lists all {len(recipes())}"
     raise InputError(f'there is no recipe "{name}"', "", "", remedy)
+
+
+_TEMPLATE = Path(__file__).with_name("SKILL.md")
+_SKILL_NAME = "tribodyn"
+
+
+def write_skill(folder: str | Path, *, force: bool = False) -> Path:
+    """Write a folder after the open Agent Skills standard: ``SKILL.md`` and all recipes.
+
+    Parameters
+    ----------
+    folder : str or Path
+        Folder of skills; the skill becomes its subfolder ``tribodyn``.
+    force : bool
+        Overwrite the files of an earlier skill.
+
+    Returns
+    -------
+    Path
+        Folder of the skill.
+
+    Raises
+    ------
+    OutputExistsError
+        If the skill is there and ``force`` is false.
+    """
+    skill = Path(folder) / _SKILL_NAME
+    if skill.exists() and not force:
+        raise OutputExistsError(
+            "this exists already", str(skill), "", "Choose another folder, or use force (--force)"
+        )
+    (skill / "scripts").mkdir(parents=True, exist_ok=True)
+    for recipe in recipes().values():
+        (skill / "scripts" / recipe.file_name).write_text(recipe.script, "utf-8")
+    texts = {
+        "recipes": "\n".join(_listing()),
+        "summary": statement("summary"),
+        "gears": statement("gears"),
+        "missing": "; ".join(each.text for each in features() if not each.modelled),
+    }
+    text = _TEMPLATE.read_text("utf-8")
+    for mark, listing in texts.items():
+        text = text.replace(f"<!-- {mark} -->", listing)
+    (skill / "SKILL.md").write_text(text, "utf-8")
+    return skill
+
+
+def _listing() -> list[str]:
+    lines: list[str] = []
+    for topic in TOPICS.values():
+        lines += ["", f"### {topic}", ""]
+        lines += [
+            f"- {recipe.question} `scripts/{recipe.file_name}`"
+            for recipe in recipes().values()
+            if recipe.topic == topic
+        ]
+    return lines[1:]

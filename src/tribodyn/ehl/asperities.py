@@ -8,9 +8,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike
 
-from tribodyn.checks import positive
 from tribodyn.ehl.roughness import RoughnessProfile
 from tribodyn.errors import InputError, require_between, require_positive
+from tribodyn.nomenclature import positive
 from tribodyn.types import Array
 
 #: Summits per area of a random surface are ``m4/m2`` over this.

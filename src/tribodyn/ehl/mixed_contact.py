@@ -10,11 +10,11 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from tribodyn.checks import positive, require_one_shape
 from tribodyn.ehl.asperities import Asperities, asperity_integral
 from tribodyn.ehl.models import FILM_MODELS
 from tribodyn.errors import ComputationError, InputError, quiet, require_between, require_positive
 from tribodyn.lubricant import Lubricant
+from tribodyn.nomenclature import positive, require_one_shape
 from tribodyn.record import Record, fact, quantity, record
 from tribodyn.types import Array
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -23,7 +23,7 @@ from tribodyn.errors import InputError, Problem, require_positive
 from tribodyn.lubricant import Lubricant
 from tribodyn.model import Model, Registry, choice, integer, numbers
 from tribodyn.progress import SILENT, Progress
-from tribodyn.types import Array
+from tribodyn.types import Array, ByName, Tree
 
 #: Film [m] from load per width, equivalent radius, entrainment speed, dynamic viscosity,
 #: pressure-viscosity coefficient and effective modulus, in this order and in SI.
@@ -54,7 +54,7 @@ def _stiffness(default: str) -> Any:
 
 
 #: Options of the solved films.
-_SOLVED: Mapping[str, Any] = {
+_SOLVED: ByName = {
     "stiffness": _stiffness("approach"),
     "nodes": integer(
         513, 65, 16385, "a power of two plus one", example="513",
@@ -122,7 +122,7 @@ class FilmModel(Model):
     minimum: FilmFormula | None = None
     load_exponent: float | FilmFormula | None = None
     method: str = ""
-    options: Mapping[str, Any] = field(default_factory=dict)
+    options: ByName = field(default_factory=dict)
     meaning: str = ""
     papers: tuple[str, ...] = ()
     heated: bool = False
@@ -152,7 +152,7 @@ class FilmModel(Model):
             return supported
         return f"{supported}. A formula gives the film but not the approach of the bodies"
 
-    def complete(self, options: Mapping[str, Any]) -> dict[str, Any]:
+    def complete(self, options: ByName) -> Tree:
         """Options with the defaults filled in.
 
         Parameters

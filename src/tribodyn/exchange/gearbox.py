@@ -328,10 +328,7 @@ class GearboxModel:
         radii = None
         if gear.tip_diameter is not None and gear.teeth > 0 and not gear.helix_angle:
             cosine = math.cos(gear.normal_pressure_angle)
-            radii = (
-                0.5 * gear.teeth * gear.normal_module * cosine,
-                0.5 * gear.tip_diameter,
-            )
+            radii = (0.5 * gear.teeth * gear.normal_module * cosine, 0.5 * gear.tip_diameter)
         forms, remarks = forms_of(self.file, component, flanks, radii)
         for remark in remarks:
             add_remark(self, remark)

@@ -5,14 +5,13 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 
 from tribodyn.errors import InputError
 from tribodyn.exchange.gearbox import GearboxModel, StageGear, add_remark
 from tribodyn.exchange.rexs_file import Component
-from tribodyn.types import Array
+from tribodyn.types import Array, Tree
 
 #: Stiffness of a bearing without data, and of one that the file calls rigid [N/m, N*m/rad], which
 #: is one above the others.
@@ -43,7 +42,7 @@ class Axis:
     length: float
 
     @property
-    def table(self) -> dict[str, Any]:
+    def table(self) -> Tree:
         """Table of the shaft in a machine, without its material."""
         rows = [s[:3] if s[1:3] == s[3:] else s for s in self.sections]
         rows = [s[:2] if s[2:] == [0.0] else s for s in rows]
@@ -151,9 +150,9 @@ def _sections(model: GearboxModel, shaft: Component) -> tuple[list[list[float]],
     return [section for _, section in rows], begin
 
 
-def gear_table(model: GearboxModel, gear: StageGear, axis: Axis | None) -> dict[str, Any]:
+def gear_table(model: GearboxModel, gear: StageGear, axis: Axis | None) -> Tree:
     """Table of a gear, of one without a shaft of the machine without its place."""
-    table: dict[str, Any] = {"teeth": gear.teeth}
+    table: Tree = {"teeth": gear.teeth}
     if axis is not None:
         table = {"shaft": axis.name, **table}
         coordinate = axis.coordinate(model.file.components[gear.id], "u_coordinate_on_shaft")
@@ -164,9 +163,7 @@ def gear_table(model: GearboxModel, gear: StageGear, axis: Axis | None) -> dict[
     return {**table, "modification": gear.modification} if gear.modification else table
 
 
-def bearing_tables(
-    model: GearboxModel, axes: dict[int, Axis]
-) -> Iterator[tuple[str, dict[str, Any], str]]:
+def bearing_tables(model: GearboxModel, axes: dict[int, Axis]) -> Iterator[tuple[str, Tree, str]]:
     """Name, table and reason of what is assumed of each bearing."""
     connections = [(b, _sides(model, b, axes)) for b in _bearings(model)]
     grounded = [next(iter(sides.values())) for _, sides in connections if len(sides) == 1]
@@ -181,7 +178,7 @@ def bearing_tables(
         if coordinate is None:
             add_remark(model, f"{bearing} is left out: the file has no position of it")
             continue
-        table: dict[str, Any] = {"shaft": axis.name, "position": axis.position(coordinate)}
+        table: Tree = {"shaft": axis.name, "position": axis.position(coordinate)}
         rolling, reason = _rolling(bearing, axis)
         if not rolling:
             rolling, reason = _support(bearing)
@@ -206,7 +203,7 @@ def _sides(model: GearboxModel, bearing: Component, axes: dict[int, Axis]) -> di
     return {"inner": shaft} if shaft in axes else {}
 
 
-def _rolling(bearing: Component, axis: Axis) -> tuple[dict[str, Any], str]:
+def _rolling(bearing: Component, axis: Axis) -> tuple[Tree, str]:
     """Type and dimensions of a rolling bearing, and a note; empty where the file has none."""
     kind = bearing.text("bearing_type")
     matches = [
@@ -218,7 +215,7 @@ def _rolling(bearing: Component, axis: Axis) -> tuple[dict[str, Any], str]:
         return {}, ""
     name, element, _ = matches[0]
     absorption, note = bearing.text("axial_force_absorption"), ""
-    table: dict[str, Any] = {"type": name, "bore_diameter": bore, "outer_diameter": outer}
+    table: Tree = {"type": name, "bore_diameter": bore, "outer_diameter": outer}
     values = {
         "width": bearing.number("width", "m"),
         f"{element}_diameter": bearing.number("diameter_of_rolling_element", "m"),
@@ -245,7 +242,7 @@ def _rolling(bearing: Component, axis: Axis) -> tuple[dict[str, Any], str]:
     return table | {key: value for key, value in values.items() if value}, note
 
 
-def _support(bearing: Component) -> tuple[dict[str, Any], str]:
+def _support(bearing: Component) -> tuple[Tree, str]:
     """Stiffness of a linear support, and what of it is assumed."""
     radial, axial = (bearing.number(f"{way}_stiffness", "N/m") for way in ("radial", "axial"))
     tilting = bearing.number("bending_stiffness", "N*m/rad") or 0.0

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
-from typing import Any
 
 import numpy as np
 
@@ -13,7 +12,7 @@ from tribodyn.exchange.gearbox import GearboxModel, Stage, StageGear
 from tribodyn.exchange.machine_parts import Axis, gear_table, part_name
 from tribodyn.exchange.rexs_file import Component
 from tribodyn.exchange.to_case import teeth_table
-from tribodyn.types import Array
+from tribodyn.types import Array, Tree
 
 #: Deviation from equal spacing above which the angles are listed [rad].
 _UNEQUAL = 1e-6
@@ -72,7 +71,7 @@ class PlanetStage:
             names[shaft] = part_name(self.model, gear.id if lone else shaft)
         return names
 
-    def gear_tables(self, axes: dict[int, Axis]) -> dict[str, Any]:
+    def gear_tables(self, axes: dict[int, Axis]) -> Tree:
         """Tables of sun, ring and planet, with their places on the shafts of a machine."""
         gears = (self.sun, self.planets[0], self.ring)
         return {
@@ -82,10 +81,10 @@ class PlanetStage:
             for gear in gears
         }
 
-    def table(self, *, lone: bool) -> dict[str, Any]:
+    def table(self, *, lone: bool) -> Tree:
         """Table of the stage."""
         gears = {"sun": self.sun, "planet": self.planets[0], "ring": self.ring}
-        table: dict[str, Any] = {r: part_name(self.model, gear.id) for r, gear in gears.items()}
+        table: Tree = {r: part_name(self.model, gear.id) for r, gear in gears.items()}
         table["carrier"] = self.shaft_names(lone=lone)[self.carriers[0]]
         table["count"] = count = len(self.planets)
         angles, equal = self._angles(), 2.0 * np.pi * np.arange(count) / count

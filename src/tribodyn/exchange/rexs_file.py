@@ -20,6 +20,7 @@ from xml.etree import ElementTree
 
 from tribodyn import units
 from tribodyn.errors import Argument, InputError, Problem
+from tribodyn.types import Tree
 from tribodyn.validated_files import LARGEST, read_bytes
 
 #: Spellings of units that differ from ours, without blanks.
@@ -191,7 +192,7 @@ def read_file(path: str | PathLike[str]) -> RexsFile:
         raise InputError("its elements are nested too deeply", place, "", _REMEDY) from None
 
 
-def _tree(content: bytes, place: str) -> dict[str, Any]:
+def _tree(content: bytes, place: str) -> Tree:
     """The model in the structure of the JSON form."""
     if content[:4] == b"PK\x03\x04":
         content = _unzipped(content, place)
@@ -245,7 +246,7 @@ class _NoDoctype(ElementTree.TreeBuilder):
         raise ValueError("It declares a document type, which REXS files do not have")
 
 
-def _from_xml(root: ElementTree.Element, place: str) -> dict[str, Any]:
+def _from_xml(root: ElementTree.Element, place: str) -> Tree:
     for element in root.iter():
         element.tag = str(element.tag).rpartition("}")[2]  # some programs write a namespace
     if root.tag != "model":
@@ -266,7 +267,7 @@ def _from_xml(root: ElementTree.Element, place: str) -> dict[str, Any]:
     }
 
 
-def _xml_components(parent: ElementTree.Element | None) -> list[dict[str, Any]]:
+def _xml_components(parent: ElementTree.Element | None) -> list[Tree]:
     elements = [] if parent is None else parent.findall("component")
     return [
         {
@@ -285,7 +286,7 @@ def _xml_array(attribute: ElementTree.Element) -> list[str] | None:
     return None if array is None else [(item.text or "").strip() for item in array.iter("c")]
 
 
-def model_of(tree: dict[str, Any], place: str) -> RexsFile:
+def model_of(tree: Tree, place: str) -> RexsFile:
     """Build the model from a tree in the structure of the JSON form."""
     components = _components(tree.get("components"), place)
     if not components:
@@ -343,7 +344,7 @@ def _components(items: Any, place: str) -> dict[int, Component]:
     return components
 
 
-def _dicts(parent: Any, name: str, place: str) -> list[dict[str, Any]]:
+def _dicts(parent: Any, name: str, place: str) -> list[Tree]:
     items = parent.get(name) if isinstance(parent, dict) else None
     if items is None:
         return []
@@ -355,7 +356,7 @@ def _dicts(parent: Any, name: str, place: str) -> list[dict[str, Any]]:
     return items
 
 
-def _id(item: dict[str, Any], place: str) -> int:
+def _id(item: Tree, place: str) -> int:
     try:
         return int(item["id"])
     except (KeyError, TypeError, ValueError, OverflowError):
@@ -363,7 +364,7 @@ def _id(item: dict[str, Any], place: str) -> int:
         raise InputError(Problem(what, place, "", _REMEDY)) from None
 
 
-def _content(attribute: dict[str, Any]) -> float | bool | str | tuple[float, ...] | None:
+def _content(attribute: Tree) -> float | bool | str | tuple[float, ...] | None:
     """Number, flag, text or list of numbers; XML writes all of them as text."""
     others = [v for name, v in attribute.items() if name not in ("id", "unit")]
     content = others[0] if len(others) == 1 else None

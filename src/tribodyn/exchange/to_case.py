@@ -9,19 +9,14 @@ from typing import Any
 from tribodyn import units
 from tribodyn.errors import InputError
 from tribodyn.exchange.case_tree import tree_of
-from tribodyn.exchange.gearbox import (
-    GearboxModel,
-    Load,
-    Stage,
-    StageGear,
-    add_remark,
-)
+from tribodyn.exchange.gearbox import GearboxModel, Load, Stage, StageGear, add_remark
 from tribodyn.exchange.machine_parts import part_name
 from tribodyn.exchange.rexs_file import WHOLE_CASE, model_of
 from tribodyn.lubricant import Lubricant
 from tribodyn.study.case.pair import PairCase
 from tribodyn.study.case.read import parse_toml
 from tribodyn.study.machine.read import kind_of_tables, read_case
+from tribodyn.types import Tree
 
 #: Values closer than this are the same: files hold decimal fractions of millimetres.
 _SAME = 1e-9
@@ -52,7 +47,7 @@ def case_from_rexs(
     stage: int | None = None,
     load_case: int | None = None,
     *,
-    changes: dict[str, Any] | None = None,
+    changes: Tree | None = None,
 ) -> PairCase:
     """Case of an external stage of a gearbox model under one load.
 
@@ -81,7 +76,7 @@ def case_from_rexs(
     return _case(model, model.stage(stage), model.load(load_case), dict(changes or {}))
 
 
-def _case(model: GearboxModel, stage: Stage, load: Load, changes: dict[str, Any]) -> PairCase:
+def _case(model: GearboxModel, stage: Stage, load: Load, changes: Tree) -> PairCase:
     _require_external(model, stage)
     if "lubricant.temperature" in changes:  # the viscosity of the file depends on it
         load = replace(load, oil_temperature=_kelvin(changes["lubricant.temperature"]))
@@ -93,7 +88,7 @@ def _case(model: GearboxModel, stage: Stage, load: Load, changes: dict[str, Any]
     if text and kind_of_tables(parse_toml(text, model.path)).lumped:
         stored_case = read_case(text, f"{model.path}: {WHOLE_CASE}")
         return _updated(model, stored_case, file_values).replace(changes)
-    data: dict[str, Any] = {**file_values, **MODELS, **changes}
+    data: Tree = {**file_values, **MODELS, **changes}
     for key in ("operation.speed", "operation.torque"):
         if key not in data:
             what = f"the speed and torque of stage {stage.id} are not known"
@@ -143,12 +138,10 @@ def in_order(stage: Stage) -> tuple[StageGear, StageGear]:
     return (first, second) if first.teeth <= second.teeth else (second, first)
 
 
-def pair_values(
-    model: GearboxModel, stage: Stage, load: Load
-) -> tuple[dict[str, Any], dict[str, str]]:
+def pair_values(model: GearboxModel, stage: Stage, load: Load) -> tuple[Tree, dict[str, str]]:
     """Values of the case from the file, in SI, and notes on those that are partly assumed."""
     pinion, wheel = in_order(stage)
-    data: dict[str, Any] = {
+    data: Tree = {
         "gears.normal_module": pinion.normal_module,
         "gears.normal_pressure_angle": pinion.normal_pressure_angle,
         "gears.center_distance": stage.center_distance,
@@ -194,10 +187,10 @@ def rack_values(model: GearboxModel, pinion: StageGear, wheel: StageGear) -> dic
     }
 
 
-def teeth_table(model: GearboxModel, stage: Stage) -> dict[str, Any]:
+def teeth_table(model: GearboxModel, stage: Stage) -> Tree:
     """Keys of a mesh or a planetary stage that describe the teeth, the hand that of gear 1."""
     gear = stage.gear_1
-    table: dict[str, Any] = {
+    table: Tree = {
         "normal_module": gear.normal_module,
         "normal_pressure_angle": gear.normal_pressure_angle,
         "center_distance": stage.center_distance,
@@ -260,7 +253,7 @@ def _driver(model: GearboxModel, stage: Stage, load: Load) -> str:
     return "pinion" if (nearest == pinion.id) != load.driven else "wheel"
 
 
-def oil_values(model: GearboxModel, load: Load) -> tuple[dict[str, Any], dict[str, str]]:
+def oil_values(model: GearboxModel, load: Load) -> tuple[Tree, dict[str, str]]:
     """Oil at its temperature, from its viscosities at 40 and 100 degC."""
     for part in model.file.of_kind("lubricant"):
         cold = part.number("viscosity_at_40_degree_celsius", "m^2/s")
@@ -291,7 +284,7 @@ def oil_values(model: GearboxModel, load: Load) -> tuple[dict[str, Any], dict[st
     return {}, {}
 
 
-def _updated(model: GearboxModel, case: PairCase, file_values: dict[str, Any]) -> PairCase:
+def _updated(model: GearboxModel, case: PairCase, file_values: Tree) -> PairCase:
     """Case stored in the file, with the changes that another program has made since."""
     written = GearboxModel(model_of(tree_of(case).model, "the case in the file"))
     before, _ = pair_values(written, written.stage(), written.load())
@@ -299,9 +292,7 @@ def _updated(model: GearboxModel, case: PairCase, file_values: dict[str, Any]) -
     return case.replace(changes) if changes else case
 
 
-def changed_values(
-    model: GearboxModel, before: dict[str, Any], now: dict[str, Any]
-) -> dict[str, Any]:
+def changed_values(model: GearboxModel, before: Tree, now: Tree) -> Tree:
     """Values that another program has changed since a case was written, with a remark on each."""
     changes = {
         key: value
@@ -323,9 +314,9 @@ def same_value(first: Any, second: Any) -> bool:
     return bool(first == second)
 
 
-def nested(data: dict[str, Any]) -> dict[str, Any]:
+def nested(data: Tree) -> Tree:
     """Tables of dotted keys."""
-    tree: dict[str, Any] = {}
+    tree: Tree = {}
     for key, value in data.items():
         place = tree
         *tables, name = key.split(".")
@@ -335,14 +326,12 @@ def nested(data: dict[str, Any]) -> dict[str, Any]:
     return tree
 
 
-def shared_models(
-    model: GearboxModel, load: Load, changes: dict[str, Any]
-) -> tuple[dict[str, Any], dict[str, str]]:
+def shared_models(model: GearboxModel, load: Load, changes: Tree) -> tuple[Tree, dict[str, str]]:
     """Tables of models that all meshes share, and what is assumed for their teeth."""
     computed = [
         s for s in model.stages if f"meshes.{part_name(model, s.id)}.stiffness" not in changes
     ]
-    values: dict[str, Any] = {"dynamics.backlash": ASSUMED["dynamics.backlash"][0]}
+    values: Tree = {"dynamics.backlash": ASSUMED["dynamics.backlash"][0]}
     notes = {"dynamics.backlash": NOT_THERE + str(ASSUMED["dynamics.backlash"][1])}
     if computed:
         values |= {k: v for k, v in MODELS.items() if not k.startswith("dynamics.")}

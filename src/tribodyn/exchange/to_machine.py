@@ -28,7 +28,7 @@ from tribodyn.study.case.user_input import Source, plain
 from tribodyn.study.machine.case import AnyCase, MachineCase
 from tribodyn.study.machine.read import read_case
 from tribodyn.study.machine.unused_keys import changed_machine
-from tribodyn.types import Array
+from tribodyn.types import Array, Tree
 
 #: Part of a face without a mate that is rounding of the positions [m].
 _FACE = 1e-5
@@ -39,11 +39,7 @@ _FORCES = ("force_u_direction", "force_v_direction", "force_w_direction",
 
 
 def machine_from_rexs(
-    model: GearboxModel,
-    load_case: int | None = None,
-    *,
-    changes: dict[str, Any] | None = None,
-    by: str = "",
+    model: GearboxModel, load_case: int | None = None, *, changes: Tree | None = None, by: str = ""
 ) -> MachineCase:
     """Machine of all stages of a gearbox model, with its shafts, bearings and load cases.
 
@@ -100,11 +96,7 @@ def machine_from_rexs(
 
 
 def stage_from_rexs(
-    model: GearboxModel,
-    load_case: int | None = None,
-    *,
-    changes: dict[str, Any] | None = None,
-    by: str = "",
+    model: GearboxModel, load_case: int | None = None, *, changes: Tree | None = None, by: str = ""
 ) -> MachineCase:
     """Case of the planetary stage of a gearbox model that has no other stage.
 
@@ -139,7 +131,7 @@ def stage_from_rexs(
     return machine_from_rexs(model, load_case, changes=changes, by=by)
 
 
-def case_from_model(model: GearboxModel, changes: dict[str, Any], by: str) -> AnyCase:
+def case_from_model(model: GearboxModel, changes: Tree, by: str) -> AnyCase:
     """Case of a REXS file: the one that tribodyn stored in it, or that of its stages."""
     if model.file.stored_case and _stored_machine(model) is None:
         case = case_from_rexs(model)
@@ -160,9 +152,7 @@ def _stored_machine(model: GearboxModel) -> MachineCase | None:
     return stored.replace(changes) if changes else stored
 
 
-def file_tables(
-    model: GearboxModel, load: Load, changes: dict[str, Any]
-) -> tuple[dict[str, Any], dict[str, str]]:
+def file_tables(model: GearboxModel, load: Load, changes: Tree) -> tuple[Tree, dict[str, str]]:
     """Tables of a machine with the values of the file in SI, and what of them is assumed."""
     if problems := _unsupported(model):
         raise InputError(problems)
@@ -185,7 +175,7 @@ def file_tables(
     return tables | nested(shared) | operation, assumed | note
 
 
-def _title(data: dict[str, Any]) -> str:
+def _title(data: Tree) -> str:
     meshes, planets = data.get("meshes", {}), data.get("planets", {})
     if not meshes:
         counts = " and ".join(str(stage["count"]) for stage in planets.values())
@@ -194,7 +184,7 @@ def _title(data: dict[str, Any]) -> str:
     return f"Gearbox of {count} stage{'s' * (count > 1)}"
 
 
-def _of_case(key: str, gears: dict[str, Any]) -> bool:
+def _of_case(key: str, gears: Tree) -> bool:
     """Whether a note is on a gear of the case, or on no gear."""
     group, _, inner = key.partition(".")
     return group != "gears" or inner.rpartition(".")[0] in gears
@@ -246,11 +236,11 @@ def _parts(
     directions: Array | None,
     stages: list[Stage],
     shared: dict[str, float],
-    changes: dict[str, Any],
-) -> tuple[dict[str, Any], dict[str, str]]:
+    changes: Tree,
+) -> tuple[Tree, dict[str, str]]:
     """Tables of shafts, gears, meshes and bearings, and what is assumed."""
     assumed: dict[str, str] = {}
-    tables: dict[str, Any] = {"shafts": {}, "bearings": {}, "gears": {}, "meshes": {}}
+    tables: Tree = {"shafts": {}, "bearings": {}, "gears": {}, "meshes": {}}
     for number, axis in axes.items():
         material = {**shared, **material_values(model, number)}
         values = {k.partition(".")[2]: v for k, v in material.items() if shared.get(k) != v}
@@ -278,7 +268,7 @@ def _parts(
 
 def _mesh(
     model: GearboxModel, stage: Stage, ends: tuple[Axis, Axis], directions: Any
-) -> tuple[dict[str, Any], str]:
+) -> tuple[Tree, str]:
     """Table of a stage as a mesh, and the reason of its angle where that is assumed."""
     table = {
         "gears": [part_name(model, g.id) for g in (stage.gear_1, stage.gear_2)],
@@ -326,7 +316,7 @@ def _check_faces(model: GearboxModel, stage: Stage, ends: tuple[Axis, Axis]) -> 
 
 def _operation(
     model: GearboxModel, load: Load, senses: dict[int, int], names: dict[int, str]
-) -> tuple[dict[str, Any], dict[str, str]]:
+) -> tuple[Tree, dict[str, str]]:
     """Operating point, and load cases where there are several; and what is assumed of the ends."""
     first, *others = names
     loaded = [
@@ -342,7 +332,7 @@ def _operation(
     rings = {model.shaft_of(c.id) for c in model.file.of_kind("ring_gear")}
     usual = [name for n, name in names.items() if n not in rings and name != names[first]]
     run = {"input": names[first], "output": [names[first], *usual, *loaded][-1]}
-    tables: dict[str, Any] = {"operation": run | _point(model, load, senses)}
+    tables: Tree = {"operation": run | _point(model, load, senses)}
     if len(model.loads) > 1:
         tables["load_cases"] = [
             {"name": _load_name(model, each)}

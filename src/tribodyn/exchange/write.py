@@ -8,9 +8,8 @@ from typing import TYPE_CHECKING, Any
 
 from tribodyn import units
 from tribodyn.errors import InputError, OutputExistsError
-from tribodyn.exchange.case_tree import tree_of
+from tribodyn.exchange.case_tree import ModelTree, tree_of
 from tribodyn.exchange.gearbox import GearboxModel
-from tribodyn.exchange.model_tree import ModelTree
 from tribodyn.exchange.rexs_file import model_of
 from tribodyn.exchange.to_case import oil_values, pair_values, same_value
 from tribodyn.exchange.to_machine import file_tables
@@ -23,11 +22,7 @@ from tribodyn.study.machine.housing_files import copy_housing
 if TYPE_CHECKING:
     from tribodyn.study.machine.case import AnyCase
 
-_WRITERS = {
-    ".rexs": ModelTree.as_xml,
-    ".rexsj": ModelTree.as_json,
-    ".rexsz": ModelTree.as_zip,
-}
+_WRITERS = {".rexs": ModelTree.as_xml, ".rexsj": ModelTree.as_json, ".rexsz": ModelTree.as_zip}
 
 
 def write_rexs(case: AnyCase, path: str | PathLike[str], *, force: bool = False) -> tuple[str, ...]:

@@ -28,12 +28,7 @@ from tribodyn.faults.deviations import (
     pitch_tolerances,
 )
 from tribodyn.faults.driven import DrivenSystem, clock_cycles, drive
-from tribodyn.faults.excitation import (
-    RandomLoad,
-    ShaftExcitation,
-    SpeedFluctuation,
-    TorqueRipple,
-)
+from tribodyn.faults.excitation import RandomLoad, ShaftExcitation, SpeedFluctuation, TorqueRipple
 from tribodyn.faults.fault import Fault
 from tribodyn.faults.flanks import FlankDeviations, FlankTopographies, slope_tolerances
 from tribodyn.faults.turning import TurningMesh, turning_mesh, turns_of

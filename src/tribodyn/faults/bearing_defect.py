@@ -9,8 +9,8 @@ from typing import Literal, get_args
 
 import numpy as np
 
-from tribodyn.checks import require_whole
 from tribodyn.errors import InputError, require_between, require_one_of, require_positive
+from tribodyn.nomenclature import require_whole
 from tribodyn.types import Array
 
 Place = Literal["outer", "inner", "element"]

@@ -9,14 +9,14 @@ from typing import Any
 
 import numpy as np
 
-from tribodyn.checks import require_number
 from tribodyn.errors import Argument, InputError, require_between
 from tribodyn.gear import Material, SpurGear
+from tribodyn.nomenclature import require_number
 from tribodyn.stiffness.fe2d.flank_load import flank_loads
 from tribodyn.stiffness.fe2d.provider import held_radius
 from tribodyn.stiffness.fe2d.ring import element_stiffness, plane_stress
 from tribodyn.stiffness.fe2d.tooth_mesh import MeshSize, SectorMesh, ToothSide, tooth_mesh
-from tribodyn.types import Array, Index
+from tribodyn.types import Array, Index, Tree
 
 #: Places along the flank.
 _PLACES = 13
@@ -37,7 +37,7 @@ LEAST_TANGENT, GREATEST_TANGENT = math.radians(-45.0), math.radians(45.0)
 #: Points at which the tangent of the fillet is tabulated.
 _TANGENTS = 401
 #: Factorization of a symmetric positive matrix.
-_SYMMETRIC: dict[str, Any] = {
+_SYMMETRIC: Tree = {
     "permc_spec": "MMD_AT_PLUS_A", "diag_pivot_thresh": 0.0, "options": {"SymmetricMode": True}
 }  # fmt: skip
 

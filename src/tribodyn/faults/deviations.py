@@ -4,16 +4,16 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, replace
-from typing import Any, Protocol
+from typing import Protocol
 
 import numpy as np
 
-from tribodyn.checks import require_whole
 from tribodyn.errors import require_between
 from tribodyn.faults.fault import Fault, GearName
 from tribodyn.gear import SpurPair
+from tribodyn.nomenclature import require_whole
 from tribodyn.stiffness.loaded.problem import ContactPlaces
-from tribodyn.types import Array
+from tribodyn.types import Array, Tree
 
 #: Largest amplitude that is a deviation and not a slip of the unit [m].
 _MOST = 1e-3
@@ -282,5 +282,5 @@ class PitchDeviations(Fault):
             single_pitch_deviation=(),
             cumulative_pitch_deviation=tuple((places - places[0]).tolist()),
         )
-        changed: dict[str, Any] = {self.gear: replace(gear, modification=modification)}
+        changed: Tree = {self.gear: replace(gear, modification=modification)}
         return replace(pair, **changed)

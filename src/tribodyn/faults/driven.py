@@ -13,7 +13,7 @@ from numpy.typing import ArrayLike
 
 from tribodyn.errors import InputError, require_one_of, require_positive
 from tribodyn.faults.excitation import Shaft, ShaftExcitation, SpeedFluctuation
-from tribodyn.types import Array, ComplexArray
+from tribodyn.types import Array, ComplexArray, Tree
 
 if TYPE_CHECKING:
     from tribodyn.dynamics import System
@@ -394,7 +394,7 @@ def _on_longer_clock(system: System, periods: int) -> System:
 
 def _on_uneven_clock(system: System, clock: _UnevenClock) -> System:
     """The system with its contacts and frictions over the uneven clock."""
-    parts: dict[str, Any] = {"contacts": [], "frictions": []}
+    parts: Tree = {"contacts": [], "frictions": []}
     for name, clocked in (
         ("contacts", system.clocked_contacts),
         ("frictions", system.clocked_frictions),
@@ -402,6 +402,6 @@ def _on_uneven_clock(system: System, clock: _UnevenClock) -> System:
         for part in clocked:
             entries = {key: value for key, value in vars(part).items() if callable(value)}
             warped = {key: _Warped(value, clock) for key, value in entries.items()}
-            changed: dict[str, Any] = {"events": clock.times(part.events), **warped}
+            changed: Tree = {"events": clock.times(part.events), **warped}
             parts[name].append(replace(part, **changed))
     return replace(system, **parts)

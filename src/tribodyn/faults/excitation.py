@@ -10,13 +10,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from tribodyn.checks import require_whole
-from tribodyn.errors import (
-    Argument,
-    InputError,
-    require_between,
-    require_positive,
-)
+from tribodyn.errors import Argument, InputError, require_between, require_positive
+from tribodyn.nomenclature import require_whole
 from tribodyn.types import Array, ComplexArray
 
 #: Most turns of a shaft after which its orders repeat.

@@ -7,14 +7,13 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from tribodyn.checks import require_whole
 from tribodyn.errors import Argument, InputError, Problem, require_between, require_one_of
 from tribodyn.faults.deviations import class_sizes
 from tribodyn.faults.fault import Fault
 from tribodyn.gear import ProfileMap, SpurGear, SpurPair
 from tribodyn.gear.mesh_geometry import flank_ranges
 from tribodyn.gear.pair_checks import map_problems
-from tribodyn.nomenclature import GEARS
+from tribodyn.nomenclature import GEARS, require_whole
 from tribodyn.stiffness.loaded.problem import ContactPlaces
 from tribodyn.types import Array, Index
 

@@ -14,7 +14,7 @@ from tribodyn.aliases import with_old_names
 from tribodyn.ehl.traction.film_temperature import STEEL_THERMAL_CONTACT_COEFFICIENT
 from tribodyn.errors import InputError, Problem, require_between, require_positive, shortened, warn
 from tribodyn.model import Model, Registry
-from tribodyn.types import Array, Mask
+from tribodyn.types import Array, ByName, Mask, Tree
 
 if TYPE_CHECKING:
     from tribodyn.ehl.traction.traction import FilmState
@@ -269,7 +269,7 @@ class FrictionLaw(Model):
     name: str
     source: str
     function: Callable[..., Array | FrictionParts] = field(repr=False)
-    options: Mapping[str, Any] = field(default_factory=lambda: MappingProxyType({}))
+    options: ByName = field(default_factory=lambda: MappingProxyType({}))
     needs_film: bool = False
     needs_oil: bool = True
     meaning: str = ""
@@ -301,9 +301,7 @@ class FrictionLaw(Model):
         friction = self.evaluate(contact, options)
         return friction.coefficient if isinstance(friction, FrictionParts) else friction
 
-    def evaluate(
-        self, contact: TribologicalContact, options: Mapping[str, Any]
-    ) -> Array | FrictionParts:
+    def evaluate(self, contact: TribologicalContact, options: ByName) -> Array | FrictionParts:
         """Result of the law: the coefficients, with their parts if it has them.
 
         Parameters
@@ -322,7 +320,7 @@ class FrictionLaw(Model):
         """
         return self.function(contact, **self.complete(options))
 
-    def complete(self, options: Mapping[str, Any]) -> dict[str, Any]:
+    def complete(self, options: ByName) -> Tree:
         """Options with the defaults filled in.
 
         Parameters

@@ -5,10 +5,10 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import ArrayLike
 
-from tribodyn.checks import positive
 from tribodyn.errors import InputError, require_between, require_positive, warn
 from tribodyn.friction.base import DRY_STEEL, LAWS, of_columns
 from tribodyn.model import Registry, choice, number
+from tribodyn.nomenclature import positive
 from tribodyn.types import Array
 
 #: Floor of the sliding speed [m/s]. The formula grows without bound as sliding stops, though only

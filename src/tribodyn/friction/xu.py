@@ -5,9 +5,9 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import ArrayLike
 
-from tribodyn.checks import positive
 from tribodyn.errors import InputError, require_between
 from tribodyn.friction.base import DRY_STEEL, LAWS, Range, of_columns, warn_outside
+from tribodyn.nomenclature import positive
 from tribodyn.types import Array
 
 #: Constants b1 to b9 of the regression.

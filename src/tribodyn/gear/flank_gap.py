@@ -7,12 +7,12 @@ import math
 import numpy as np
 from numpy.typing import ArrayLike
 
-from tribodyn.checks import require_one_shape
 from tribodyn.errors import require_positive
 from tribodyn.gear.cylindrical_gear import SpurGear
 from tribodyn.gear.cylindrical_pair import SpurPair
 from tribodyn.gear.mesh_geometry import FlankRange, default_relief_length, flank_ranges
 from tribodyn.gear.modification import FlankModification
+from tribodyn.nomenclature import require_one_shape
 from tribodyn.types import Array
 
 #: Length of an end relief over the face width, unless it is given.

@@ -11,11 +11,12 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 from tribodyn.errors import Argument, InputError, require_positive
 from tribodyn.gear.curves import inverse_involute, involute
 from tribodyn.gear.tooth_form import ToothForm, transverse_pressure_angle
+from tribodyn.types import Tree
 
 
 def _reference_distance(teeth_sum: int, normal_module: float, helix_angle: float) -> float:
@@ -199,7 +200,7 @@ class MeshGeometry:
     center_distance: float
 
     @property
-    def gears(self) -> dict[str, Any]:
+    def gears(self) -> Tree:
         """Both tooth forms by the name of their gear."""
         return {"pinion": self.pinion, "wheel": self.wheel}
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Iterable
 from dataclasses import fields, replace
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 from tribodyn.errors import Argument, InputError, Problem, require_between, require_positive
 from tribodyn.gear.contact_lines import FaceGeometry
@@ -27,6 +27,7 @@ from tribodyn.gear.pair_checks import (
     teeth_problems,
 )
 from tribodyn.gear.tooth_form import BasicRack, transverse_pressure_angle
+from tribodyn.types import Tree
 
 #: Placeholder of a tip diameter that is computed later; any positive value.
 _UNKNOWN_TIP = 1.0
@@ -38,7 +39,7 @@ class _Drawing(NamedTuple):
     """Drawing data of one gear before the missing values are computed."""
 
     name: str  #: ``"pinion"`` or ``"wheel"``
-    figures: dict[str, Any]  #: fields of :class:`GearData`; ``None`` is what was not given
+    figures: Tree  #: fields of :class:`GearData`; ``None`` is what was not given
 
     def data(self, tip_diameter: float = _UNKNOWN_TIP, tooth_thinning: float = 0.0) -> GearData:
         """Gear with the drawing data, and these values for what is missing."""

@@ -11,7 +11,6 @@ from typing import ClassVar, NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike
 
-from tribodyn.checks import one_or_more
 from tribodyn.contact import gear_loss_factor as integrated
 from tribodyn.contact import path_of_contact
 from tribodyn.errors import Argument, InputError, require_between, warn
@@ -19,7 +18,7 @@ from tribodyn.gear import HypoidBlank, HypoidFlanks, SpurPair
 from tribodyn.losses.bearings import RollingBearing, bearing_moments
 from tribodyn.losses.no_load import churning_loss, seal_loss, windage_loss
 from tribodyn.lubricant import Lubricant
-from tribodyn.nomenclature import GEARS
+from tribodyn.nomenclature import GEARS, one_or_more
 from tribodyn.record import Labels, Record, fact, quantity, record
 from tribodyn.types import Array
 

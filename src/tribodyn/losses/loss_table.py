@@ -25,7 +25,7 @@ from tribodyn.errors import (
 )
 from tribodyn.friction.measured import FZG_POINTS
 from tribodyn.losses.gearbox import gear_loss_factor
-from tribodyn.types import Array
+from tribodyn.types import Array, Tree
 from tribodyn.units import RPM
 from tribodyn.validated_files import plain_number, read_bytes
 
@@ -203,7 +203,7 @@ def read_power_loss_table(path: str | Path, gear_loss_factor: float, **more: Any
     cells = csv.reader((line for _, line in numbered), delimiter=part)
     (_, head), *lines = zip((n for n, _ in numbered), cells, strict=True)
     columns, problems = _columns(file, head), _too_long(file, head, lines)
-    values: dict[str, Any] = {
+    values: Tree = {
         name: _column(file, lines, column, problems) for name, column in columns.items()
     }
     if problems:

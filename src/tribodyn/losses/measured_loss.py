@@ -9,10 +9,10 @@ from typing import Any, ClassVar
 
 import numpy as np
 
-from tribodyn.checks import require_whole
 from tribodyn.errors import InputError, Problem, warn
 from tribodyn.losses.gearbox import PARTS, GearboxLosses
 from tribodyn.losses.loss_table import PowerLossTable
+from tribodyn.nomenclature import require_whole
 from tribodyn.record import Labels, Record, fact, quantity, record
 from tribodyn.types import Array, Index
 from tribodyn.units import RPM

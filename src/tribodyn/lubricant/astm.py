@@ -56,9 +56,7 @@ def _require_inside(temperature: float, cold: float, warm: float, margin: float 
 
 
 def walther_viscosity(
-    temperature: float,
-    points: tuple[TemperaturePoint, TemperaturePoint],
-    margin: float = MARGIN,
+    temperature: float, points: tuple[TemperaturePoint, TemperaturePoint], margin: float = MARGIN
 ) -> float:
     """Kinematic viscosity at a temperature from two measured points.
 

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from functools import lru_cache
-from typing import Any
 
 from tribodyn.errors import Argument, InputError
 from tribodyn.lubricant.astm import MARGIN, walther_slope, walther_viscosity
@@ -11,6 +10,7 @@ from tribodyn.lubricant.data_sheet import SHEET_RANGE, points_through
 from tribodyn.lubricant.oil import Lubricant
 from tribodyn.lubricant.pressure_laws import agma_925_coefficient
 from tribodyn.model import Registry
+from tribodyn.types import Tree
 from tribodyn.units import ZERO_CELSIUS
 
 #: Temperature difference [K] below which temperatures are equal.
@@ -20,7 +20,7 @@ _OF_OTHER_TEMPERATURES = ("viscosity_index", "density_fall", "base_oil")
 
 
 #: An oil as the library has it: tables with value, unit and source, or lists of them.
-OilRecord = dict[str, Any]
+OilRecord = Tree
 
 
 @lru_cache(maxsize=1)
@@ -117,9 +117,7 @@ def temperature_range(name: str) -> tuple[float, float]:
     return cold - MARGIN, warm + MARGIN
 
 
-def _common(
-    name: str, record: OilRecord, unused: tuple[str, ...] = (), remark: str = ""
-) -> dict[str, Any]:
+def _common(name: str, record: OilRecord, unused: tuple[str, ...] = (), remark: str = "") -> Tree:
     """Arguments common to all oils of the library; sources of unused entries are left out."""
     quantities_of: dict[str, list[str]] = {}
     for key, value in record.items():

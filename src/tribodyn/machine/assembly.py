@@ -26,7 +26,7 @@ from tribodyn.machine.planetary.plane_model import without_free_rotation
 from tribodyn.machine.planetary.turning_frame import frame_terms
 from tribodyn.machine.reduction import machine_structure
 from tribodyn.machine.structure import MachineStructure
-from tribodyn.types import Array
+from tribodyn.types import Array, Tree
 
 
 def system(machine: Machine | MachineStructure, *, phases: bool | Phases = False) -> System:
@@ -116,7 +116,7 @@ def _contact(structure: MachineStructure, name: str, phases: Phases | None) -> C
     )
 
 
-def _clock(machine: Machine, name: str, phases: Phases | None) -> dict[str, Any]:
+def _clock(machine: Machine, name: str, phases: Phases | None) -> Tree:
     """Periods of a mesh in one of the clock or of each phase, and where its first begins."""
     mesh, cycles = machine.meshes[name], machine.clock.cycles[name]
     common = {"offset": mesh.offset / mesh.period, "period": mesh.period, "name": f"mesh {name}"}
@@ -214,7 +214,7 @@ def _crossed_friction(structure: MachineStructure, name: str, gears: Array) -> A
         remedy = "Give the functions of the mesh table of a hypoid pair"
         raise InputError(what, f"meshes.{name}.friction", why, remedy)
     drives = machine.kinematics.meshes[name].driver == mesh.gears[0]
-    pair: dict[str, Any] = {"first_drives": drives, "crossing": mesh.crossing}
+    pair: Tree = {"first_drives": drives, "crossing": mesh.crossing}
     onto = pair_coordinates(machine.directions[name], SPATIAL, **pair) @ gears
     law = Contact(direction=np.ones(SPATIAL), stiffness=0.0, friction=entry)
     return projected(law if drives else run_back(law), onto).friction

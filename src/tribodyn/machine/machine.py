@@ -9,7 +9,6 @@ from dataclasses import dataclass, field, replace
 from fractions import Fraction
 from functools import cached_property
 from types import MappingProxyType
-from typing import Any
 
 import numpy as np
 
@@ -38,7 +37,7 @@ from tribodyn.machine.housing import Housing
 from tribodyn.machine.mesh import Mesh
 from tribodyn.machine.planetary.stage_parts import PlanetaryStage
 from tribodyn.machine.shaft import Coupling, Shaft
-from tribodyn.types import Array
+from tribodyn.types import Array, ByName
 
 #: What follows from the loads and the laws of the meshes and bearings.
 _OF_LOADS = ("kinematics", "clock", "phases", "directions", "gear_loads")
@@ -410,7 +409,7 @@ class Machine:
                 yield from _missing(where, bearing.node, "node of the housing", nodes)
 
 
-def _parts(group: str, parts: object, kind: type) -> Mapping[str, Any]:
+def _parts(group: str, parts: object, kind: type) -> ByName:
     if not isinstance(parts, Mapping):
         what, why = f"{group} is {type(parts).__name__}", f"Wanted: a mapping of names to {kind}"
         raise InputError(what, group, why, f'Give {{"name": {kind.__name__}(...)}}')

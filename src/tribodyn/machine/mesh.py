@@ -11,7 +11,6 @@ from typing import Any, Literal, NamedTuple
 
 import numpy as np
 
-from tribodyn.checks import require_whole
 from tribodyn.dynamics.equations.entry import Entry, read_events, varies
 from tribodyn.dynamics.equations.system import Contact, LoadFriction
 from tribodyn.errors import Argument, InputError, real_numbers
@@ -19,6 +18,7 @@ from tribodyn.gear import HypoidBlank
 from tribodyn.machine.fields import check_number, quoted
 from tribodyn.machine.gear import Gear
 from tribodyn.machine.graph.crossed import CrossedAxes, CrossedGeometry
+from tribodyn.nomenclature import require_whole
 from tribodyn.types import Array
 
 Hand = Literal["right", "left"]

@@ -19,7 +19,7 @@ from tribodyn.dynamics import Contact, LoadFriction
 from tribodyn.machine.graph.crossed import CrossedGeometry
 from tribodyn.machine.graph.directions import MeshDirection
 from tribodyn.machine.mesh import PHASES, Mesh
-from tribodyn.types import Array
+from tribodyn.types import Array, Tree
 
 if TYPE_CHECKING:
     from tribodyn.machine.machine import Machine
@@ -96,7 +96,7 @@ def with_exchanged_gears(mesh: Mesh, *, internal: bool) -> Mesh:
 
 def run_back(part: T) -> T:
     """Contact or friction of a driving pinion for a driving wheel, which turns it back in time."""
-    changes: dict[str, Any] = {n: _back(getattr(part, n)) for n in _ENTRIES if hasattr(part, n)}
+    changes: Tree = {n: _back(getattr(part, n)) for n in _ENTRIES if hasattr(part, n)}
     # What slides the other way rubs the other way.
     opposed = "friction" if "friction" in changes else "coefficients"
     changes[opposed] = _opposed(changes[opposed])

@@ -8,7 +8,6 @@ from typing import Any, Literal
 
 import numpy as np
 
-from tribodyn.checks import require_number, require_whole
 from tribodyn.errors import (
     Argument,
     InputError,
@@ -28,6 +27,7 @@ from tribodyn.measurement.mesh_harmonics import (
 )
 from tribodyn.measurement.mesh_speed import MeshSpeed
 from tribodyn.measurement.recording import Recording
+from tribodyn.nomenclature import require_number, require_whole
 from tribodyn.record import Record, fact, quantity, record
 from tribodyn.types import Array, Texts
 from tribodyn.units import UnitProblemError, convert
@@ -448,11 +448,7 @@ def _same_unit(unit: str, target_unit: str, name: str) -> float:
 
 
 def _gain(
-    gain: Any,
-    name: str,
-    computed: Array,
-    measured: tuple[MeshHarmonics, float],
-    speed: MeshSpeed,
+    gain: Any, name: str, computed: Array, measured: tuple[MeshHarmonics, float], speed: MeshSpeed
 ) -> float:
     """Transfer path of a channel; a fitted one is that of the harmonics above the noise."""
     if not isinstance(gain, str):

@@ -2,17 +2,14 @@
 
 from __future__ import annotations
 
-from typing import Any
-
 import numpy as np
 
 from tribodyn.errors import InputError, Problem
-from tribodyn.measurement.mean_revolutions import attempt
-from tribodyn.measurement.shaft_speed import ShaftSpeed
+from tribodyn.measurement.shaft_speed import ShaftSpeed, attempt
 from tribodyn.signals.cepstrum import lifter
 from tribodyn.signals.cyclic_coherence import CyclicCoherence, cyclic_coherence
-from tribodyn.signals.kurtogram import Kurtogram, kurtogram
-from tribodyn.types import Array
+from tribodyn.signals.envelope import Kurtogram, kurtogram
+from tribodyn.types import Array, Tree
 
 #: Orders of the shaft up to which modulations are searched, and turns of the record for it.
 _ORDERS, _TURNS = 8.5, 20.0
@@ -28,11 +25,9 @@ def impacts_of(
     shaft: ShaftSpeed | None,
     mesh_frequency: float | None,
     notes: list[Problem],
-) -> dict[str, Any]:
+) -> Tree:
     """Kurtogram of a channel, and cyclic coherence of its turns without the mesh."""
-    parts: dict[str, Any] = {
-        "kurtogram": attempt("kurtogram", lambda: kurtogram(values, rate), notes)
-    }
+    parts: Tree = {"kurtogram": attempt("kurtogram", lambda: kurtogram(values, rate), notes)}
     if shaft is None or shaft.varies:
         return parts
     turn = shaft.mean / (2.0 * np.pi)

@@ -12,12 +12,12 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from tribodyn.checks import require_whole
 from tribodyn.errors import Argument, InputError, warn
 from tribodyn.measurement.mesh_speed import MeshSpeed, mesh_speed
 from tribodyn.measurement.orders import order_spectrum
 from tribodyn.measurement.recording import Recording
 from tribodyn.measurement.tacho import angle_of_channel
+from tribodyn.nomenclature import require_whole
 from tribodyn.types import Array, Mask
 
 #: Least mesh cycles, amplitude over noise of a line, and share of the mean square in harmonics.

@@ -15,9 +15,9 @@ from typing import Any
 
 import numpy as np
 
-from tribodyn.checks import require_number, require_whole
 from tribodyn.errors import Argument, InputError, require_between, require_positive
 from tribodyn.measurement.orders import order_spectrum
+from tribodyn.nomenclature import require_number, require_whole
 from tribodyn.signals.angular_resampling import checked_signal, decimated
 from tribodyn.types import Array, ComplexArray
 

@@ -14,9 +14,9 @@ from functools import lru_cache
 
 import numpy as np
 
-from tribodyn.checks import require_whole
 from tribodyn.compiled.cache import cached_njit
 from tribodyn.errors import Argument, InputError, require_between, require_one_of, require_positive
+from tribodyn.nomenclature import require_whole
 from tribodyn.record import Record, fact, quantity, record
 from tribodyn.signals.angular_resampling import checked_signal
 from tribodyn.signals.order_map import OrderMap

@@ -1,14 +1,190 @@
-"""Sideband cursors: amplitudes of an order spectrum at a carrier and evenly spaced orders."""
+"""Sidebands of a recording: cursors on them, and the shaft that makes them."""
 
 from __future__ import annotations
+
+from dataclasses import dataclass
+from math import gcd
 
 import numpy as np
 from numpy.typing import NDArray
 
-from tribodyn.errors import Argument, InputError, require_positive
+from tribodyn.errors import Argument, InputError, Problem, require_positive
 from tribodyn.measurement.orders import OrderSpectrum
+from tribodyn.nomenclature import require_whole
 from tribodyn.record import Record, fact, quantity, record
 from tribodyn.types import Array
+
+#: Fewest lines that stand out where a gear modulates.
+_LEAST = 2
+#: Power of the multiples of another order over that of the mesh from which the teeth are doubted,
+#: the fewest of a gear, and the largest ratio of the true number to the stated one.
+_DOUBT, _FEWEST, _OTHERS = 4.0, 8, 3
+
+
+@dataclass(frozen=True)
+class ShaftLines:
+    """Lines of an order spectrum that belong to one of two gears alone.
+
+    Parameters
+    ----------
+    number : int
+        Lines that are neither of the mate nor of the mesh.
+    clear : int
+        Those of them that stand out of the noise.
+    rms : float
+        Root mean square of the clear ones together, in the unit of the signal.
+    """
+
+    number: int
+    clear: int
+    rms: float
+
+    @property
+    def stands_out(self) -> bool:
+        """Whether at least two lines stand out: what varies turns with this gear."""
+        return self.clear >= _LEAST
+
+
+def modulating_shaft(
+    orders: OrderSpectrum, teeth: int, mate_teeth: int
+) -> tuple[ShaftLines, ShaftLines]:
+    """Find lines of the gear on the shaft alone, and lines of its mate alone.
+
+    A fault of a gear repeats with its turns. Where the numbers of teeth have a common factor, some
+    of its lines are at the same orders as lines of the mate, whose mean revolution and indicators
+    then show the fault too; lines of one gear alone tell which it is.
+
+    Parameters
+    ----------
+    orders : OrderSpectrum
+        Over the turns of the shaft.
+    teeth, mate_teeth : int
+        Teeth of the gear on the shaft and of its mate [-].
+
+    Returns
+    -------
+    tuple of ShaftLines
+        Of the shaft and of the mate. Of a gear whose every line is one of its mate, all its lines
+        if none of the mate alone stands out.
+
+    Raises
+    ------
+    InputError
+        If a number of teeth is not whole or below 1.
+
+    Examples
+    --------
+    >>> from tribodyn.measurement import order_spectrum
+    >>> angle = 2 * np.pi * 50.0 * np.arange(20000) / 10000.0
+    >>> wave = (1.0 + 0.2 * np.cos(16 / 24 * angle)) * np.cos(16 * angle)
+    >>> wave += 1e-3 * np.random.default_rng(1).standard_normal(wave.size)
+    >>> shaft, mate = modulating_shaft(order_spectrum(wave, angle, 40), 16, 24)
+    >>> shaft.stands_out, mate.stands_out
+    (False, True)
+    """
+    for name, count in (("teeth", teeth), ("mate_teeth", mate_teeth)):
+        require_whole(name, count, 1)
+    reach = LOBE * float(orders.orders[1])
+    top = float(orders.orders[-1]) - reach
+    families: list[Array] = [
+        np.arange(1.0, int(top / each) + 1.0) * each for each in (1.0, teeth / mate_teeth)
+    ]
+    floor = _floor(orders, np.concatenate(families))
+    mesh = np.arange(0.0, top + teeth, teeth)
+
+    def lines_of(family: Array, strange: Array) -> ShaftLines:
+        alone = family[_distance(family, strange) > reach]
+        places = np.rint(alone / orders.orders[1]).astype(int)
+        size = orders._amplitudes_at(alone)
+        clear = size > CLEAR * floor[places]
+        return ShaftLines(
+            places.size, int(clear.sum()), float(np.sqrt(0.5 * np.sum(size[clear] ** 2)))
+        )
+
+    of_gears = [
+        lines_of(family, np.concatenate([other, mesh]))
+        for family, other in (families, families[::-1])
+    ]
+    for number in (0, 1):  # a multiple of its teeth is the number of its mate's
+        if not of_gears[number].number and not of_gears[1 - number].stands_out:
+            of_gears[number] = lines_of(families[number], mesh)
+    return of_gears[0], of_gears[1]
+
+
+def doubt_teeth(orders: OrderSpectrum, teeth: int) -> Problem | None:
+    """Doubt a number of teeth where multiples of another order hold far more power than its."""
+    highest = float(orders.orders[-1])
+    floor = CLEAR * float(np.median(orders.amplitudes))
+
+    def power(count: int) -> float:
+        size = orders._amplitudes_at(np.arange(float(count), highest + 1e-9, count))
+        return float(np.sum(size[size > floor] ** 2))
+
+    counts = range(max(teeth // _OTHERS, _FEWEST), min(_OTHERS * teeth, int(highest)) + 1)
+    powers = {count: power(count) for count in counts}
+    most = max(powers.values(), default=0.0)
+    if most <= _DOUBT * powers.get(teeth, most):
+        return None
+    likely = max(count for count, value in powers.items() if value > 0.9 * most)
+    times = most / max(powers[teeth], 1e-3 * most)
+    return Problem(
+        f"the mesh lines seem to be multiples of order {likely}, not of {teeth}",
+        "",
+        f"Those hold {times:.0f} times the power or more",
+        "Check the number of teeth, and the pulses of the tachometer in a revolution",
+    )
+
+
+def explain_modulation(
+    lines: tuple[ShaftLines, ShaftLines], teeth: int, mate_teeth: int, unit: str
+) -> str:
+    """Sentence that names the gear whose lines stand out; empty where none does."""
+    if teeth == mate_teeth:
+        return ""
+    names = ("shaft", "mate")
+    loud = [k for k in (0, 1) if lines[k].stands_out]
+    if not loud:
+        return ""
+    parts = [
+        f"{lines[k].clear} of the {lines[k].number} lines of the {names[k]} stand out of the "
+        f"noise, rms {lines[k].rms:.3g} {unit}".rstrip()
+        for k in loud
+    ]
+    if len(loud) == 2:
+        return f"Both gears modulate the mesh: {'; '.join(parts)}."
+    this, other = names[loud[0]], 1 - loud[0]
+    text = f"What modulates the mesh turns with the {this}: {parts[0]}, "
+    text += f"of the {names[other]} alone {lines[other].clear or 'none'}."
+    common = gcd(teeth, mate_teeth)
+    if common > 1:
+        text += (
+            f" Teeth with the common factor {common} put lines of the {this} into the mean "
+            f"revolution of the {names[other]} too: its indicators are not those of the "
+            f"{names[other]} alone."
+        )
+    return text
+
+
+def _distance(orders: Array, others: Array) -> Array:
+    """Distance of each order to the nearest of others."""
+    others = np.sort(others)
+    right = np.clip(np.searchsorted(others, orders), 1, others.size - 1)
+    return np.minimum(np.abs(orders - others[right - 1]), np.abs(orders - others[right]))
+
+
+def _floor(orders: OrderSpectrum, lines: Array) -> Array:
+    """Noise at each order: medians between the lines over stretches of four orders."""
+    step = float(orders.orders[1])
+    between = _distance(orders.orders, np.append(lines, 0.0)) > LOBE * step
+    if not between.any():
+        return np.full(orders.orders.size, np.inf)
+    places = np.flatnonzero(between)
+    stretches = np.array_split(places, max(1, int(orders.orders[-1] / 4.0)))
+    stretches = [each for each in stretches if each.size]
+    centers = [float(orders.orders[each].mean()) for each in stretches]
+    medians = [float(np.median(orders.amplitudes[each])) for each in stretches]
+    return np.interp(orders.orders, centers, medians)
+
 
 #: Amplitude over the median of the lines around it from which a sideband stands out.
 CLEAR = 4.0

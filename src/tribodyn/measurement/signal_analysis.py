@@ -5,42 +5,34 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import field
 from math import gcd
-from typing import Any
 
 import numpy as np
 
-from tribodyn.checks import require_whole
-from tribodyn.errors import (
-    Argument,
-    InputError,
-    Problem,
-    require_between,
-    require_positive,
-)
+from tribodyn.errors import Argument, InputError, Problem, require_between, require_positive
 from tribodyn.measurement.impacts import impact_figures, impacts_of
-from tribodyn.measurement.mean_revolutions import (
+from tribodyn.measurement.orders import OrderSpectrum, order_map, order_spectrum
+from tribodyn.measurement.recording import Recording, in_si
+from tribodyn.measurement.shaft_speed import (
     MATE,
     SHAFT,
+    ShaftSpeed,
     average_figures,
     compare_with_earlier,
     left_out,
     mean_revolutions,
+    shaft_speed,
 )
-from tribodyn.measurement.modulating_shaft import doubt_teeth
-from tribodyn.measurement.orders import OrderSpectrum, order_map, order_spectrum
-from tribodyn.measurement.recording import Recording, in_si
-from tribodyn.measurement.shaft_speed import ShaftSpeed, shaft_speed
-from tribodyn.measurement.sideband_cursors import LOBE
+from tribodyn.measurement.sideband_cursors import LOBE, doubt_teeth
+from tribodyn.nomenclature import require_whole
 from tribodyn.record import Parts, Record, fact, quantity, record
 from tribodyn.signals.condition_indicators import ConditionIndicators
 from tribodyn.signals.cyclic_coherence import CyclicCoherence
-from tribodyn.signals.envelope import envelope, envelope_spectrum
+from tribodyn.signals.envelope import Kurtogram, envelope, envelope_spectrum
 from tribodyn.signals.gear_indicators import kurtosis
-from tribodyn.signals.kurtogram import Kurtogram
 from tribodyn.signals.order_map import OrderMap
 from tribodyn.signals.spectrum import SignalSpectrum, distinct_peaks, spectrum
 from tribodyn.signals.synchronous_average import SynchronousAverage
-from tribodyn.types import Array
+from tribodyn.types import Array, Tree
 
 #: Peaks of a spectrum and mesh harmonics among the figures.
 _PEAKS, _HARMONICS = 5, 5
@@ -330,7 +322,7 @@ def analyse_signal(
     gears = tuple(shafts.values()) or (() if line is None else (1,))
     shaft = shaft_speed(recording, values, (tacho, pulses_per_revolution, speed), gears, notes)
     lines = spectrum(values, rate, unit=unit)
-    parts: dict[str, Any] = {}
+    parts: Tree = {}
     if shaft is not None:
         parts |= _orders(values, rate, unit, shaft, (max_order, teeth, mate_teeth), notes)
         parts |= mean_revolutions(values, recording.time, unit, shaft, shafts, notes)
@@ -384,7 +376,7 @@ def _orders(
     shaft: ShaftSpeed,
     limits: tuple[float | None, int | None, int | None],
     notes: list[Problem],
-) -> dict[str, Any]:
+) -> Tree:
     """Order spectrum, and order map where the speed changes."""
     max_order, teeth, mate_teeth = limits
     fastest = float(np.diff(shaft.angle).max())
@@ -399,7 +391,7 @@ def _orders(
     window = "flattop" if turned >= _FLATTOP else "hann"
     period = pair[1] // gcd(*pair)
     try:
-        parts: dict[str, Any] = {
+        parts: Tree = {
             "orders": order_spectrum(
                 values, shaft.angle, max_order, window=window, unit=unit, period=period
             )

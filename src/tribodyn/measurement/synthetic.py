@@ -7,9 +7,9 @@ from typing import Any
 
 import numpy as np
 
-from tribodyn.checks import require_whole
 from tribodyn.errors import Argument, InputError, real_numbers, require_between, require_positive
 from tribodyn.measurement.recording import Recording
+from tribodyn.nomenclature import require_whole
 from tribodyn.types import Array
 
 

@@ -8,7 +8,6 @@ from typing import Any, Literal
 
 import numpy as np
 
-from tribodyn.checks import require_whole
 from tribodyn.errors import (
     Argument,
     ComputationError,
@@ -18,6 +17,7 @@ from tribodyn.errors import (
     warn,
 )
 from tribodyn.measurement.recording import Recording, in_si
+from tribodyn.nomenclature import require_whole
 from tribodyn.signals.angular_resampling import checked_signal
 from tribodyn.types import Array
 

@@ -24,7 +24,7 @@ from tribodyn.errors import require_between
 from tribodyn.gear import Material
 from tribodyn.lubricant import Lubricant
 from tribodyn.mesh.grid import PhaseGrid, phase_grid
-from tribodyn.types import Array, Index, Mask
+from tribodyn.types import Array, Index, Mask, Tree
 
 
 @dataclass(frozen=True, eq=False)
@@ -110,13 +110,13 @@ class PairsInContact:
 
     def some(self, index: Index) -> PairsInContact:
         """A part of these contacts."""
-        columns: dict[str, Any] = {n: v for n, v in vars(self).items() if np.ndim(v)}
+        columns: Tree = {n: v for n, v in vars(self).items() if np.ndim(v)}
         return replace(self, **{name: column[index] for name, column in columns.items()})
 
     def joined(self, others: PairsInContact) -> PairsInContact:
         """These contacts and others of the same pair."""
         values = {n: v for n, v in vars(self).items() if n != "length" and np.ndim(v)}
-        columns: dict[str, Any] = {
+        columns: Tree = {
             name: np.concatenate([value, getattr(others, name)]) for name, value in values.items()
         }
         return replace(self, **columns)

@@ -11,7 +11,7 @@ import json
 import math
 from dataclasses import asdict, dataclass
 from functools import cached_property, lru_cache
-from typing import TYPE_CHECKING, Any, NoReturn
+from typing import TYPE_CHECKING, NoReturn
 
 import numpy as np
 
@@ -22,7 +22,7 @@ from tribodyn.errors import InputError, quiet
 from tribodyn.gear import BasicRack, FlankModification, ProfileMap, SpurGear, SpurPair
 from tribodyn.mesh.grid import PhaseGrid
 from tribodyn.nomenclature import GEARS
-from tribodyn.types import Array
+from tribodyn.types import Array, Tree
 
 if TYPE_CHECKING:
     from tribodyn.mesh.columns import MeshColumns
@@ -124,7 +124,7 @@ def read_pair(text: str) -> SpurPair:
         return SpurPair(**values)
 
 
-def _read_modification(values: dict[str, Any]) -> FlankModification:
+def _read_modification(values: Tree) -> FlankModification:
     """Modification of a gear; tables from before there were any have none."""
     chart = values.pop("profile_map", None)
     return FlankModification(profile_map=ProfileMap(**chart) if chart else None, **values)

@@ -33,7 +33,7 @@ from tribodyn.mesh.sharing import (
 )
 from tribodyn.progress import Progress
 from tribodyn.record import from_parts
-from tribodyn.types import Array, Mask
+from tribodyn.types import Array, Mask, Tree
 
 
 @dataclass(frozen=True, eq=False)
@@ -97,7 +97,7 @@ def reported_films(films: Films, loads: Loads[Any], least_load: Array | float) -
     loads.film_at.warn_of_doubt()
     films, certain = loads.film_at.reported(films, loads.tribological)
     certain = (loads.load_per_width > least_load) & certain
-    columns: dict[str, Any] = {}
+    columns: Tree = {}
     for row, name in zip(certain, QUANTITIES, strict=True):
         column = getattr(films, name)
         columns[name] = None if column is None else np.where(row, column, np.nan)

@@ -27,7 +27,7 @@ from tribodyn.mesh.sharing import Teeth, ToothContact, shared_load_columns
 from tribodyn.mesh.table import MeshTable
 from tribodyn.nomenclature import GEARS
 from tribodyn.progress import Progress
-from tribodyn.types import Array
+from tribodyn.types import Array, Tree
 
 #: A mesh table, and the warnings of its models.
 TableWithWarnings = tuple[MeshTable, list[ModelWarning]]
@@ -82,7 +82,7 @@ def _point(pair: Gears, settings: ToothContact, speed: float, torque: float) -> 
     return _Point(speed, torque, cycle, teeth, warnings)
 
 
-def _columns(pair: Gears, settings: ToothContact, points: Sequence[_Point]) -> dict[str, Any]:
+def _columns(pair: Gears, settings: ToothContact, points: Sequence[_Point]) -> Tree:
     """Columns of all points, one row each, or without rows where they are the same."""
     cycle = points[0].cycle
     motion = cycle.motion(np.array([[point.speed] for point in points]))
@@ -155,7 +155,7 @@ def _stacked(row_results: Sequence[Any]) -> Any:
 
 def films_over_flank(
     pair: Gears, settings: ToothContact, torques: Array, speeds: Array, progress: Progress
-) -> dict[str, Any]:
+) -> Tree:
     """Films of all slices, one after the other, each at its places from entry to exit."""
     dry = replace(settings, film_model="none", film_options={})
     loads, films = list[Array](), list[list[dict[str, Array]]]()

@@ -20,7 +20,7 @@ from tribodyn.mesh.gears import NoGears, coordinates_of, read_pair
 from tribodyn.mesh.grid import PhaseGrid
 from tribodyn.nomenclature import QUANTITIES
 from tribodyn.record import labels_of
-from tribodyn.types import Array
+from tribodyn.types import Array, ByName, Tree
 from tribodyn.validated_files import read_bytes, read_dataset
 
 if TYPE_CHECKING:
@@ -54,7 +54,7 @@ def is_mesh_table(path: Path) -> bool:
         return False
 
 
-def stored_values(path: str | PathLike[str]) -> dict[str, Any]:
+def stored_values(path: str | PathLike[str]) -> Tree:
     """Fields of the mesh table in a netCDF file."""
     try:
         data = read_dataset(path)
@@ -74,7 +74,7 @@ def stored_values(path: str | PathLike[str]) -> dict[str, Any]:
     return values
 
 
-def _values(data: xarray.Dataset) -> dict[str, Any]:
+def _values(data: xarray.Dataset) -> Tree:
     """Read the fields of a table from a data set."""
     if absent := [name for name in ("event_phase", "intervals") if name not in data.variables]:
         raise ValueError(f"{absent[0]} is missing")
@@ -86,7 +86,7 @@ def _values(data: xarray.Dataset) -> dict[str, Any]:
     if stored_pair is None and data.attrs["format"] != FORMAT_WITHOUT_GEARS:
         raise ValueError("gear_pair is missing")
     pair = read_pair(stored_pair) if stored_pair is not None else NoGears()
-    values: dict[str, Any] = {"grid": grid, "gear_pair": pair}
+    values: Tree = {"grid": grid, "gear_pair": pair}
     for field in fields(MeshColumns):
         if field.name in data.variables:
             values[field.name] = data[field.name].values
@@ -98,7 +98,7 @@ def _values(data: xarray.Dataset) -> dict[str, Any]:
     return values
 
 
-def _check(values: Mapping[str, Any]) -> None:
+def _check(values: ByName) -> None:
     """Raise for missing fields, wrong shapes, and values that have to be finite but are not."""
     _check_grid(values["grid"])
     count = len(coordinates_of(*(np.shape(values.get("direction", 0.0))[-1:] or (0,))))
@@ -154,7 +154,7 @@ def _is_required(field: Field[Any]) -> bool:
     return field.default is MISSING and field.default_factory is MISSING
 
 
-def _earlier(values: dict[str, Any]) -> dict[str, Any]:
+def _earlier(values: Tree) -> Tree:
     """Add the fields that earlier formats lack: their pairs were independent springs."""
     total_stiffness = values["stiffness"].sum(axis=1)
     force = values["pinion_torque"] / values["gear_pair"].pinion.base_radius

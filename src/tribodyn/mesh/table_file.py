@@ -39,7 +39,7 @@ from tribodyn.mesh.storage import (
     is_mesh_table,
 )
 from tribodyn.mesh.table import MeshTable
-from tribodyn.types import Array
+from tribodyn.types import Array, Tree
 from tribodyn.validated_files import file_kind, plain_number, read_bytes, read_dataset
 
 #: Columns that the force law does not need and that may hold NaN.
@@ -131,7 +131,7 @@ class TableFile:
             film_offset=self.facts.get("film_offset", 0.0),
         )
 
-    def _complete(self, columns: dict[str, Any], normal_force: float) -> dict[str, Any]:
+    def _complete(self, columns: Tree, normal_force: float) -> Tree:
         """Add the columns that follow from those of the file."""
         stiffness = columns["stiffness"]
         count, shape = stiffness.shape[0], stiffness.shape

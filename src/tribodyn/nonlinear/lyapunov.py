@@ -13,12 +13,12 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import ArrayLike
 
-from tribodyn.checks import require_whole
 from tribodyn.dynamics.equations.orbit_coordinates import OrbitCoordinates, static_start
 from tribodyn.dynamics.equations.system import System
 from tribodyn.dynamics.modal.modal_march import compile_motion
 from tribodyn.dynamics.time.simulate import read_force, read_start
 from tribodyn.errors import ComputationError, InputError
+from tribodyn.nomenclature import require_whole
 from tribodyn.nonlinear.lyapunov_carrier import (
     Carrier,
     carrier_of,

@@ -24,8 +24,7 @@ from tribodyn.plot.film.lubrication import (
     mixed_line_contact,
 )
 from tribodyn.plot.film.path import film, film_pressure, film_stiffness, friction, path_of_contact
-from tribodyn.plot.gear.contact_lines import contact_lines
-from tribodyn.plot.gear.flank_modification import flank_modification
+from tribodyn.plot.gear.flanks import contact_lines, flank_modification
 from tribodyn.plot.gear.gear_pair import gear_pair
 from tribodyn.plot.gear.hypoid import ease_off, hypoid_blank, hypoid_contact, hypoid_pair
 from tribodyn.plot.gear.hypoid_running import (
@@ -60,8 +59,7 @@ from tribodyn.plot.machine.planetary import (
 )
 from tribodyn.plot.machine.side_view import machine
 from tribodyn.plot.machine.space_view import machine_space
-from tribodyn.plot.mesh.face_maps import face_maps, rating_maps
-from tribodyn.plot.mesh.loaded_contact import loaded_contact, loaded_sharing
+from tribodyn.plot.mesh.loaded_contact import face_maps, loaded_contact, loaded_sharing, rating_maps
 from tribodyn.plot.mesh.studies import (
     comprehensive_stiffness,
     coupling,
@@ -78,8 +76,12 @@ from tribodyn.plot.mesh.table import (
 )
 from tribodyn.plot.motion.friction import friction_claims, friction_effect, friction_harmonics
 from tribodyn.plot.motion.linear import campbell, forced_response, mode_shapes
-from tribodyn.plot.motion.motion import result_comparison
-from tribodyn.plot.motion.response import adaptive_solution, response
+from tribodyn.plot.motion.motion import (
+    adaptive_solution,
+    paper_comparison,
+    response,
+    result_comparison,
+)
 from tribodyn.plot.motion.spectra import bearing_spectrum, spectrum
 from tribodyn.plot.motion.sweeps import speed_sweep, sweep
 from tribodyn.plot.motion.time_histories import (
@@ -89,12 +91,12 @@ from tribodyn.plot.motion.time_histories import (
     mesh_force,
     tooth_force,
     transmission_error,
+    turning_mesh,
+    turning_motion,
+    wear_depth,
 )
-from tribodyn.plot.motion.turns import turning_mesh, turning_motion, wear_depth
 from tribodyn.plot.nonlinear.branches import bifurcation, continuation
-from tribodyn.plot.nonlinear.phase_plane import lyapunov, phase_portrait, poincare
-from tribodyn.plot.nonlinear.planes import basins, parameter_map
-from tribodyn.plot.papers import paper_comparison
+from tribodyn.plot.nonlinear.planes import basins, lyapunov, parameter_map, phase_portrait, poincare
 from tribodyn.plot.signals.bands import bands, ensemble, surrogate
 from tribodyn.plot.signals.diagnosis import (
     cepstrum,
@@ -105,14 +107,6 @@ from tribodyn.plot.signals.diagnosis import (
     sideband_cursors,
     synchronous_average,
 )
-from tribodyn.plot.signals.lines import (
-    harmonic_spectrum,
-    order_cut,
-    overall_level,
-    sidebands,
-    signal_spectrum,
-)
-from tribodyn.plot.signals.maps import order_map, spectrogram, waterfall
 from tribodyn.plot.signals.recorded import (
     comparison,
     order_spectrum,
@@ -122,6 +116,16 @@ from tribodyn.plot.signals.recorded import (
     tracked_orders,
 )
 from tribodyn.plot.signals.run_up import run_up, run_up_map
+from tribodyn.plot.signals.spectra import (
+    harmonic_spectrum,
+    order_cut,
+    order_map,
+    overall_level,
+    sidebands,
+    signal_spectrum,
+    spectrogram,
+    waterfall,
+)
 from tribodyn.plot.signals.uncertain import (
     band,
     data_set,

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, fields
-from typing import Any, Final
+from typing import Final
 
 from tribodyn.errors import (
     Argument,
@@ -14,6 +14,7 @@ from tribodyn.errors import (
     require_positive,
 )
 from tribodyn.rating.rated_gear import PinionShaft
+from tribodyn.types import Tree
 
 #: Editions of ISO 6336 that are computed.
 EDITIONS: Final = (2006, 2019)
@@ -114,7 +115,7 @@ class RatingConditions:
             require_positive(f"{kind}_safety", getattr(self, f"{kind}_safety"))
 
 
-def rating_conditions(values: dict[str, Any]) -> RatingConditions:
+def rating_conditions(values: Tree) -> RatingConditions:
     """Conditions from keyword arguments, with a message for an unknown name."""
     names = [field.name for field in fields(RatingConditions)]
     for name in values:

@@ -25,6 +25,7 @@ from tribodyn.rating.rated_gear import RatedGear
 from tribodyn.rating.surface.micropitting import record_micropitting
 from tribodyn.rating.surface.path_load import ScuffingLoad
 from tribodyn.rating.surface.scuffing import record_scuffing_flash, record_scuffing_integral
+from tribodyn.types import Tree
 
 #: Names of both gears.
 GEARS = ("pinion", "wheel")
@@ -51,7 +52,7 @@ class GearRating:
     load_cycles: float | None
     factors: Mapping[str, Factor]
 
-    def to_dict(self) -> dict[str, Any]:
+    def to_dict(self) -> Tree:
         """Safeties and factors, as JSON has them.
 
         Returns
@@ -111,7 +112,7 @@ class PairRating:
         """Smaller S_F of both gears."""
         return min(gear.bending_safety for gear in self.gears.values())
 
-    def to_dict(self) -> dict[str, Any]:
+    def to_dict(self) -> Tree:
         """Ratings and factors, as JSON has them.
 
         Returns

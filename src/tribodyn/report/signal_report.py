@@ -12,15 +12,19 @@ import numpy as np
 
 from tribodyn import plot
 from tribodyn.drawing import report_of
-from tribodyn.measurement.mean_revolutions import MATE, SHAFT, attempt
-from tribodyn.measurement.modulating_shaft import explain_modulation, modulating_shaft
-from tribodyn.measurement.sideband_cursors import sideband_cursors
+from tribodyn.measurement.shaft_speed import MATE, SHAFT, attempt
+from tribodyn.measurement.sideband_cursors import (
+    explain_modulation,
+    modulating_shaft,
+    sideband_cursors,
+)
 from tribodyn.plot.signals.recorded import visible_frequency
 from tribodyn.plot.theme.labels import readable, significant
 from tribodyn.progress import SILENT, Progress
 from tribodyn.report.study import write_study_report
 from tribodyn.report.study_report_data import StudyReportData, figure_with_caption
 from tribodyn.signals import cepstrum, narrowband_demodulation
+from tribodyn.types import Tree
 
 if TYPE_CHECKING:
     from tribodyn.drawing import Drawing
@@ -91,7 +95,7 @@ def signal_report_data(
 ) -> StudyReportData:
     """Figures, sentences, table and numbers in SI of an analysed channel, and a verdict on it."""
     numbers = analysis.figures()
-    facts: dict[str, Any] = {"channel": analysis.channel, "unit": analysis.unit, **numbers}
+    facts: Tree = {"channel": analysis.channel, "unit": analysis.unit, **numbers}
     if analysis.speed is not None:
         facts["speed_source"] = analysis.speed.source
     notes = list(analysis.notes)
@@ -404,7 +408,7 @@ def _diagnosis(analysis: SignalAnalysis) -> list[Figure]:
 
 def recorded_motion(
     case: Any, sensors: Sequence[str], progress: Progress = SILENT, **settings: Any
-) -> tuple[Recording, dict[str, Any]]:
+) -> tuple[Recording, Tree]:
     """Record the motion of a case; return the recording and its operation and faults in SI."""
     from tribodyn.cases.load import run
     from tribodyn.study.faults.sensors import check_sensors, sensors_of

@@ -13,12 +13,14 @@ from tribodyn import plot
 from tribodyn.aliases import with_old_names
 from tribodyn.drawing import report_of
 from tribodyn.report.figure_blocks import Block, block_of_figure
-from tribodyn.report.html import plotly_script, template, text_of
-from tribodyn.report.provenance import (
+from tribodyn.report.html import (
     assumptions_of,
     case_text,
     operating_point,
+    plotly_script,
     provenance,
+    template,
+    text_of,
     version,
 )
 from tribodyn.study.pipeline.save import write_file

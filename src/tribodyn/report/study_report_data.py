@@ -17,6 +17,7 @@ from tribodyn.progress import SILENT, Progress
 from tribodyn.report.study import write_bifurcation_report, write_study_report
 from tribodyn.study.pipeline.save import new_directory
 from tribodyn.study.studies.needs import mesh_pair
+from tribodyn.types import Tree
 from tribodyn.units import convert
 
 if TYPE_CHECKING:
@@ -46,7 +47,7 @@ class StudyReportData(NamedTuple):
     statements: Sequence[str]  #: results in sentences
     head: Sequence[str]
     rows: Sequence[Sequence[str]]
-    facts: dict[str, Any]  #: in SI
+    facts: Tree  #: in SI
     best: AnyCase | None = None  #: resulting case, such as the optimum
     table_file: str = ""  #: name of a file of the table
 
@@ -56,7 +57,7 @@ def figure_with_caption(figure: Drawing, result: object) -> Picture:
     return figure.heading, figure(result), figure.caption_of(result)
 
 
-def facts_of(result: object, names: str) -> dict[str, Any]:
+def facts_of(result: object, names: str) -> Tree:
     """Fields of a result for JSON, by their names in one text."""
     values = {name: getattr(result, name) for name in names.split()}
     return {n: finite(v.tolist() if hasattr(v, "tolist") else v) for n, v in values.items()}
@@ -67,11 +68,7 @@ def _title(picture: Picture) -> str:
 
 
 def save_study(
-    kind: str,
-    case: AnyCase | None,
-    target: Path,
-    report: StudyReportData,
-    force: bool = False,
+    kind: str, case: AnyCase | None, target: Path, report: StudyReportData, force: bool = False
 ) -> None:
     """Write case, data set and report of a study to a directory."""
     from tribodyn.validated_files import csv_text, write_dataset
@@ -182,11 +179,7 @@ def lead_report_data(
 
 
 def run_up_report_data(
-    case: AnyCase,
-    ends: Any,
-    duration: float,
-    down: bool = False,
-    progress: Progress = SILENT,
+    case: AnyCase, ends: Any, duration: float, down: bool = False, progress: Progress = SILENT
 ) -> StudyReportData:
     """Vibration levels over the speed of a run-up."""
     from tribodyn.analysis import overall_level
@@ -338,21 +331,18 @@ MEASUREMENT: dict[str, Option] = {
 
 
 def measured_losses(
-    file: str,
-    case: AnyCase | None,
-    mesh: str | None,
-    options: Mapping[str, float],
+    file: str, case: AnyCase | None, mesh: str | None, options: Mapping[str, float]
 ) -> PowerLossTable:
     """Read a table of losses, or the built-in one of this name; a case gives the loss factor."""
     from tribodyn.losses import gear_loss_factor, power_loss_table, read_power_loss_table
     from tribodyn.losses.loss_table import TABLES
 
-    more: dict[str, Any] = dict(options)
+    more: Tree = dict(options)
     factor = more.pop("gear_loss_factor", None)
     if case is not None:
         factor = gear_loss_factor(mesh_pair("friction-from-loss", case, mesh).pair.gear_pair)
     if file in TABLES and not Path(file).exists():
-        changes: dict[str, Any] = {} if factor is None else {"gear_loss_factor": factor}
+        changes: Tree = {} if factor is None else {"gear_loss_factor": factor}
         return replace(power_loss_table(file), **changes, **more)
     if factor is None:
         why = "Friction is the loss over the torque and the gear loss factor H_V"

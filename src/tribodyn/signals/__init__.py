@@ -10,15 +10,13 @@ and the methods of diagnosis can be imported from this page too.
 | ``condition_indicators`` | all indicators of a gear at once |
 | ``cyclic_coherence`` | which carriers are modulated at which frequencies |
 | ``demodulation`` | amplitude and phase of a mesh harmonic over a revolution |
-| ``envelope`` | how strong a signal is at each moment, how that repeats, what modulates it |
+| ``envelope`` | envelope and its spectrum, sidebands, the most impulsive band |
 | ``gear_indicators`` | whether teeth are damaged: FM0, FM4, NA4, NB4, M6A, M8A and others |
 | ``indicators`` | mean, rms, ranges, dynamic factor, direction and harmonics of a response |
-| ``kurtogram`` | in which band a signal is most impulsive |
 | ``order_map`` | how strong each multiple of the rotation is over the speed |
 | ``run_up_orders`` | orders and levels of a run-up, and the natural modes of its peaks |
 | ``spectrum`` | how strong each frequency is |
-| ``locked_variance`` | variance of NA4* up to the record at which damage begins |
-| ``synchronous_average`` | what repeats with the rotation |
+| ``synchronous_average`` | what repeats with the rotation, and its variance before a damage |
 """
 
 from tribodyn.arguments import guard
@@ -26,6 +24,7 @@ from tribodyn.signals.cepstrum import Cepstrum, cepstrum, lifter
 from tribodyn.signals.condition_indicators import ConditionIndicators, condition_indicators
 from tribodyn.signals.cyclic_coherence import CyclicCoherence, cyclic_coherence
 from tribodyn.signals.demodulation import NarrowbandDemodulation, narrowband_demodulation
+from tribodyn.signals.envelope import Kurtogram, kurtogram
 from tribodyn.signals.gear_indicators import (
     energy_ratio,
     fm0,
@@ -39,9 +38,11 @@ from tribodyn.signals.gear_indicators import (
     sideband_index,
     sideband_level_factor,
 )
-from tribodyn.signals.kurtogram import Kurtogram, kurtogram
-from tribodyn.signals.locked_variance import locked_variance
-from tribodyn.signals.synchronous_average import SynchronousAverage, time_synchronous_average
+from tribodyn.signals.synchronous_average import (
+    SynchronousAverage,
+    locked_variance,
+    time_synchronous_average,
+)
 
 __all__ = [
     "Cepstrum",

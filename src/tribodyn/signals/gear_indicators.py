@@ -9,8 +9,7 @@ import numpy as np
 from tribodyn.errors import Argument, ComputationError, InputError
 from tribodyn.signals.angular_resampling import checked_signal
 from tribodyn.signals.demodulation import mesh_band
-from tribodyn.signals.locked_variance import locked_variance
-from tribodyn.signals.synchronous_average import SynchronousAverage
+from tribodyn.signals.synchronous_average import SynchronousAverage, locked_variance
 from tribodyn.types import Array
 
 #: Part of the rms of the mean revolution below which a part of it is nothing.

@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property, partial
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -26,7 +26,7 @@ from tribodyn.study.pipeline.preview import gearbox_losses_of
 from tribodyn.study.pipeline.response_series import mesh_force, one_sided_phase
 from tribodyn.study.pipeline.tooth_contact import fitted_law, hypoid_friction_of, mesh_of
 from tribodyn.study.settle import Settled, Tables
-from tribodyn.types import Array
+from tribodyn.types import Array, Tree
 
 if TYPE_CHECKING:
     from tribodyn.dynamics import Response
@@ -140,7 +140,7 @@ def coupling_of(settled: Settled[PairTeeth]) -> Coupling | None:
     if not settled.rows:
         return None
     solver = settled.point.case.solver
-    columns: dict[str, Any] = dict(zip(_CHANGES, np.array(settled.rows).T, strict=True))
+    columns: Tree = dict(zip(_CHANGES, np.array(settled.rows).T, strict=True))
     return Coupling(
         iteration=np.arange(1.0, len(settled.rows) + 1.0),
         phase=settled.tables[PAIR_MESH].phase,

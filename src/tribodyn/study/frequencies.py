@@ -14,8 +14,8 @@ from tribodyn.analysis.part_frequencies import (
     mesh_frequencies,
     stage_frequencies,
 )
-from tribodyn.checks import require_whole
 from tribodyn.faults import BearingImpacts
+from tribodyn.nomenclature import require_whole
 from tribodyn.record import Record, fact, quantity, record
 from tribodyn.study.faults.machine_section import defects_of
 from tribodyn.study.mesh_inputs import PAIR_MESH

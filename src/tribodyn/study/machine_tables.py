@@ -1,16 +1,18 @@
-"""All tables of a case of a machine, and the table of a planetary stage."""
+"""All tables of a case of a machine or a stage, for reading, explain and documentation."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import replace
 from typing import Any
 
+from tribodyn.machine import ROLLING_BEARINGS
 from tribodyn.model import REQUIRED, Option, choice, integer, number, numbers, text
 from tribodyn.study.case.pair import PairCase
 from tribodyn.study.case.rating_tables import BearingCatalogue, PartRating, RatingTable
-from tribodyn.study.case.section import NamedTables, Section, Table, table
+from tribodyn.study.case.reference import default_of, key_tables, start_toml, walk
+from tribodyn.study.case.section import NamedTables, Section, Table, section_at, table
 from tribodyn.study.case.sections import Losses, ShaftData
 from tribodyn.study.faults.section import PartFaultTable
 from tribodyn.study.machine.tables import (
@@ -20,6 +22,7 @@ from tribodyn.study.machine.tables import (
     CouplingTable,
     GearTable,
     HousingTable,
+    HypoidMeshTable,
     LoadCaseTable,
     MeshTable,
     MotionTable,
@@ -28,8 +31,10 @@ from tribodyn.study.machine.tables import (
     SolverTable,
     clearance,
     position,
+    rolling_options,
     with_models,
 )
+from tribodyn.types import ByName
 
 _GUARD = "guards against a wrong unit"
 _TURN = 2.0 * math.pi
@@ -124,7 +129,7 @@ class PlanetsTable(Section):
     )
 
     @classmethod
-    def keys_for(cls, data: Mapping[str, Any]) -> Mapping[str, Option | Table]:
+    def keys_for(cls, data: ByName) -> Mapping[str, Option | Table]:
         """Keys of a stage, and tables of the models of its meshes."""
         return with_models(cls.fields, data)
 
@@ -182,3 +187,43 @@ MachineTables.fields["load_cases"].kind.listed = True  # type: ignore[union-attr
 MachineTables.fields |= {name: PairCase.fields[name] for name in SHARED}
 MachineTables.fields["losses"] = table(MachineLosses, "power losses of other parts", "none")
 MachineTables.fields["rating"] = table(MachineRating, "load capacity of gears and parts", "none")
+
+
+#: Files to start from.
+STARTS = ("machine", "stage", "hypoid")
+
+
+def machine_keys() -> Iterator[tuple[str, Option, str]]:
+    """Iterate over the keys of parts with their tables; NAME stands for that of a part."""
+    for group, field in MachineTables.fields.items():
+        if isinstance(field, Table) and group not in SHARED:
+            yield from walk(field.kind, (group,))
+        if group == "rating":
+            yield from walk(PartRating, (group,))
+        if group == "bearings":
+            yield from _rolling_keys(group)
+        if group == "meshes":
+            yield from walk(HypoidMeshTable, (group, 'NAME with kind = "hypoid"'))
+
+
+def _rolling_keys(group: str) -> Iterator[tuple[str, Option, str]]:
+    """Keys of each type of rolling bearings."""
+    for kind, law in ROLLING_BEARINGS.all().items():
+        for name, option in rolling_options(law).items():
+            yield f'{group}.NAME with type = "{kind}".{name}', option, default_of(option)
+
+
+def machine_tables() -> str:
+    """Format the keys of parts as Markdown tables."""
+    return key_tables(machine_keys())
+
+
+def start_of(kind: str) -> str:
+    """Return a short case file of a machine, a stage or a hypoid pair, to be filled in."""
+    return start_toml(f"start_{kind}", _section)
+
+
+def _section(path: tuple[str, ...]) -> type[Section] | None:
+    """Table of a case of parts or of a pair at a path."""
+    pair = path[0] == "gears" and path[1:] in ((), ("pinion",), ("wheel",))
+    return section_at(path, None if pair else MachineTables) or section_at(path)

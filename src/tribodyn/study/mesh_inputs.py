@@ -13,6 +13,7 @@ from tribodyn.gear import mass_properties
 from tribodyn.study.case import to_models
 from tribodyn.study.case.hypoid import bodies, levers, mounting
 from tribodyn.study.case.to_models import chosen_options, locate_errors
+from tribodyn.types import Tree
 
 if TYPE_CHECKING:
     from tribodyn.dynamics import MeshForce
@@ -151,7 +152,7 @@ def mesh_inputs(case: PairCase) -> MeshInputs:
     )
 
 
-def model_settings(case: PairCase) -> dict[str, Any]:
+def model_settings(case: PairCase) -> Tree:
     """Material, oil, stiffness and film of a case, as arguments of the mesh functions."""
     return {
         "material": case.material_properties,

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
@@ -14,7 +14,7 @@ from tribodyn.machine.plane_law import mean_in_space
 from tribodyn.nomenclature import GEARS
 from tribodyn.study.case import to_models
 from tribodyn.study.case.values import KeyedProblems
-from tribodyn.types import Array
+from tribodyn.types import Array, ByName
 
 if TYPE_CHECKING:
     from tribodyn.losses import ShaftParts
@@ -61,7 +61,7 @@ def _unknown(case: MachineCase) -> Iterator[tuple[str, Problem]]:
 
 def _unused(case: MachineCase) -> Iterator[tuple[str, Problem]]:
     """Keys that have no effect on a shaft."""
-    stated: Mapping[str, Any] = case.data["losses"]
+    stated: ByName = case.data["losses"]
     for name, body in stated.get("shafts", {}).items():
         bearings = [n for n, each in case.bearings.items() if each.shaft == name]
         reasons = {}

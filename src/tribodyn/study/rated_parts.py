@@ -29,6 +29,7 @@ from tribodyn.rating import (
 from tribodyn.rating.elements.shaft_fatigue import yield_safety
 from tribodyn.rating.factor import Factor, Factors, check_range
 from tribodyn.rating.mesh_load import PRACTICE
+from tribodyn.types import Tree
 
 #: f_0 of deep groove ball bearings, which lies between 12 and 16 for usual sizes.
 _USUAL_SHARE = 14.0
@@ -171,7 +172,7 @@ def _lives(each: Any) -> dict[str, float | None]:
     return {name: _finite(getattr(each, name)) for name in LIVES}
 
 
-def _listed(factors: Mapping[str, Factor]) -> dict[str, Any]:
+def _listed(factors: Mapping[str, Factor]) -> Tree:
     return {name: factor.to_dict() for name, factor in factors.items()}
 
 
@@ -288,7 +289,7 @@ class BearingRating:
         """Modified life where it is known, else the basic one [s]."""
         return self.basic_life if self.modified_life is None else self.modified_life
 
-    def to_dict(self) -> dict[str, Any]:
+    def to_dict(self) -> Tree:
         """Lives over all loads and under each, as JSON has them.
 
         Returns
@@ -325,7 +326,7 @@ class NotchRating:
     factors: Mapping[str, Factor]
     yield_safety: float = math.inf
 
-    def to_dict(self) -> dict[str, Any]:
+    def to_dict(self) -> Tree:
         """Safeties and factors, as JSON has them.
 
         Returns
@@ -412,9 +413,9 @@ class PartRatings:
                     values = safety, self.minimum_safety or SHAFT_SAFETY, None
                     yield Verdict(mode, notch.shaft, notch.load, *values, f"notch {notch.notch}")
 
-    def to_dict(self) -> dict[str, Any]:
+    def to_dict(self) -> Tree:
         """Lives and safeties by part, as JSON has them."""
-        shafts: dict[str, dict[str, Any]] = {}
+        shafts: dict[str, Tree] = {}
         for each in self.notches:
             notch = shafts.setdefault(each.shaft, {}).setdefault(each.notch, {})
             notch.setdefault("loads", {})[each.load] = each.to_dict()

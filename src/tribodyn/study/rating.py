@@ -6,7 +6,7 @@ from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import asdict, dataclass, field, replace
 from functools import cached_property, partial
 from itertools import chain
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from tribodyn.errors import ModelWarning, collected
 from tribodyn.rating import (
@@ -31,7 +31,7 @@ from tribodyn.study.rated_parts import (
     PartRatings,
     Verdict,
 )
-from tribodyn.types import Array
+from tribodyn.types import Array, Tree
 
 if TYPE_CHECKING:
     import xarray
@@ -160,7 +160,7 @@ class MeshRating:
                 computed = least["safety"] if has_run else None
                 yield Verdict(mode, self.mesh, self.load, safety, required, computed, where)
 
-    def to_dict(self) -> dict[str, Any]:
+    def to_dict(self) -> Tree:
         """Ratings of the mesh, as JSON has them.
 
         Returns
@@ -208,7 +208,7 @@ class MeshSpectrum:
     mesh: str
     gears: tuple[str, str]
     rating: SpectrumRating
-    conditions: dict[str, Any]
+    conditions: Tree
 
     def verdicts(self) -> Iterator[Verdict]:
         """Iterate over the safeties of the gears.
@@ -225,7 +225,7 @@ class MeshSpectrum:
                 values = getattr(damage, key), getattr(required, key), None
                 yield Verdict(mode, name, ALL_CASES, *values)
 
-    def to_dict(self) -> dict[str, Any]:
+    def to_dict(self) -> Tree:
         """Safeties, and damage by load case, as JSON has them.
 
         Returns
@@ -326,7 +326,7 @@ class CaseRating:
                 least[key] = verdict
         return sorted(least.values(), key=lambda verdict: verdict.margin)
 
-    def to_dict(self) -> dict[str, Any]:
+    def to_dict(self) -> Tree:
         """Ratings of meshes and gears, as JSON has them.
 
         Returns
@@ -348,7 +348,7 @@ class CaseRating:
         }
 
 
-def conditions_of(case: PairCase, planets: int) -> dict[str, Any]:
+def conditions_of(case: PairCase, planets: int) -> Tree:
     """Conditions of ``[rating]``; planets share the load unevenly."""
     rating = case.rating
     assert rating is not None
@@ -413,9 +413,9 @@ class RatedMesh:
         object.__setattr__(self, "_common", common)
 
     @property
-    def common(self) -> dict[str, Any]:
+    def common(self) -> Tree:
         """Arguments of a rating other than the load."""
-        common: dict[str, Any] = vars(self)["_common"]
+        common: Tree = vars(self)["_common"]
         return common
 
 

@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 from itertools import product
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from tribodyn.study.rated_parts import LIVES
+from tribodyn.types import ByName
 
 if TYPE_CHECKING:
     from tribodyn.study.rated_parts import BearingRating, Verdict
@@ -130,7 +131,7 @@ def _hours(life: float | None) -> str:
     return "" if life is None else f"{life / 3600.0:.4g}"
 
 
-def _number(factors: Mapping[str, Any], name: str) -> str:
+def _number(factors: ByName, name: str) -> str:
     return f"{factors[name]:.4g}{' N' if name == 'P' else ''}" if name in factors else ""
 
 

@@ -13,13 +13,14 @@ from tribodyn.errors import Argument, InputError, shortened
 from tribodyn.record import Parts, Record, html_table, record
 from tribodyn.study.pipeline.result_of_case import ResultOfCase
 from tribodyn.study.pipeline.summary_figures import by_topic, figure_of
+from tribodyn.types import ByName
 
 #: Relative difference below which figures count as equal.
 _TOLERANCE = 1e-9
 
 
 def differing(
-    tables: Sequence[Mapping[str, Any]], differ: Callable[[Any, Any], bool] | None = None
+    tables: Sequence[ByName], differ: Callable[[Any, Any], bool] | None = None
 ) -> dict[str, tuple[Any, ...]]:
     """Return the values of several tables by name where they differ; None if absent."""
     differ = differ or (lambda first, value: bool(first != value))

@@ -15,7 +15,7 @@ from tribodyn.record import Parts, Record, fact, quantity, record
 from tribodyn.surrogate.baselines import ErrorMeasures
 from tribodyn.surrogate.network import Network
 from tribodyn.surrogate.preparation import columns_of
-from tribodyn.types import Array, Texts
+from tribodyn.types import Array, Texts, Tree
 from tribodyn.validated_files import read_dataset
 
 #: Format name of a stored model.
@@ -231,7 +231,7 @@ def load(path: str | os.PathLike[str]) -> Surrogate:
         why = "It was not written by Surrogate.save"
         raise InputError(f"{path} does not contain a surrogate", Argument("path"), why, "Train one")
     try:
-        fields: dict[str, Any] = {name: np.asarray(data[name].values) for name in _STORED}
+        fields: Tree = {name: np.asarray(data[name].values) for name in _STORED}
         fields |= {name: int(data.attrs[name]) for name in _COUNTS}
         fields |= {f"{name}s": data[name].values.astype(str) for name in ("feature", "target")}
         fields |= {name: data[name].values.astype(str) for name in _WORDS}

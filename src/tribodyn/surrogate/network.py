@@ -9,8 +9,8 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from tribodyn.checks import require_whole
 from tribodyn.errors import Argument, InputError, require_one_of
+from tribodyn.nomenclature import require_whole
 from tribodyn.types import Array
 
 #: Rows per block, so that a block stays in the processor cache.

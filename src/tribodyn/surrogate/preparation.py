@@ -11,7 +11,6 @@ from typing import Any
 
 import numpy as np
 
-from tribodyn.checks import require_whole
 from tribodyn.errors import (
     Argument,
     InputError,
@@ -21,6 +20,7 @@ from tribodyn.errors import (
     shortened,
     warn,
 )
+from tribodyn.nomenclature import require_whole
 from tribodyn.record import Record
 from tribodyn.types import Array, Index, Mask
 

@@ -8,14 +8,14 @@ from typing import Any
 
 import numpy as np
 
-from tribodyn.checks import require_number, require_whole
 from tribodyn.errors import Argument, InputError, require_between
 from tribodyn.interrupt import single_blas_thread
+from tribodyn.nomenclature import require_number, require_whole
 from tribodyn.progress import SILENT, Progress
 from tribodyn.surrogate.model import Surrogate
 from tribodyn.surrogate.network import Fit, Network, Squares, levenberg_marquardt
 from tribodyn.surrogate.preparation import Prepared, prepare
-from tribodyn.types import Array
+from tribodyn.types import Array, Tree
 
 #: Rows per block of the Jacobian.
 _ROWS = 1024
@@ -217,7 +217,7 @@ def bpnn_pl(
     return _model(data, ready, (list(features), list(targets)), fits, training, seed), search
 
 
-def _preparation(by: Training) -> dict[str, Any]:
+def _preparation(by: Training) -> Tree:
     """How the table is prepared."""
     names = ("shares", "outlier_limit", "moving_average")
     return {name: getattr(by, name) for name in names}

@@ -7,8 +7,8 @@ from typing import Any
 
 import numpy as np
 
-from tribodyn.checks import require_whole
 from tribodyn.errors import Argument, ComputationError, InputError
+from tribodyn.nomenclature import require_whole
 from tribodyn.record import Record, fact, quantity, record
 from tribodyn.types import Array, Texts
 from tribodyn.uncertainty.sampling import distribution

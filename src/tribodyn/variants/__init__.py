@@ -3,17 +3,14 @@
 | module | content |
 |---|---|
 | ``study_file`` | reading of study files |
-| ``members`` | the members of a study, and how a study grows |
-| ``compute`` | computation of the members of a chunk |
-| ``store`` | stored chunks, and checks that they are complete |
+| ``compute`` | the members of a study, how it grows, computation of a chunk |
+| ``store`` | stored chunks, checks that they are complete, all as one lazy data set |
 | ``run`` | execution on this machine or on the workers of a Dask cluster |
-| ``dataset`` | the store as one lazy data set |
 """
 
 from tribodyn.arguments import guard
-from tribodyn.variants.dataset import open_study
 from tribodyn.variants.run import run_study
-from tribodyn.variants.store import StudyState, study_state
+from tribodyn.variants.store import StudyState, open_study, study_state
 from tribodyn.variants.study_file import Study, load_study, read_study
 
 __all__ = [

@@ -15,8 +15,7 @@ from tribodyn.errors import ComputationError, InputError, warn
 from tribodyn.interrupt import alone
 from tribodyn.progress import SILENT, Progress
 from tribodyn.study.processes import helpers
-from tribodyn.variants.compute import Job, Stored
-from tribodyn.variants.members import Chunk
+from tribodyn.variants.compute import Chunk, Job, Stored
 from tribodyn.variants.store import Store, StudyState
 from tribodyn.variants.study_file import Study, load_study
 

@@ -1,13 +1,14 @@
-"""The store of a study: a manifest, and one netCDF file for each chunk of its members.
+"""The store of a study: a manifest, one netCDF file for each chunk, and one lazy data set of all.
 
 The manifest ``members.jsonl`` has one line for each record, preceded by a checksum: the identity of
 the study, its members (again when it grows), and every complete chunk on the disk. A chunk is
 written to a temporary file and moved; its line follows. After a process was killed at any moment,
-the next one computes the chunks without a line.
+the next one computes the chunks without a line. Values are read on demand, against their checksum.
 """
 
 from __future__ import annotations
 
+import io
 import json
 import os
 import re
@@ -16,19 +17,136 @@ import zlib
 from collections.abc import Iterable, Iterator, Mapping
 from contextlib import suppress
 from dataclasses import dataclass, field, replace
+from math import prod
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
+
+import numpy as np
 
 from tribodyn.checkpoints import NAME, Checkpoints, read_lines
 from tribodyn.errors import Argument, InputError, OutputExistsError, quiet
 from tribodyn.files import atomic_write, lock
+from tribodyn.interrupt import deferred
+from tribodyn.study.pipeline.summary_figures import in_order
 from tribodyn.study.studies.runner import identity
+from tribodyn.types import ByName, Tree
 from tribodyn.validated_files import read_bytes
-from tribodyn.variants.compute import Job, Stored
-from tribodyn.variants.members import Chunk, Plan, layout_of
+from tribodyn.variants.compute import KINDS, Chunk, Grid, Job, Plan, Stored, layout_of
 
 if TYPE_CHECKING:
+    import xarray
+
     from tribodyn.variants.study_file import Study
+
+#: Reason of a member that is not stored yet.
+_NOT_YET = "not computed yet"
+
+
+def open_study(path: str | os.PathLike[str]) -> xarray.Dataset:
+    """Open the store of a study as one data set, finished or not.
+
+    Parameters
+    ----------
+    path : str or path
+        Directory that :func:`run_study` or ``tribodyn study`` wrote, or writes at the moment.
+
+    Returns
+    -------
+    xarray.Dataset
+        Figures in SI over the keys of a grid, or over ``member`` with the keys as coordinates, and
+        ``failed``, the reason why a member has none. Values are read on demand.
+
+    Raises
+    ------
+    InputError
+        If the directory is not a store; later, if a requested chunk is damaged.
+    """
+    import xarray
+
+    manifest = Manifest(path)
+    layout = manifest.plan.layout
+    coords: Tree = {}
+    if isinstance(layout, Grid):
+        dims = {axis.key: len(axis.values) for axis in layout.axes}
+        for axis in layout.axes:
+            values = np.array(axis.values)
+            values = values.astype(object) if values.dtype.kind == "U" else values
+            coords[axis.key] = (axis.key, values, {"units": axis.unit or "1"})
+    else:
+        dims = {"member": layout.count}
+    names = (name for facts in manifest.chunks.values() for name in facts["figures"])
+    kind = KINDS[manifest.kind]
+
+    def lazy(name: str, kind: object, **facts: str) -> Any:
+        return (tuple(dims), _lazy(manifest, name, tuple(dims.values()), kind), facts)
+
+    variables = {
+        name: lazy(name, float, units=unit, long_name=meaning)
+        for name in in_order(names, kind.figures)
+        for unit, meaning in (kind.figure(name),)
+    }
+    variables |= {name: lazy(name, object) for name in ("failed", "warnings")}
+    if not isinstance(layout, Grid):
+        for key, unit in layout.units.items():
+            coords[key] = lazy(key, np.dtype(layout.kinds[key]), units=unit or "1")
+    facts = {**manifest.facts, "keep": ", ".join(manifest.facts["keep"])}
+    return xarray.Dataset(variables, coords, facts)
+
+
+def _lazy(manifest: Manifest, name: str, shape: tuple[int, ...], kind: Any) -> Any:
+    """One variable that xarray reads on demand."""
+    from xarray.backends import BackendArray
+    from xarray.core import indexing
+
+    class Stored(BackendArray):
+        def __init__(self) -> None:
+            self.shape, self.dtype = shape, np.dtype(kind)
+
+        def __getitem__(self, key: Any) -> Any:
+            outer = indexing.IndexingSupport.OUTER
+            return indexing.explicit_indexing_adapter(key, shape, outer, self.read)
+
+        def read(self, key: tuple[Any, ...]) -> Any:
+            places = [np.arange(size)[each] for size, each in zip(shape, key, strict=True)]
+            result_shape = tuple(place.size for place in places if place.ndim)
+            grid = np.ix_(*(np.atleast_1d(place) for place in places))
+            members = np.ravel_multi_index(grid, shape).ravel()
+            values = np.full(prod(result_shape), _absent(name, self.dtype), dtype=self.dtype)
+            for chunk, where, rows in manifest.plan.locate(members):
+                if chunk.name in manifest.chunks:
+                    column = _column(manifest, chunk.name, name)
+                    if column is not None:
+                        values[where] = column[rows]
+            return values.reshape(result_shape)
+
+    return indexing.LazilyIndexedArray(Stored())
+
+
+def _absent(name: str, dtype: np.dtype[Any]) -> Any:
+    """Value of members that are not stored."""
+    if dtype.kind == "f":
+        return np.nan
+    return {"failed": _NOT_YET}.get(name, "" if dtype.kind == "O" else 0)
+
+
+@deferred()
+def _column(manifest: Manifest, chunk: str, name: str) -> Any:
+    """One variable of a chunk; None if there is none of that name."""
+    import h5py
+
+    content = read_chunk(manifest.folder, chunk, manifest.chunks[chunk])
+    if content is None:
+        what = f"{chunk_path(manifest.folder, chunk)} does not match its checksum"
+        why = "It was damaged, changed or removed"
+        remedy = "Run the study again, which computes it again"
+        raise InputError(what, Argument("path"), why, remedy)
+    with h5py.File(io.BytesIO(content)) as file:
+        if name in file:
+            column = file[name]
+            return column.asstr()[()] if h5py.check_string_dtype(column.dtype) else column[()]
+        figures = manifest.chunks[chunk]["figures"]
+        return file["value"][:, figures.index(name)] if name in figures else None
+
 
 #: Chunks of one folder, reported reasons, and chunks from which the remaining time is estimated.
 _FOLDER, _REASONS, _RECENT = 1000, 20, 50
@@ -110,7 +228,7 @@ class Manifest:
             remedy = f'Did you mean "{study_folder}"?' if study_folder.is_dir() else _GIVE
             raise InputError(what, Argument("path"), why, remedy)
         self.kind = str(lines[0]["study"]).removeprefix("study ")
-        self.facts: Mapping[str, Any] = values["facts"]
+        self.facts: ByName = values["facts"]
         self.stages = stages_in(values)
         self.plan = Plan(layout_of(self.stages[-1]), self.stages)
         planned = {chunk.name for chunk in self.plan.chunks}
@@ -155,13 +273,13 @@ def study_state(path: str | os.PathLike[str]) -> StudyState:
     return Manifest(path).state()
 
 
-def stages_in(values: Mapping[str, Any]) -> list[Mapping[str, Any]]:
+def stages_in(values: ByName) -> list[ByName]:
     """Members of a study at each of its stages."""
     count = sum(name.startswith("stage ") for name in values)
     return [values[f"stage {number}"] for number in range(count)]
 
 
-def reasons(chunks: Iterable[Mapping[str, Any]]) -> tuple[int, dict[str, int]]:
+def reasons(chunks: Iterable[ByName]) -> tuple[int, dict[str, int]]:
     """Number of failed members, and number by reason."""
     failed, counts = 0, dict[str, int]()
     for facts in chunks:
@@ -185,7 +303,7 @@ class Store:
         try:
             values = members.all()
             if "facts" not in values:
-                facts: dict[str, Any] = {
+                facts: Tree = {
                     "title": study.title,
                     "case": study.case.to_toml(),
                     "keep": study.keep,
@@ -207,7 +325,7 @@ class Store:
             raise
         return self
 
-    def _identity(self) -> dict[str, Any]:
+    def _identity(self) -> Tree:
         """Identity of the study, independent of the number of its members."""
         study = self.study
         return identity(

@@ -25,12 +25,18 @@ from tribodyn.study.case.user_input import Source, unsound
 from tribodyn.study.case.values import FaultError, read_value, written
 from tribodyn.study.machine.case import AnyCase
 from tribodyn.study.pipeline.summary_figures import in_order
-from tribodyn.study.studies.range_syntax import UnreadError, read_values, toml_value
-from tribodyn.study.studies.study_axes import Axis, member_value, read_axis
+from tribodyn.study.studies.study_axes import (
+    Axis,
+    UnreadError,
+    member_value,
+    read_axis,
+    read_values,
+    toml_value,
+)
 from tribodyn.study.uncertain.lanes import draw
+from tribodyn.types import ByName, Tree
 from tribodyn.validated_files import read_bytes
-from tribodyn.variants.compute import KINDS
-from tribodyn.variants.members import MOST, Grid, Layout, listed
+from tribodyn.variants.compute import KINDS, MOST, Grid, Layout, listed
 
 _MEANINGS = {name: kind.meaning for name, kind in KINDS.items()}
 #: Keys at the top of a study file.
@@ -112,7 +118,7 @@ class Study:
     keep: tuple[str, ...]
     chunk: int
     layout: Layout
-    specification: Mapping[str, Any]
+    specification: ByName
     place: str = "study"
 
 
@@ -167,7 +173,7 @@ def read_study(content: str, name: str = "study.toml") -> Study:
 class _Reader:
     """Reader of the parts of a study file that collects every error with its key."""
 
-    def __init__(self, data: dict[str, Any], folder: Path) -> None:
+    def __init__(self, data: Tree, folder: Path) -> None:
         self.data, self.folder = data, folder
         self.faults: list[tuple[str, Problem]] = []
 
@@ -216,11 +222,9 @@ class _Reader:
         chunk, title = top["chunk"] or KINDS[kind].chunk, top["title"] or case.title
         return Study(title, case, kind, keep, chunk, layout, request, name)
 
-    def _values(
-        self, data: Mapping[str, Any], options: Mapping[str, Option], path: str, allowed: Any
-    ) -> dict[str, Any]:
+    def _values(self, data: ByName, options: Mapping[str, Option], path: str, allowed: Any) -> Tree:
         """Values of a table; records its errors."""
-        values: dict[str, Any] = {}
+        values: Tree = {}
         for key in (key for key in data if key not in allowed):
             remedy = did_you_mean(key, allowed, "Remove it")
             place = f"[{path[:-1]}]" if path else "the top of the file"
@@ -267,7 +271,7 @@ class _Reader:
                 raise InputError(f"{written(name)} cannot be read: {error}") from None
         return None
 
-    def _keys(self, name: str, data: Mapping[str, object]) -> dict[str, Any]:
+    def _keys(self, name: str, data: Mapping[str, object]) -> Tree:
         """Values of a table by dotted key of the case."""
         table = data.get(name.rpartition(".")[2], {})
         if not isinstance(table, dict):
@@ -277,7 +281,7 @@ class _Reader:
             return _flat(table)
         return {}
 
-    def _grid(self, case: AnyCase, free: Any) -> tuple[Layout | None, Mapping[str, Any]]:
+    def _grid(self, case: AnyCase, free: Any) -> tuple[Layout | None, ByName]:
         axes: list[Axis] = []
         for key, entry in self._keys("axes", self.data).items():
             with self._errors(f"axes.{key}"):
@@ -291,7 +295,7 @@ class _Reader:
         grid = None if self.faults else Grid(tuple(axes))
         return grid, {"axes": [axis.key for axis in axes]}
 
-    def _sampled(self, case: AnyCase) -> tuple[Layout | None, Mapping[str, Any]]:
+    def _sampled(self, case: AnyCase) -> tuple[Layout | None, ByName]:
         table = self.data["samples"]
         if not isinstance(table, dict):
             self.put("samples", Problem(written(table), "", "It is a table", "Write [samples]"))
@@ -311,11 +315,9 @@ class _Reader:
             return listed(columns, units), request
         return None, {}
 
-    def _listed(
-        self, case: AnyCase, path: str | None, free: Any
-    ) -> tuple[Layout | None, Mapping[str, Any]]:
+    def _listed(self, case: AnyCase, path: str | None, free: Any) -> tuple[Layout | None, ByName]:
         key = "table" if path is not None else "cases"
-        rows: list[tuple[str, dict[str, Any]]] = []
+        rows: list[tuple[str, Tree]] = []
         with self._errors(key, _at_key):
             rows = _rows(self.data["cases"]) if path is None else _read_csv(self.folder / path)
         values: dict[str, list[Any]] = {name: [] for _, row in rows[:1] for name in row}
@@ -360,9 +362,9 @@ def _ranges(entry: object) -> Any:
     raise InputError(f"cannot read {written(entry)}", "", why, _EXAMPLE)
 
 
-def _flat(table: Mapping[str, object], prefix: str = "") -> dict[str, Any]:
+def _flat(table: Mapping[str, object], prefix: str = "") -> Tree:
     """Values by dotted key, which may be written as tables inside each other."""
-    flat: dict[str, Any] = {}
+    flat: Tree = {}
     for key, value in table.items():
         inner = (
             _flat(value, f"{prefix}{key}.") if isinstance(value, dict) else {prefix + key: value}
@@ -404,7 +406,7 @@ def _factors(key: str, entry: Any) -> Axis:
     return Axis(key, tuple(values))
 
 
-def _rows(entry: Any) -> list[tuple[str, dict[str, Any]]]:
+def _rows(entry: Any) -> list[tuple[str, Tree]]:
     """Members listed in the study file itself."""
     if not isinstance(entry, list) or not entry or not all(isinstance(row, dict) for row in entry):
         what = f"cases = {written(entry)}"
@@ -414,7 +416,7 @@ def _rows(entry: Any) -> list[tuple[str, dict[str, Any]]]:
     return rows
 
 
-def _read_csv(path: Path) -> list[tuple[str, dict[str, Any]]]:
+def _read_csv(path: Path) -> list[tuple[str, Tree]]:
     """Members of a CSV file with their line; its first line has keys with units in brackets."""
     remedy = "Its first line reads: operation.speed [rpm], operation.torque [N*m]"
     try:
@@ -442,7 +444,7 @@ def _read_csv(path: Path) -> list[tuple[str, dict[str, Any]]]:
     return rows
 
 
-def _check_rows(rows: list[tuple[str, dict[str, Any]]]) -> None:
+def _check_rows(rows: list[tuple[str, Tree]]) -> None:
     keys = set(rows[0][1])
     for place, row in rows:
         if not row or set(row) != keys:

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from tribodyn.measurement import OrderSpectrum, modulating_shaft, order_spectrum
-from tribodyn.measurement.modulating_shaft import explain_modulation
+from tribodyn.measurement.sideband_cursors import explain_modulation
 
 
 def orders_of(teeth: int, mate_teeth: int, shaft: float, mate: float) -> OrderSpectrum:

@@ -37,9 +37,9 @@ def worn(least: float) -> Any:
 
 
 def test_wear_names_the_spared_place_where_there_is_one() -> None:
-    caption = plot.motion.turns._wear_caption(worn(0.0))
+    caption = plot.motion.time_histories._wear_caption(worn(0.0))
     assert "the pinion at 0.4, the wheel at 0.4" in caption
-    assert "slide" not in plot.motion.turns._wear_caption(worn(0.3))
+    assert "slide" not in plot.motion.time_histories._wear_caption(worn(0.3))
 
 
 def test_grey_ranges_are_named_where_they_are_drawn() -> None:

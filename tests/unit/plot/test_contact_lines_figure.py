@@ -8,8 +8,8 @@ import pytest
 
 from tribodyn.gear import CylindricalPair, cylindrical_pair
 from tribodyn.plot import contact_lines
-from tribodyn.plot.gear.contact_lines import line_points
-from tribodyn.plot.gear.outlines import on_line_of_action, tooth_angles, wheel_center
+from tribodyn.plot.gear.flanks import line_points
+from tribodyn.plot.gear.gear_pair import on_line_of_action, tooth_angles, wheel_center
 
 
 def _pair(wheel: int = 51, helix: float = 21.0, **changes: Any) -> CylindricalPair:

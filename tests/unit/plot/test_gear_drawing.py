@@ -9,7 +9,7 @@ import pytest
 from numpy.typing import NDArray
 
 from tribodyn.contact import path_of_contact
-from tribodyn.plot.gear.outlines import (
+from tribodyn.plot.gear.gear_pair import (
     circle,
     on_line_of_action,
     placed_outline,

@@ -15,7 +15,7 @@ from known_figures import marks
 from tribodyn.errors import InputError
 from tribodyn.gear import FlankModification, cylindrical_pair, spur_pair
 from tribodyn.plot import FIGURES, Drawing
-from tribodyn.plot.gear.outlines import bent_mesh, loads_at, on_line_of_action
+from tribodyn.plot.gear.gear_pair import bent_mesh, loads_at, on_line_of_action
 from tribodyn.plot.mesh.loaded_contact import Life, roll_angle_of, span
 from tribodyn.stiffness import loaded_contact, optimize_tip_relief
 

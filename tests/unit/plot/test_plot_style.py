@@ -9,8 +9,9 @@ import numpy as np
 import pytest
 
 from tribodyn.drawing import Sketch
+from tribodyn.plot.theme.colors import INK
 from tribodyn.plot.theme.panels import Panel, event_lines, stack
-from tribodyn.plot.theme.style import INK, line
+from tribodyn.plot.theme.style import line
 
 
 def curves(count: int) -> list[dict[str, object]]:

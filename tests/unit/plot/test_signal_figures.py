@@ -8,7 +8,7 @@ from tribodyn.errors import InputError
 from tribodyn.plot import FIGURES, waterfall
 from tribodyn.plot import order_map as draw_order_map
 from tribodyn.plot import spectrogram as draw_spectrogram
-from tribodyn.plot.signals.maps import amplitude_heatmap, strongest_orders
+from tribodyn.plot.signals.spectra import amplitude_heatmap, strongest_orders
 
 RATE = 2000.0
 TIME = np.arange(8001) / RATE

@@ -14,7 +14,7 @@ from plotly.offline import get_plotlyjs
 from tribodyn.errors import InputError, ModelWarning
 from tribodyn.report import html, render_report, write_report
 from tribodyn.report.figure_blocks import SECTIONS, script_json
-from tribodyn.report.provenance import operating_point
+from tribodyn.report.html import operating_point
 
 
 class Outline(HTMLParser):

@@ -15,12 +15,12 @@ from tribodyn.errors import InputError
 from tribodyn.machine import Gear, Machine, Mesh, Operation, Shaft
 from tribodyn.measurement import read, shaft_angle
 from tribodyn.study import read_case
-from tribodyn.study.faults.impact_transfer import impact_spectrum, pulse
 from tribodyn.study.faults.machine_motion import (
     machine_turning_motion,
     turning_machine,
 )
 from tribodyn.study.faults.machine_section import bearing_impacts, faults_of_mesh
+from tribodyn.study.faults.machine_signals import impact_spectrum, pulse
 from tribodyn.study.machine.first_look import warn_of_period
 
 AXIS = {"kind": "eccentricity", "gear": "gears.z1", "amplitude": "2 um"}

@@ -24,6 +24,7 @@ from tribodyn.drawing import write_report_of
 from tribodyn.progress import SILENT, Progress
 from tribodyn.record import Record, record
 from tribodyn.study.pipeline.save import new_directory
+from tribodyn.types import Tree
 
 
 @with_old_names
@@ -46,7 +47,7 @@ class PaperComparison(Record):
     """
 
     papers: tuple[str, ...]
-    rows: tuple[dict[str, Any], ...]
+    rows: tuple[Tree, ...]
     points: tuple[str, ...]
     computation_count: int
     HEAD: ClassVar[tuple[str, ...]] = (
@@ -65,7 +66,7 @@ class PaperComparison(Record):
         return len(self.points) == self.computation_count
 
     @property
-    def surprises(self) -> tuple[dict[str, Any], ...]:
+    def surprises(self) -> tuple[Tree, ...]:
         """Rows whose verdict is not the one that is expected."""
         return tuple(row for row in self.rows if row["verdict"] != row["expected"])
 
@@ -209,7 +210,7 @@ def compare_with_paper(
 
 def _rows(
     rows: Sequence[PrintedRow], values: Sequence[tuple[float | str | None, str]]
-) -> Iterator[dict[str, Any]]:
+) -> Iterator[Tree]:
     computed = [value for value, _ in values]
     judged = verdicts(rows, computed)
     for row, (value, failed), verdict in zip(rows, values, judged, strict=True):

@@ -18,6 +18,7 @@ from tribodyn.study.pipeline.assembly import geometry
 from tribodyn.study.pipeline.preview import operating_figures
 from tribodyn.study.pipeline.run import computed
 from tribodyn.study.pipeline.tooth_contact import mesh_of
+from tribodyn.types import Tree
 
 if TYPE_CHECKING:
     from tribodyn.mesh import MeshTable
@@ -208,7 +209,7 @@ def _line_contact(
     )
     steel = operating_case.material_properties
     oil = operating_case.lubricant_properties or unused_lubricant()
-    options: dict[str, Any] = {"domain": (-2.5, 1.5), "inlet": "zero"} if source_domain else {}
+    options: Tree = {"domain": (-2.5, 1.5), "inlet": "zero"} if source_domain else {}
     with collected():
         film = solve_line_contact(
             load,

@@ -13,13 +13,7 @@ import numpy as np
 
 from tribodyn.aliases import with_old_names
 from tribodyn.cases.papers.computations import Meshes
-from tribodyn.cases.papers.friction_claims import (
-    CONSTANT,
-    MIXED,
-    NONE,
-    FrictionExperiment,
-    Rubbing,
-)
+from tribodyn.cases.papers.friction_claims import CONSTANT, MIXED, NONE, FrictionExperiment, Rubbing
 from tribodyn.checkpoints import Checkpoints
 from tribodyn.errors import InputError, collected
 from tribodyn.nomenclature import GEARS
@@ -30,6 +24,7 @@ from tribodyn.study.studies.needs import require
 from tribodyn.study.studies.runner import identity, run_each
 from tribodyn.study.studies.study_axes import Axis, ends_of
 from tribodyn.study.studies.sweep import compute_points, pair_source
+from tribodyn.types import Tree
 
 if TYPE_CHECKING:
     from tribodyn.study.case.pair import PairCase
@@ -150,7 +145,7 @@ def _with_film(case: PairCase, laws: Sequence[str]) -> PairCase:
         remedy = "Take a case of spur gears"
         what, why = f'gears.kind = "{case.gears.kind}"', "The experiment solves films of spur gears"
         raise InputError(what, "argument case", why, remedy)
-    changes: dict[str, Any] = {}
+    changes: Tree = {}
     solved = FILM_MODELS[case.film.model].method
     if any(LAW_REGISTRY[name].needs_film for name in laws) and not solved:
         changes["film.model"] = "newton"
@@ -224,7 +219,7 @@ def _case_with(base: PairCase, friction: Rubbing, meshes: Meshes, driver: str) -
         with collected():
             mean = meshes.table(mixed).mean_friction_coefficient
         return base.replace({**changes, "friction.law": CONSTANT, "friction.coefficient": mean})
-    chosen: dict[str, Any] = {**changes, "friction.law": friction.law}
+    chosen: Tree = {**changes, "friction.law": friction.law}
     if friction.coefficient is not None:
         chosen["friction.coefficient"] = friction.coefficient
     return base.replace(chosen)

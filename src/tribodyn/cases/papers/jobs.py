@@ -15,6 +15,7 @@ from tribodyn.checkpoints import Checkpoints
 from tribodyn.errors import ComputationError, InputError, quiet
 from tribodyn.progress import SILENT, Progress
 from tribodyn.study.studies.runner import run_each
+from tribodyn.types import ByName
 from tribodyn.units import shown_in
 
 if TYPE_CHECKING:
@@ -109,7 +110,7 @@ def value_of(
     """Computed value of a row in its unit, or a trend with its values; and why there is none."""
     values = []
     for request in requests_of(row):
-        figures: Mapping[str, Any] = results[jobs.names[request]]
+        figures: ByName = results[jobs.names[request]]
         if row.of not in figures:
             return None, str(figures.get(FAILED, f"There is no {row.of.replace('_', ' ')} here"))
         values.append(figures[row.of])

@@ -10,11 +10,11 @@ from dataclasses import dataclass, field, fields
 from importlib.resources import files
 from itertools import groupby
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 
 from tribodyn.errors import InputError
+from tribodyn.types import ByName
 
 #: Verdicts of a row: its value is met, only its trend, or neither.
 VERDICTS = VALUE, TREND, NEITHER = "value", "trend", "cannot-reproduce"
@@ -37,10 +37,10 @@ class PrintedRow:
     compute: str = ""  #: name of a computation; empty where nothing can be computed
     of: str = ""  #: its figure
     case: str = ""  #: case that is computed; that of the source by default
-    set: Mapping[str, Any] = field(default_factory=dict)  #: changes of the case
-    arguments: Mapping[str, Any] = field(default_factory=dict)  #: of the computation
-    against: Mapping[str, Any] | None = None  #: changes of a second case; relative change to it
-    along: Mapping[str, Any] = field(default_factory=dict)  #: key or argument and its values
+    set: ByName = field(default_factory=dict)  #: changes of the case
+    arguments: ByName = field(default_factory=dict)  #: of the computation
+    against: ByName | None = None  #: changes of a second case; relative change to it
+    along: ByName = field(default_factory=dict)  #: key or argument and its values
     series: str = ""  #: rows of one series have to run like the printed ones
     level: float = 0.0  #: relative change within a series or along a key that counts as none
 
@@ -70,7 +70,7 @@ def printed_rows(paper: str) -> tuple[PrintedRow, ...]:
 _MERGED = ("set", "arguments")
 
 
-def _row(paper: str, table: Mapping[str, Any], row: Mapping[str, Any]) -> PrintedRow:
+def _row(paper: str, table: ByName, row: ByName) -> PrintedRow:
     """Return a row with the values that its table sets for all rows."""
     values = {**table, **row, "paper": paper}
     values |= {key: {**table.get(key, {}), **row.get(key, {})} for key in _MERGED}

@@ -216,7 +216,7 @@ def new(
 def _new_text(source: AnyCase | None, kind: str = "") -> str:
     """Text of a case file with all values of a case, or to be filled in."""
     from tribodyn.study.case.reference import start_toml
-    from tribodyn.study.parts_reference import start_of
+    from tribodyn.study.machine_tables import start_of
 
     if source is None:
         return start_of(kind) if kind else start_toml()

@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import math
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from tribodyn.cli.console import say, say_json, table, tell
 from tribodyn.cli.settings import Flag, Words, changed_case, check_file, read_changes
 from tribodyn.errors import InputError
+from tribodyn.types import Tree
 
 if TYPE_CHECKING:
     from tribodyn.exchange import GearboxModel, Load, Stage
@@ -187,7 +188,7 @@ def _load_row(model: GearboxModel, load: Load, stage: Stage) -> list[str]:
     return [str(load.id), share, str(stage.id), *("" if v is None else f"{v:.6g}" for v in values)]
 
 
-def _listed(model: GearboxModel) -> dict[str, Any]:
+def _listed(model: GearboxModel) -> Tree:
     """All of a model in SI and radians."""
     return {
         "version": model.version,

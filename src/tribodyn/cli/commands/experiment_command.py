@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 from cyclopts import Parameter
 
-from tribodyn.cli.commands.sweep_command import INTERRUPTED, report_exit_code, run_checkpointed
+from tribodyn.cli.commands.sweep_commands import INTERRUPTED, report_exit_code, run_checkpointed
 from tribodyn.cli.console import say, say_json, table, tell
 from tribodyn.cli.settings import (
     USUAL,
@@ -20,6 +20,7 @@ from tribodyn.cli.settings import (
     read_ranges,
 )
 from tribodyn.errors import InputError
+from tribodyn.types import Tree
 
 if TYPE_CHECKING:
     from tribodyn.cases.papers.comparison import PaperComparison
@@ -85,9 +86,9 @@ def _keys(result: FrictionExperiment) -> list[str]:
     return [name.lower().replace(" ", "_") for name in result.CLAIM_HEAD]
 
 
-def _options(roughness: str, laws: str) -> dict[str, Any]:
+def _options(roughness: str, laws: str) -> Tree:
     """Return the options of the command line as arguments."""
-    options: dict[str, Any] = {}
+    options: Tree = {}
     if roughness:
         values = read_ranges([f"roughness={roughness}"])["roughness"]
         if isinstance(values, tuple) or not all(isinstance(value, str) for value in values):

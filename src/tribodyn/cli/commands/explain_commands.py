@@ -7,20 +7,20 @@ import math
 from collections.abc import Iterator
 from dataclasses import replace
 from pathlib import Path
-from typing import Any
 
 from tribodyn.cli.console import say, say_json, table, tell
 from tribodyn.cli.settings import Flag
 from tribodyn.cookbook import TOPICS, Recipe, find_recipe, recipes, write_skill
 from tribodyn.errors import InputError, OutputExistsError, Problem
 from tribodyn.study.case.values import Term, find_term, listed_terms
+from tribodyn.types import Tree
 
 #: Entries beyond this number are only named.
 _MAX_ENTRIES = 8
 #: Endings of the files of a recipe.
 _WRITTEN = (".py", ".ipynb")
 
-Entries = list[dict[str, Any]]
+Entries = list[Tree]
 
 
 def explain(symbol: str, /, *more: str, json: Flag = False) -> None:
@@ -59,7 +59,7 @@ def explain(symbol: str, /, *more: str, json: Flag = False) -> None:
 def _friction_laws(json: bool) -> None:
     """Compare all friction laws along the path of contact of FZG type A."""
     from tribodyn.cases.load import load_case
-    from tribodyn.study.studies.friction_laws import PLACES, friction_laws
+    from tribodyn.study.studies.losses import PLACES, friction_laws
 
     laws = friction_laws(load_case("fzg-roughness"))
     if json:
@@ -82,7 +82,7 @@ def _plain_form(name: str) -> str:
     return name.lower().replace("_", " ").replace("-", " ")
 
 
-def _all_entries() -> list[tuple[tuple[str, ...], dict[str, Any]]]:
+def _all_entries() -> list[tuple[tuple[str, ...], Tree]]:
     """Return everything that can be explained with its names, the most important first."""
     return [*_choices(), *_warnings(), *_quantities(), *_keys(), *_figures()]
 
@@ -124,11 +124,11 @@ def _entries_by_text(query: str) -> Entries:
     return [*ranks[0], *ranks[1]] or ranks[2]
 
 
-def _term_entry(meant: Term) -> dict[str, Any]:
+def _term_entry(meant: Term) -> Tree:
     return {"answer": meant.meaning, "meaning": "", "see": meant.key, "page": f"docs/{meant.page}"}
 
 
-def _quantities() -> Iterator[tuple[tuple[str, ...], dict[str, Any]]]:
+def _quantities() -> Iterator[tuple[tuple[str, ...], Tree]]:
     from tribodyn.nomenclature import QUANTITIES
     from tribodyn.study.case.reference import explanations
 
@@ -148,9 +148,9 @@ def _quantities() -> Iterator[tuple[tuple[str, ...], dict[str, Any]]]:
         )
 
 
-def _keys() -> Iterator[tuple[tuple[str, ...], dict[str, Any]]]:
+def _keys() -> Iterator[tuple[tuple[str, ...], Tree]]:
     from tribodyn.study.case.reference import case_keys, explanations, page_of
-    from tribodyn.study.parts_reference import machine_keys
+    from tribodyn.study.machine_tables import machine_keys
 
     equations = explanations()["equations"]
     pairs = list(case_keys())
@@ -173,7 +173,7 @@ def _keys() -> Iterator[tuple[tuple[str, ...], dict[str, Any]]]:
         )
 
 
-def _choices() -> Iterator[tuple[tuple[str, ...], dict[str, Any]]]:
+def _choices() -> Iterator[tuple[tuple[str, ...], Tree]]:
     """Models, laws and methods with their equations, ranges and papers."""
     from tribodyn.study.case.reference import case_keys, choice_meanings, explanations, page_of
     from tribodyn.study.pipeline.citations import sources_of
@@ -196,7 +196,7 @@ def _choices() -> Iterator[tuple[tuple[str, ...], dict[str, Any]]]:
         )
 
 
-def _warnings() -> Iterator[tuple[tuple[str, ...], dict[str, Any]]]:
+def _warnings() -> Iterator[tuple[tuple[str, ...], Tree]]:
     from tribodyn.study.case.reference import explanations, page_of, warning_meanings
 
     remedies = explanations()["remedies"]
@@ -205,7 +205,7 @@ def _warnings() -> Iterator[tuple[tuple[str, ...], dict[str, Any]]]:
         yield (code,), {**entry, "page": page_of("warning")}
 
 
-def _figures() -> Iterator[tuple[tuple[str, ...], dict[str, Any]]]:
+def _figures() -> Iterator[tuple[tuple[str, ...], Tree]]:
     from tribodyn.nomenclature import QUANTITIES
     from tribodyn.study.case.reference import explanations, page_of
     from tribodyn.study.pipeline.summary import SUMMARY

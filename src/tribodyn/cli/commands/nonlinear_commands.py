@@ -7,10 +7,11 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal
 from cyclopts import Parameter
 
 from tribodyn.cli.commands.study_commands import answer
-from tribodyn.cli.commands.sweep_command import INTERRUPTED
+from tribodyn.cli.commands.sweep_commands import INTERRUPTED
 from tribodyn.cli.console import say, say_json, show_resumed, tell
 from tribodyn.cli.settings import RANGE, USUAL, CaseName, Mesh, Place, read_ends, read_ranges
 from tribodyn.errors import InputError
+from tribodyn.types import Tree
 
 if TYPE_CHECKING:
     from tribodyn.progress import Progress
@@ -54,7 +55,7 @@ def bifurcation(
 
     key, (first, last, points) = _single_range(over)
     lengths = {"cycles": cycles, "transient": transient}
-    options: dict[str, Any] = {n: each for n, each in lengths.items() if each is not None}
+    options: Tree = {n: each for n, each in lengths.items() if each is not None}
     _check_lengths(**options)
     ready, target = at.case("bifurcation", case)
     if cycles is not None:

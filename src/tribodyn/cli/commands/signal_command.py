@@ -11,13 +11,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 from cyclopts import Parameter
 
 from tribodyn.cli.console import say, say_json, show_warnings, table, tell
-from tribodyn.cli.settings import (
-    Flag,
-    Output,
-    check_place,
-    in_si,
-    with_options,
-)
+from tribodyn.cli.settings import Flag, Output, check_place, in_si, with_options
 from tribodyn.errors import InputError, Problem, collected, did_you_mean
 from tribodyn.nomenclature import GEARS
 
@@ -250,7 +244,7 @@ def _line(text: Text, sample_rate: float) -> float | None:
 
 def _ends(option: str, text: str) -> tuple[float, float]:
     """Two ends of a range, in SI."""
-    from tribodyn.study.studies.range_syntax import UnreadError, read_range
+    from tribodyn.study.studies.study_axes import UnreadError, read_range
     from tribodyn.units import UnitProblemError, parse
 
     unit, example = _EXAMPLES[option]

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from json import loads
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Literal
+from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
@@ -14,6 +14,7 @@ from tribodyn.cli.settings import Flag, Output, Words, changed_case, read_change
 from tribodyn.drawing import finite
 from tribodyn.errors import InputError, Problem, collected
 from tribodyn.files import check_new
+from tribodyn.types import Tree
 
 if TYPE_CHECKING:
     from tribodyn.surrogate import Surrogate
@@ -147,7 +148,7 @@ def _predict(source: str, values: tuple[str, ...], json: bool) -> None:
     say_json(facts) if json else say(table(rows))
 
 
-def _inputs(model: Surrogate, values: dict[str, Any]) -> dict[str, float]:
+def _inputs(model: Surrogate, values: Tree) -> dict[str, float]:
     """Values of the features in SI."""
     from tribodyn.units import UnitProblemError, parse
 

@@ -12,7 +12,6 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from tribodyn.checks import require_whole
 from tribodyn.dynamics.equations.grid import Grid, build_grid, system_events
 from tribodyn.dynamics.equations.lane_parameters import LaneParameters
 from tribodyn.dynamics.equations.motion import has_gap
@@ -25,6 +24,7 @@ from tribodyn.dynamics.equations.step_limit import (
 )
 from tribodyn.dynamics.equations.system import System
 from tribodyn.errors import InputError, require_positive
+from tribodyn.nomenclature import require_whole
 from tribodyn.types import Index, Mask
 
 

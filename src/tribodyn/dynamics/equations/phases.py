@@ -13,8 +13,8 @@ from typing import TYPE_CHECKING, Any, NamedTuple, TypeVar
 
 import numpy as np
 
-from tribodyn.checks import require_whole
 from tribodyn.errors import InputError
+from tribodyn.nomenclature import require_whole
 from tribodyn.types import Array
 
 if TYPE_CHECKING:

@@ -11,7 +11,6 @@ import math
 
 import numpy as np
 
-from tribodyn.checks import require_number
 from tribodyn.dynamics.equations.grid import Grid, RowEvaluator, build_grid, system_events
 from tribodyn.dynamics.equations.lane_parameters import LaneParameters
 from tribodyn.dynamics.equations.nodes import (
@@ -22,6 +21,7 @@ from tribodyn.dynamics.equations.nodes import (
 )
 from tribodyn.dynamics.equations.system import System
 from tribodyn.errors import InputError, require_positive
+from tribodyn.nomenclature import require_number
 from tribodyn.types import Array, ComplexArray, Index, Mask
 
 #: Highest ``omega_max * dt``; the exact limit of the scheme on the imaginary axis is 2.828.

@@ -19,7 +19,6 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from tribodyn.arrays.memory import Memo
-from tribodyn.checks import require_flag, require_number, require_whole
 from tribodyn.dynamics.equations.entry import Entry, read_events, varies
 from tribodyn.dynamics.equations.phases import (
     Cycles,
@@ -33,6 +32,7 @@ from tribodyn.dynamics.equations.phases import (
     with_turning_error,
 )
 from tribodyn.errors import InputError, real_numbers, require_between, require_positive
+from tribodyn.nomenclature import require_flag, require_number, require_whole
 from tribodyn.types import Array
 
 

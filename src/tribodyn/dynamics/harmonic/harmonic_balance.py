@@ -14,7 +14,6 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from tribodyn.checks import require_flag, require_number, require_whole
 from tribodyn.dynamics.equations.compiled import Compiled, sample_system
 from tribodyn.dynamics.equations.grid import system_events
 from tribodyn.dynamics.equations.orbit_coordinates import (
@@ -40,6 +39,7 @@ from tribodyn.dynamics.modal.modal_march import ModalMotion
 from tribodyn.dynamics.time.response import Response, build_response
 from tribodyn.dynamics.time.simulate import read_start
 from tribodyn.errors import ComputationError, InputError, require_positive, warn
+from tribodyn.nomenclature import require_flag, require_number, require_whole
 from tribodyn.progress import SILENT, Progress
 from tribodyn.types import Array, ComplexArray, Mask
 

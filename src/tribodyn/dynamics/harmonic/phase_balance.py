@@ -10,7 +10,6 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from tribodyn.arrays.memory import machine_memory
-from tribodyn.checks import require_whole
 from tribodyn.dynamics.equations.orbit_coordinates import (
     at_rest,
     orbit_coordinates,
@@ -32,6 +31,7 @@ from tribodyn.dynamics.harmonic.radial_clearance import REMEDY, RadialClearance,
 from tribodyn.dynamics.modal.closed_structure import ClosedStructure
 from tribodyn.dynamics.modal.contact_equations import close_contacts
 from tribodyn.errors import ComputationError, InputError, warn
+from tribodyn.nomenclature import require_whole
 from tribodyn.types import Array, Index, Mask
 
 #: Points over a phase of meshes, and over one that only turns shafts, with which an automatic

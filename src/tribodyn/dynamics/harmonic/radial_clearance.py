@@ -9,7 +9,6 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from tribodyn.checks import require_number
 from tribodyn.dynamics.equations.system import Contact
 from tribodyn.errors import (
     Argument,
@@ -18,6 +17,7 @@ from tribodyn.errors import (
     require_between,
     require_positive,
 )
+from tribodyn.nomenclature import require_number
 from tribodyn.types import Array
 
 #: Width over the clearance of the transition between no contact and contact.

@@ -17,7 +17,6 @@ from typing import Any, Literal
 import numpy as np
 from numpy.typing import ArrayLike
 
-from tribodyn.checks import require_number, require_whole
 from tribodyn.dynamics.equations.nodes import halved_nodes
 from tribodyn.dynamics.equations.orbit_coordinates import static_start
 from tribodyn.dynamics.equations.program import build_program
@@ -35,6 +34,7 @@ from tribodyn.dynamics.time.engines import automatic_method
 from tribodyn.dynamics.time.response import Response, build_response
 from tribodyn.dynamics.time.simulate import read_start
 from tribodyn.errors import warn
+from tribodyn.nomenclature import require_number, require_whole
 from tribodyn.progress import SILENT, Progress
 from tribodyn.types import Array
 

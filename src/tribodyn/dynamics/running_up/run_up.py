@@ -9,7 +9,6 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from tribodyn.checks import require_whole
 from tribodyn.dynamics._engine.statistics import PLAIN_MOMENTS
 from tribodyn.dynamics.equations.nodes import lowest_of_each_law
 from tribodyn.dynamics.equations.system import System
@@ -26,6 +25,7 @@ from tribodyn.dynamics.running_up.run_up_tables import Table, Tables, systems_by
 from tribodyn.dynamics.time.ensemble import lane_statistics
 from tribodyn.dynamics.time.simulate import read_start
 from tribodyn.errors import ComputationError, InputError, quiet, require_positive
+from tribodyn.nomenclature import require_whole
 from tribodyn.progress import SILENT, Progress
 from tribodyn.types import Array
 

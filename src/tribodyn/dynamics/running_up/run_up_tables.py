@@ -13,13 +13,13 @@ from typing import NamedTuple
 
 import numpy as np
 
-from tribodyn.checks import require_whole
 from tribodyn.dynamics.equations.grid import Grid, system_events
 from tribodyn.dynamics.equations.nodes import Nodes, evaluate_nodes
 from tribodyn.dynamics.equations.program import Program, build_program
 from tribodyn.dynamics.equations.step_limit import LIMIT, rate_on_grid
 from tribodyn.dynamics.equations.system import System
 from tribodyn.errors import InputError, require_positive
+from tribodyn.nomenclature import require_whole
 from tribodyn.types import Array, Index
 
 #: ``omega_max * dt`` of the chosen steps; the damping that the integrator adds is then below 4e-5.

@@ -8,13 +8,13 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from tribodyn.checks import require_number, require_whole
 from tribodyn.dynamics._engine.adaptive_engine import Tolerance, adaptive_lanes, lane_groups
 from tribodyn.dynamics.equations.motion import quintic_place, quintic_speed
 from tribodyn.dynamics.equations.system import System
 from tribodyn.dynamics.time.simulate import read_force, read_start
 from tribodyn.errors import InputError, require_positive
 from tribodyn.interrupt import in_threads
+from tribodyn.nomenclature import require_number, require_whole
 from tribodyn.record import Parts, Record, fact, quantity, record
 from tribodyn.types import Array
 

@@ -6,13 +6,13 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from tribodyn.aliases import with_old_names
-from tribodyn.checks import require_number, require_whole
 from tribodyn.dynamics._engine.adaptive_engine import Tolerance
 from tribodyn.dynamics._engine.blocks import Backend
 from tribodyn.dynamics.equations.system import System
 from tribodyn.dynamics.time.engines import Method, Setting, automatic_method, engine_name, prepare
 from tribodyn.dynamics.time.response import Response, build_response, later
 from tribodyn.errors import Argument, InputError, real_numbers, require_positive
+from tribodyn.nomenclature import require_number, require_whole
 from tribodyn.progress import SILENT, Progress
 from tribodyn.types import Array
 

@@ -14,16 +14,17 @@ from numba import types
 from numba.extending import intrinsic
 
 from tribodyn.compiled.jit import INNER_OPTIONS
+from tribodyn.types import Tree
 
 #: NaN stays detectable: neither "nnan" nor "ninf". Only the outermost kernel is cached on disk.
-JIT: dict[str, Any] = {
+JIT: Tree = {
     "nogil": True,
     "fastmath": {"contract", "nsz", "arcp", "reassoc"},
     "error_model": "numpy",
 }
 
 #: Options of functions that only compiled functions call.
-INNER: dict[str, Any] = {**JIT, **INNER_OPTIONS}
+INNER: Tree = {**JIT, **INNER_OPTIONS}
 
 #: Files whose code is part of every compiled film kernel, in addition to its own file.
 SOURCES: tuple[str, ...] = ("elementary", "reynolds", "film_sum", "factors", "linear_solver")

@@ -8,7 +8,6 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from tribodyn.checks import require_number
 from tribodyn.ehl.area.area_case import Grid
 from tribodyn.ehl.area.multigrid import AreaProblem, Outcome, solve_area
 from tribodyn.ehl.area.point_contact import STATED_LIMIT, requested_nodes
@@ -25,6 +24,7 @@ from tribodyn.errors import (
     warn,
 )
 from tribodyn.lubricant import Lubricant
+from tribodyn.nomenclature import require_number
 from tribodyn.record import from_parts
 from tribodyn.types import Array
 

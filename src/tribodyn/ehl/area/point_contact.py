@@ -6,12 +6,12 @@ import math
 
 import numpy as np
 
-from tribodyn.checks import require_number, require_whole
 from tribodyn.ehl.area.area_case import Grid, PointCase, point_case, point_grid
 from tribodyn.ehl.area.multigrid import AreaProblem, Outcome, solve_area
 from tribodyn.ehl.area.solution import PointContactSolution
 from tribodyn.errors import ComputationError, InputError, require_between, warn
 from tribodyn.lubricant import Lubricant
+from tribodyn.nomenclature import require_number, require_whole
 from tribodyn.record import from_parts
 from tribodyn.types import Array
 

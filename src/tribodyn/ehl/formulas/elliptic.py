@@ -5,9 +5,9 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import ArrayLike
 
-from tribodyn.checks import positive
 from tribodyn.ehl.formulas.dimensionless_groups import elsewhere, warn_of_regime
 from tribodyn.errors import Argument, real_numbers, require_between, warn
+from tribodyn.nomenclature import positive
 from tribodyn.types import Array
 
 #: Ratio of radii up to which the film formulas for ellipses are used, with a margin for rounding,

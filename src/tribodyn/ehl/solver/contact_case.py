@@ -8,7 +8,6 @@ from typing import Protocol
 
 import numpy as np
 
-from tribodyn.checks import require_flag
 from tribodyn.contact.hertz import dry_half_width
 from tribodyn.errors import (
     Argument,
@@ -20,6 +19,7 @@ from tribodyn.errors import (
 )
 from tribodyn.lubricant import Lubricant
 from tribodyn.lubricant.pressure_laws import ROELANDS_PRESSURE
+from tribodyn.nomenclature import require_flag
 from tribodyn.types import Array
 
 #: Pressure laws of the viscosity, by the number that the kernels know them by.

@@ -11,7 +11,6 @@ from typing import Any, TypeVar
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from tribodyn.checks import require_number
 from tribodyn.ehl.film_stiffness import FilmSlopes, film_distance, film_slopes
 from tribodyn.ehl.solver.contact_case import si_case
 from tribodyn.ehl.steady.line_contact import STATED_LIMIT, SolverOptions, solve_case
@@ -30,6 +29,7 @@ from tribodyn.errors import (
 )
 from tribodyn.interrupt import Threads, begins_thread, processors
 from tribodyn.lubricant import Lubricant
+from tribodyn.nomenclature import require_number
 from tribodyn.progress import SILENT, Progress
 from tribodyn.types import Array
 

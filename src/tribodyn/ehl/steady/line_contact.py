@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from dataclasses import dataclass, fields, replace
 from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from tribodyn.checks import require_number, require_whole
 from tribodyn.ehl.flow_factors import FlowFactors
 from tribodyn.ehl.solver.contact_case import (
     ContactCase,
@@ -28,8 +27,9 @@ from tribodyn.ehl.thermal.thermal_model import ThermalModel, read_thermal
 from tribodyn.errors import InputError, real_numbers, require_between, warn
 from tribodyn.interrupt import aside
 from tribodyn.lubricant import Lubricant
+from tribodyn.nomenclature import require_number, require_whole
 from tribodyn.record import from_parts
-from tribodyn.types import Array
+from tribodyn.types import Array, ByName
 
 #: Heights that are added to the gap, at the nodes or over the position.
 Profile = Callable[[Array], ArrayLike]
@@ -71,7 +71,7 @@ class SolverOptions:
         return model
 
     @classmethod
-    def among(cls, arguments: Mapping[str, Any]) -> SolverOptions:
+    def among(cls, arguments: ByName) -> SolverOptions:
         """Options among the arguments of a function, by their names."""
         return cls(**{name: arguments[name] for name in _OPTIONS if name in arguments})
 

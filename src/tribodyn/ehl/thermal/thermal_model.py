@@ -7,7 +7,6 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import NamedTuple
 
-from tribodyn.checks import require_whole
 from tribodyn.ehl.traction.film_temperature import (
     STEEL_THERMAL_CONTACT_COEFFICIENT,
     ThermalOil,
@@ -23,6 +22,7 @@ from tribodyn.errors import (
 from tribodyn.lubricant import Lubricant
 from tribodyn.lubricant.pressure_laws import DENSITY_FALL
 from tribodyn.model import NO_OPTIONS
+from tribodyn.nomenclature import require_whole
 
 #: Thermal conductivity of gear steel [W/m/K], in the middle of ISO/TR 13989-1.
 STEEL_CONDUCTIVITY = 47.0

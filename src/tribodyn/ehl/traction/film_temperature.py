@@ -9,7 +9,6 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike
 
-from tribodyn.checks import positive
 from tribodyn.errors import (
     ComputationError,
     InputError,
@@ -20,6 +19,7 @@ from tribodyn.errors import (
 )
 from tribodyn.lubricant import Lubricant
 from tribodyn.model import Registry
+from tribodyn.nomenclature import positive
 from tribodyn.types import Array
 
 #: ln of the viscosity [Pa*s] in which all curves of the Roelands law meet, with the sign changed.

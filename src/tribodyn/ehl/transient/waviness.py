@@ -7,13 +7,13 @@ import math
 import numpy as np
 from numpy.typing import ArrayLike
 
-from tribodyn.checks import positive
 from tribodyn.ehl.roughness import RoughnessProfile
 from tribodyn.ehl.solver.contact_case import si_case
 from tribodyn.ehl.steady.line_contact import solve_line_contact
 from tribodyn.ehl.transient.transient import solve_transient_line_contact
 from tribodyn.errors import InputError, require_between
 from tribodyn.lubricant import Lubricant
+from tribodyn.nomenclature import positive
 from tribodyn.progress import SILENT, Progress
 from tribodyn.record import Record, fact, quantity, record
 from tribodyn.types import Array

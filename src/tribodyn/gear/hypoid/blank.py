@@ -4,14 +4,14 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from typing import Any
 
-from tribodyn.checks import require_number, require_whole
 from tribodyn.errors import Argument, InputError, Problem, require_between, require_one_of
 from tribodyn.gear.hypoid.dimensions import dimensions
 from tribodyn.gear.hypoid.pitch_cones import PitchInput
 from tribodyn.gear.mass_properties import MassProperties
+from tribodyn.nomenclature import require_number, require_whole
 from tribodyn.record import Parts, Record, fact, labels_of, quantity, record
+from tribodyn.types import Tree
 
 #: Hands of a pinion; the wheel has the other one.
 HANDS = ("left", "right")
@@ -304,13 +304,13 @@ def hypoid_blank(
     arguments = dict(locals())
     hand = require_one_of("hand_pinion", arguments.pop("hand_pinion"), HANDS)
     teeth = _teeth(arguments.pop("teeth_pinion"), arguments.pop("teeth_wheel"))
-    cut: dict[str, Any] = {
+    cut: Tree = {
         name: require_one_of(name, arguments.pop(name), choices)
         for name, choices in (("process", PROCESSES), ("wheel_generation", GENERATIONS))
     }
     groups = _blade_groups(cut["process"], arguments.pop("blade_groups"), arguments)
     values = _checked(arguments)
-    sizes: dict[str, Any] = {name: values[name] for name in PitchInput._fields if name in values}
+    sizes: Tree = {name: values[name] for name in PitchInput._fields if name in values}
     pitch_input = PitchInput(*teeth, blade_groups=groups, **sizes)
     _require_face_fits(pitch_input)
     cut |= dimensions(pitch_input, values)

@@ -7,9 +7,9 @@ from dataclasses import dataclass, fields
 
 import numpy as np
 
-from tribodyn.checks import require_number
 from tribodyn.errors import Argument, InputError, require_between
 from tribodyn.gear.hypoid.blank import HypoidBlank
+from tribodyn.nomenclature import require_number
 from tribodyn.types import Array
 
 #: Amount beyond which a unit is wrong, and length of a relief over the working depth [m, -].

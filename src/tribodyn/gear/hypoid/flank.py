@@ -6,20 +6,18 @@ import os
 from dataclasses import field
 from functools import cached_property
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 
-from tribodyn.checks import require_whole
 from tribodyn.errors import Argument, InputError, require_one_of, shortened, warn
 from tribodyn.files import atomic_write
 from tribodyn.gear.hypoid.blank import HypoidBlank
 from tribodyn.gear.hypoid.conjugate import ConjugateFlanks
 from tribodyn.gear.hypoid.ease_off import EaseOff, eased_gap, working_depth
 from tribodyn.gear.hypoid.envelope import turned
-from tribodyn.nomenclature import GEARS
+from tribodyn.nomenclature import GEARS, require_whole
 from tribodyn.record import Record, fact, figure_method, quantity, record
-from tribodyn.types import Array, Mask
+from tribodyn.types import Array, Mask, Tree
 
 SIDES = ("drive", "coast")
 _GRID = ("length", "profile")
@@ -251,7 +249,7 @@ def hypoid_flanks(
     return result
 
 
-def _grid(flanks: ConjugateFlanks, places: Array) -> dict[str, Any]:
+def _grid(flanks: ConjugateFlanks, places: Array) -> Tree:
     touch = flanks.touch(places)
     curvature = touch.curvature
     parameters = flanks.wheel.parameters(places)

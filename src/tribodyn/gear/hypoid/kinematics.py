@@ -7,11 +7,11 @@ from typing import NamedTuple
 
 import numpy as np
 
-from tribodyn.checks import require_number
 from tribodyn.errors import require_between, require_one_of, require_positive
 from tribodyn.gear.hypoid.conjugate import ConjugateFlanks, Touch
 from tribodyn.gear.hypoid.envelope import Curvature, cross
 from tribodyn.gear.hypoid.tooth_contact import ToothContact
+from tribodyn.nomenclature import require_number
 from tribodyn.record import Record, fact, quantity, record
 from tribodyn.types import Array
 

@@ -8,13 +8,13 @@ from typing import NamedTuple
 
 import numpy as np
 
-from tribodyn.checks import require_flag, require_number, require_whole
 from tribodyn.errors import ComputationError, require_between, require_positive
 from tribodyn.gear.hypoid.conjugate import ConjugateFlanks, ContactLines, Touch, contact_lines
 from tribodyn.gear.hypoid.ease_off import eased_gap
 from tribodyn.gear.hypoid.envelope import turned
 from tribodyn.gear.hypoid.flank import HypoidFlanks
 from tribodyn.gear.hypoid.wheel_flanks import hand_sense
+from tribodyn.nomenclature import require_flag, require_number, require_whole
 from tribodyn.record import Record, fact, quantity, record
 from tribodyn.types import Array, Mask
 

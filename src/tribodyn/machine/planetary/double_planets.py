@@ -9,8 +9,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from tribodyn.checks import require_number
 from tribodyn.errors import Argument, InputError, require_between, require_positive
+from tribodyn.nomenclature import require_number
 from tribodyn.types import Array
 
 #: First coordinates of ring, sun and the first planet.

@@ -7,7 +7,6 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Literal
 
-from tribodyn.checks import require_number
 from tribodyn.errors import Argument, InputError, require_between, require_one_of
 from tribodyn.machine.planetary.positions import (
     PlanetTeeth,
@@ -15,6 +14,7 @@ from tribodyn.machine.planetary.positions import (
     planetary_positions,
     read_teeth,
 )
+from tribodyn.nomenclature import require_number
 
 Member = Literal["sun", "ring", "carrier"]
 

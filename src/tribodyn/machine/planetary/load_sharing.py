@@ -13,7 +13,7 @@ from tribodyn.dynamics.equations.system import System
 from tribodyn.errors import Argument, ComputationError, InputError, Problem, did_you_mean
 from tribodyn.machine.planetary.double_planets import force_ratios
 from tribodyn.machine.planetary.plane_model import CENTRAL, planetary_plane_model
-from tribodyn.types import Array, Mask
+from tribodyn.types import Array, Mask, Tree
 
 #: Weak springs to the last position, over the largest stiffness; iterations, and the change of
 #: forces over the mean at which they end.
@@ -128,7 +128,7 @@ def sampled_shares(pin_errors: Array, thickness_errors: Array, **stage: Any) -> 
     return np.asarray(loads / loads.mean(axis=1, keepdims=True))
 
 
-def _check_names(stage: dict[str, Any]) -> None:
+def _check_names(stage: Tree) -> None:
     """Refuse unknown and missing arguments of the plane model."""
     arguments = signature(planetary_plane_model).parameters
     needed = [name for name, each in arguments.items() if each.default is each.empty]
@@ -147,7 +147,7 @@ def _check_names(stage: dict[str, Any]) -> None:
         raise InputError(problems)
 
 
-def _planet_springs(system: System, stage: dict[str, Any]) -> tuple[Array, Array, Array]:
+def _planet_springs(system: System, stage: Tree) -> tuple[Array, Array, Array]:
     """Stiffness, direction and error of every planet between its members."""
     ratios = force_ratios(stage.get("double_planets"))
     count = len(system.contacts) // len(ratios)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -16,7 +16,7 @@ from tribodyn.machine.mesh import Mesh
 from tribodyn.machine.plane_law import coordinate_count, pair_coordinates, projected
 from tribodyn.machine.planetary.phases import MeshPhases
 from tribodyn.machine.planetary.plane_model import without_excess
-from tribodyn.types import Array
+from tribodyn.types import Array, Tree
 
 if TYPE_CHECKING:
     from tribodyn.gear import CylindricalPair
@@ -147,6 +147,6 @@ def with_computed_teeth(
             ]
             for contact in mesh.mesh.contacts:
                 error = without_excess(contact.error, 0.5 * float(excess[planet]))
-                changes: dict[str, Any] = {"offset": float(offsets[planet]), "error": error}
+                changes: Tree = {"offset": float(offsets[planet]), "error": error}
                 contacts.append(projected(contact, rows, **changes))
     return replace(stage, contacts=contacts, frictions=frictions)

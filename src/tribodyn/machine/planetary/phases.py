@@ -10,9 +10,9 @@ from types import MappingProxyType
 import numpy as np
 from numpy.typing import ArrayLike
 
-from tribodyn.checks import require_number, require_whole
 from tribodyn.errors import require_one_of
 from tribodyn.machine.planetary.positions import PlanetType, read_teeth, refuse_misfit
+from tribodyn.nomenclature import require_number, require_whole
 from tribodyn.types import Array
 
 _CYCLES = MappingProxyType({"sun": 1, "ring": 1, "planet": 1})

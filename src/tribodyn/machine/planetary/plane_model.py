@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from tribodyn.checks import require_number, require_whole
 from tribodyn.dynamics.equations.entry import Entry, varies
 from tribodyn.dynamics.equations.system import Contact, System
 from tribodyn.dynamics.harmonic.clearance_motion import clearance_motion
@@ -31,7 +30,8 @@ from tribodyn.machine.planetary.double_planets import (
 )
 from tribodyn.machine.planetary.phases import MeshPhases
 from tribodyn.machine.planetary.positions import read_angles
-from tribodyn.types import Array
+from tribodyn.nomenclature import require_number, require_whole
+from tribodyn.types import Array, ByName
 
 if TYPE_CHECKING:
     from tribodyn.dynamics import Response
@@ -87,7 +87,7 @@ class Pins:
         return matrix, load
 
 
-def pins_of(data: Mapping[str, Any]) -> Pins:
+def pins_of(data: ByName) -> Pins:
     """Pins of the arguments of a plane model."""
     count, double = int(data["planets"]), data.get("double_planets")
     alpha = data["sun_pressure_angle"], data["ring_pressure_angle"]
@@ -98,9 +98,7 @@ def pins_of(data: Mapping[str, Any]) -> Pins:
     return Pins(axes, stiffness, ahead, float(data.get("pin_clearance", 0.0)))
 
 
-def motion_in_clearance(
-    system: System, data: Mapping[str, Any], frequency: float, **search: Any
-) -> Response:
+def motion_in_clearance(system: System, data: ByName, frequency: float, **search: Any) -> Response:
     """Periodic motion of a stage with the exact law of its pins."""
     pins = pins_of(data)
     matrix, load = pins.springs(pins.axes.forces(float(data["force_per_planet"])))

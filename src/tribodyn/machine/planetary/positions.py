@@ -9,7 +9,6 @@ from typing import Literal
 import numpy as np
 from numpy.typing import ArrayLike
 
-from tribodyn.checks import require_whole
 from tribodyn.errors import (
     Argument,
     InputError,
@@ -18,6 +17,7 @@ from tribodyn.errors import (
     require_one_of,
     require_positive,
 )
+from tribodyn.nomenclature import require_whole
 from tribodyn.types import Array
 
 PlanetType = Literal["single", "stepped", "meshed"]

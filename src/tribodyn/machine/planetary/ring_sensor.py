@@ -7,9 +7,9 @@ from collections.abc import Callable
 import numpy as np
 from numpy.typing import ArrayLike
 
-from tribodyn.checks import require_number, require_whole
 from tribodyn.errors import Argument, InputError, real_numbers, require_between, require_positive
 from tribodyn.machine.planetary.positions import read_angles
+from tribodyn.nomenclature import require_number, require_whole
 from tribodyn.record import Record, fact, quantity, record
 from tribodyn.types import Array
 

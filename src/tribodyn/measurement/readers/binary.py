@@ -20,7 +20,7 @@ from tribodyn.measurement.readers.recording_data import (
     rate_of,
     refuse_table,
 )
-from tribodyn.types import Array
+from tribodyn.types import Array, Tree
 from tribodyn.validated_files import read_dataset
 
 #: Warning of SciPy.
@@ -114,7 +114,7 @@ def _label(text: object) -> str:
     return "" if plain.upper() == "NONE" else plain
 
 
-def _uff_name(dataset: dict[str, Any], channels: dict[str, Array]) -> str:
+def _uff_name(dataset: Tree, channels: dict[str, Array]) -> str:
     names = (dataset["id1"], dataset["rsp_ent_name"], dataset["ordinate_axis_lab"])
     name = next((_label(label) for label in names if _label(label)), "channel")
     return name if name not in channels else f"{name} ({1 + len(channels)})"
@@ -132,7 +132,7 @@ def tdms(path: Path) -> RecordingData:
         what = "its last segment is incomplete"
         raise InputError(what, str(path), "The file is cut short, or was still being written")
     groups = tdms_file.groups()
-    named: dict[str, Any] = _properties("", tdms_file)
+    named: Tree = _properties("", tdms_file)
     for group in groups:
         prefix = f"{group.name}/" if len(groups) > 1 else ""
         named |= _properties(prefix, group)
@@ -144,7 +144,7 @@ def tdms(path: Path) -> RecordingData:
     return from_arrays(named, path)
 
 
-def _properties(prefix: str, owner: Any) -> dict[str, Any]:
+def _properties(prefix: str, owner: Any) -> Tree:
     return {prefix + name: value for name, value in owner.properties.items() if is_metadata(name)}
 
 
@@ -153,7 +153,7 @@ def hdf5(path: Path) -> RecordingData:
     """Read the vectors of an HDF5 or netCDF file, with rates and units from their attributes."""
     import h5py
 
-    named: dict[str, Any] = {}
+    named: Tree = {}
     if path.suffix.lower() == ".nc":  # read_dataset verifies the checksum, if any
         data = read_dataset(path, str(path))
         for name, variable in data.variables.items():
@@ -191,7 +191,7 @@ def hdf5(path: Path) -> RecordingData:
     return from_arrays(named, path)
 
 
-def _values(name: str, dataset: Any, separator: str) -> dict[str, Any]:
+def _values(name: str, dataset: Any, separator: str) -> Tree:
     """Values of one HDF5 dataset: numbers after scaling, characters as text."""
     value, attributes = dataset[()], dataset.attrs
     if attributes.get("MATLAB_class", b"") == b"char":
@@ -233,7 +233,7 @@ def mat(path: Path) -> RecordingData:
         warn("duplicate-variables", message)
     # Recording.save writes units and names of the channels beside them.
     labels = {n: str(variables[f"{n}_name"]) for n in variables if f"{n}_name" in variables}
-    named: dict[str, Any] = {}
+    named: Tree = {}
     for name, value in variables.items():
         if isinstance(value, MatlabOpaque) or name == "None":
             kinds = value["s2"].reshape(-1).tolist() if value.dtype.names else [""]

@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 
 from tribodyn.errors import InputError
-from tribodyn.types import Array
+from tribodyn.types import Array, Tree
 from tribodyn.units import UnitProblemError, convert
 
 #: Classes of MATLAB objects that hold channels; others, such as strings, are ignored.
@@ -132,7 +132,7 @@ def from_arrays(named: Mapping[str, object], path: Path) -> RecordingData:
     rates: dict[str, dict[str, float]] = {}
     labels: dict[str, str] = {}
     clocks: dict[str, tuple[str, Any]] = {}
-    starts: dict[str, dict[str, Any]] = {}
+    starts: dict[str, Tree] = {}
     left_out = []
     for name, value in named.items():
         scope, last = _split_name(name)
@@ -223,7 +223,7 @@ def _times(
 
 def _starts(values: Mapping[str, Mapping[str, object]]) -> dict[str, float]:
     """Times of the first samples: a date less the earliest, if any has one, and an offset [s]."""
-    dates: dict[str, Any] = {}
+    dates: Tree = {}
     offsets: dict[str, float] = {}
     for name, each in values.items():
         for value in each.values():

@@ -39,7 +39,7 @@ from tribodyn.mesh.film.path_film import LoadedFilms, cold_film
 from tribodyn.mesh.film.sheared_film import ShearedFilms, place_from_pitch
 from tribodyn.mesh.sharing import Teeth, ToothContact
 from tribodyn.progress import SILENT
-from tribodyn.types import Array, Index, Mask
+from tribodyn.types import Array, Index, Mask, Tree
 
 #: Columns of a table after the films: their distance, the sharpness of the pressure peak and the
 #: node at which it lies, and the estimated error of the central film over that film.
@@ -165,7 +165,7 @@ class _Contacts:
     """Solver of contacts in terms of ``ln M`` and ``ln L``."""
 
     model: str
-    options: dict[str, Any]
+    options: Tree
     lubricant: Lubricant
     modulus: float
 
@@ -189,7 +189,7 @@ class _Contacts:
         return _quantities(pairs, load, self.model, self.options)
 
 
-def _quantities(pairs: PairsInContact, load: Array, model: str, options: dict[str, Any]) -> Array:
+def _quantities(pairs: PairsInContact, load: Array, model: str, options: Tree) -> Array:
     """Quantities of a table (q, n) of solved contacts."""
     with quiet():
         films = pairs.films(model, load, **options)
@@ -298,7 +298,7 @@ class FilmsFromTable(LoadedFilms):
 
     def reported(self, films: Films, load: Array) -> tuple[Films, Mask]:
         """Solve the contacts that results report; also return a mask of the certain quantities."""
-        columns: dict[str, Any] = {name: np.array(getattr(films, name)) for name in QUANTITIES}
+        columns: Tree = {name: np.array(getattr(films, name)) for name in QUANTITIES}
         certain = ~self.doubtful
         least = [int(np.argmin(np.where(self.scored, columns[n], np.inf))) for n in QUANTITIES[:2]]
         # One call for all of them, because starting threads takes time.

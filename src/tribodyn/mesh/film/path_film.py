@@ -12,7 +12,7 @@ from abc import abstractmethod
 from dataclasses import dataclass, field, replace
 from functools import cached_property, partial
 from itertools import product
-from typing import Any, Protocol
+from typing import Protocol
 
 import numpy as np
 
@@ -56,7 +56,7 @@ from tribodyn.mesh.film.loaded_contacts import ContactMotion
 from tribodyn.mesh.grid import PhaseFunction, PhaseGrid
 from tribodyn.mesh.sharing import Teeth, ToothContact
 from tribodyn.progress import Progress
-from tribodyn.types import Array, Index, Mask
+from tribodyn.types import Array, Index, Mask, Tree
 
 #: Coefficients, with their parts where the law has them.
 Friction = Array | FrictionParts
@@ -75,7 +75,7 @@ _MOST_SLIDING = 1.99
 COLD = "newton"
 
 
-def cold_film(settings: ToothContact) -> tuple[str, dict[str, Any]]:
+def cold_film(settings: ToothContact) -> tuple[str, Tree]:
     """Model and options of the film without its heat, which shares the loads."""
     options = dict(settings.film)
     heated = options.pop("thermal", None) is not None

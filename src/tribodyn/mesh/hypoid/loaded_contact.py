@@ -7,7 +7,6 @@ from functools import cached_property
 
 import numpy as np
 
-from tribodyn.checks import require_number, require_whole
 from tribodyn.contact import effective_modulus, hertz_line
 from tribodyn.errors import (
     ComputationError,
@@ -26,6 +25,7 @@ from tribodyn.mesh.hypoid.cells import (
     wrench,
 )
 from tribodyn.mesh.hypoid.coupled import LineCompliance, coupled_load, line_compliance
+from tribodyn.nomenclature import require_number, require_whole
 from tribodyn.progress import SILENT, Progress
 from tribodyn.record import Record, fact, figure_method, quantity, record
 from tribodyn.types import Array

@@ -8,16 +8,16 @@ from typing import TYPE_CHECKING, Any, cast
 import numpy as np
 from numpy.typing import ArrayLike
 
-from tribodyn.checks import one_or_more
 from tribodyn.friction import LAWS
 from tribodyn.mesh.force_law import MeshForceLaw
 from tribodyn.mesh.gears import NoGears
 from tribodyn.mesh.hypoid.cells import wrench
 from tribodyn.mesh.hypoid.loaded_contact import HypoidLoadedContact, wheel_torque_at
 from tribodyn.mesh.table import MeshTable
+from tribodyn.nomenclature import one_or_more
 from tribodyn.stiffness import HarrisMap
 from tribodyn.stiffness.loaded.result import harmonic_amplitudes
-from tribodyn.types import Array, Mask
+from tribodyn.types import Array, Mask, Tree
 
 if TYPE_CHECKING:
     from tribodyn.mesh.hypoid.friction import HypoidFriction
@@ -72,12 +72,12 @@ def mesh_table_of(rubbed: HypoidFriction) -> MeshTable:
     )
 
 
-def _contact_columns(rubbed: HypoidFriction) -> dict[str, Any]:
+def _contact_columns(rubbed: HypoidFriction) -> Tree:
     """Columns of each pair from its cells: means weighted by force, and least films."""
     loaded, touch = rubbed.loaded, rubbed.loaded.cells.in_contact
     force, carries = loaded.cell_force, loaded.cell_force > 0.0
     rubs = force * rubbed.friction_coefficient
-    columns: dict[str, Any] = {
+    columns: Tree = {
         name: _mean(getattr(rubbed, name), weight)
         for name, weight in (
             ("sliding_speed", rubs),
@@ -111,7 +111,7 @@ def _force_law(loaded: HypoidLoadedContact) -> MeshForceLaw:
     return MeshForceLaw.through(loaded.grid, (lever * turn).T, (torque / lever).T)
 
 
-def _friction_columns(rubbed: HypoidFriction) -> dict[str, Any]:
+def _friction_columns(rubbed: HypoidFriction) -> Tree:
     """Coefficient of each pair, the wrench of a unit friction force, and its levers.
 
     Without any friction the direction is that of one coefficient in all cells.

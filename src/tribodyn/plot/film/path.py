@@ -229,11 +229,7 @@ def _no_pressure(mesh: MeshTable) -> str:
     )
 
 
-@table_drawing(
-    heading="Pressure in the oil film",
-    caption=_pressure_caption,
-    missing=_no_pressure,
-)
+@table_drawing(heading="Pressure in the oil film", caption=_pressure_caption, missing=_no_pressure)
 def film_pressure(mesh: MeshTable) -> Sketch:
     """Draw the greatest film pressure of one tooth pair over the roll angle."""
     path = Path(mesh)
@@ -273,9 +269,7 @@ def _no_stiffness(mesh: MeshTable) -> str:
 
 
 @table_drawing(
-    heading="Stiffness of the oil film",
-    caption=_stiffness_caption,
-    missing=_no_stiffness,
+    heading="Stiffness of the oil film", caption=_stiffness_caption, missing=_no_stiffness
 )
 def film_stiffness(mesh: MeshTable) -> Sketch:
     """Draw the stiffness of film, teeth and pair over the roll angle."""

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from tribodyn.drawing import Sketch, drawing
-from tribodyn.plot.gear.outlines import BentMesh, bent_mesh, on_line_of_action, wheel_center
+from tribodyn.plot.gear.gear_pair import BentMesh, bent_mesh, on_line_of_action, wheel_center
 from tribodyn.plot.mesh.loaded_contact import several_cycles, torque_names
 from tribodyn.plot.theme.colors import FILLS, INK, MUTED, PINION, WHEEL
 from tribodyn.plot.theme.labels import axis_label, displayed, rounded, significant

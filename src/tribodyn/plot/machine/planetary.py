@@ -24,15 +24,7 @@ from tribodyn.plot.theme.panels import (
     stack,
     stack_rows,
 )
-from tribodyn.plot.theme.style import (
-    Trace,
-    animated,
-    choice,
-    line,
-    plane_figure,
-    stems,
-    strokes,
-)
+from tribodyn.plot.theme.style import Trace, animated, choice, line, plane_figure, stems, strokes
 from tribodyn.types import Array, ComplexArray
 
 if TYPE_CHECKING:

@@ -22,22 +22,8 @@ from tribodyn.plot.mesh.cycle import (
     table_drawing,
 )
 from tribodyn.plot.theme.colors import MUTED, PAIR_COLORS, TOTAL
-from tribodyn.plot.theme.labels import (
-    axis_label,
-    display_unit,
-    displayed,
-    rounded,
-    significant,
-)
-from tribodyn.plot.theme.panels import (
-    Panel,
-    Row,
-    curve,
-    event_lines,
-    from_zero,
-    stack,
-    stack_rows,
-)
+from tribodyn.plot.theme.labels import axis_label, display_unit, displayed, rounded, significant
+from tribodyn.plot.theme.panels import Panel, Row, curve, event_lines, from_zero, stack, stack_rows
 from tribodyn.plot.theme.path import corner_shades, pair_letters, roll_angle_of, roll_label
 from tribodyn.plot.theme.style import Trace, bars, dots, line
 from tribodyn.types import Array
@@ -239,9 +225,7 @@ def _error_caption(contact: Any) -> str:
 
 
 @table_drawing(
-    heading="Static transmission error",
-    caption=_error_caption,
-    of=("MeshTable", "Result"),
+    heading="Static transmission error", caption=_error_caption, of=("MeshTable", "Result")
 )
 def static_transmission_error(contact: Any) -> Sketch:
     """Draw the static transmission error over two mesh cycles, and its mesh harmonics."""

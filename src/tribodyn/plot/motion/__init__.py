@@ -3,12 +3,11 @@
 ==================  =============================================================
 module              what it draws
 ==================  =============================================================
-``time_histories``  mesh force, transmission error, accelerations, bearing forces
+``time_histories``  mesh force, transmission error, accelerations, bearing forces; whole turns
 ``spectra``         mesh harmonics of these signals
 ``linear``          natural modes, Campbell diagram, response to a harmonic error
 ``friction``        effect of friction, and published claims about it
-``response``        contact forces, compressions and coordinates over the time
 ``sweeps``          steady states over the speed; a summary figure over case keys
-``motion``          signals of a run over mesh cycles, or over time for a transient
+``motion``          signals of a run or a structure; differences of results and printed values
 ==================  =============================================================
 """

@@ -1,4 +1,4 @@
-"""Signals of a run over two mesh cycles (steady state) or over time (transient)."""
+"""Signals of a run or of a structure, and differences of results and of printed values."""
 
 from __future__ import annotations
 
@@ -10,14 +10,24 @@ from numpy.typing import NDArray
 from tribodyn.drawing import Sketch, drawing
 from tribodyn.nomenclature import GEARS
 from tribodyn.plot.mesh.cycle import CYCLES, cycles, mesh_events
-from tribodyn.plot.theme.colors import PAIR_COLORS, PINION, TOTAL, WHEEL
-from tribodyn.plot.theme.labels import axis_label, display_unit, displayed, significant
+from tribodyn.plot.theme.colors import MUTED, PAIR_COLORS, PINION, TOTAL, WHEEL
+from tribodyn.plot.theme.labels import (
+    axis_label,
+    display_unit,
+    displayed,
+    readable,
+    scaled,
+    significant,
+    unit_of,
+)
 from tribodyn.plot.theme.panels import Panel, event_lines, extremes, stack
-from tribodyn.plot.theme.style import Trace, button_row, line
+from tribodyn.plot.theme.style import Trace, button_row, dots, line
 from tribodyn.study.pipeline import response_series
 from tribodyn.types import Array
 
 if TYPE_CHECKING:
+    from tribodyn.cases import PaperComparison
+    from tribodyn.dynamics import AdaptiveSolution, Response
     from tribodyn.study import Result, ResultComparison
 
 #: Most samples in each part of a transient curve; more would only enlarge the file.
@@ -153,7 +163,7 @@ class Motion:
         return {"updatemenus": [button_row(buttons)], "xaxis": {"range": [views[0][1], end]}}
 
 
-_COLORS = (TOTAL, PINION, WHEEL, *PAIR_COLORS)
+_PART_COLORS = (TOTAL, PINION, WHEEL, *PAIR_COLORS)
 _DASHES = ("solid", "dash", "dot")
 
 
@@ -186,8 +196,8 @@ def result_comparison(comparison: ResultComparison) -> Sketch:
     names = {"dynamic_transmission_error": "transmission_error", "mesh_force": "mesh_force"}
     for quantity, name in names.items():
         traces = [
-            motion.line(quantity, getattr(motion, name), title, _COLORS[i % len(_COLORS)],
-                        width=1.8, dash=_DASHES[i // len(_COLORS)], showlegend=not panels)
+            motion.line(quantity, getattr(motion, name), title, _PART_COLORS[i % len(_PART_COLORS)],
+                        width=1.8, dash=_DASHES[i // len(_PART_COLORS)], showlegend=not panels)
             for i, (motion, title) in enumerate(zip(motions, comparison.names, strict=True))
         ]  # fmt: skip
         panels.append(Panel(axis_label(quantity), traces))
@@ -197,3 +207,144 @@ def result_comparison(comparison: ResultComparison) -> Sketch:
         # The marks depend on the gears.
         layout = {k: v for k, v in layout.items() if k not in ("shapes", "annotations")}
     return stack(f"Changed: {changed}", motions[0].label, panels, layout)
+
+
+_COLORS = (PINION, WHEEL, *PAIR_COLORS, TOTAL, MUTED)
+#: Most curves of a panel, and most points of a curve.
+_CURVES, _POINTS = 8, 4000
+
+
+def _panel(quantity: str, unit: str, time: Array, columns: dict[str, Array]) -> list[Panel]:
+    """Panel with the columns of one quantity over the time; empty without columns."""
+    chosen = dict(list(columns.items())[:_CURVES])
+    if not chosen:
+        return []
+    factor, display_unit = scaled(np.stack(list(chosen.values())), unit)
+    curves: list[Trace] = []
+    for color, (name, values) in zip(_COLORS, chosen.items(), strict=False):
+        at, style = extremes(values, _POINTS), Trace(unit=readable(display_unit), width=1.4)
+        label = name.replace("_", " ")
+        curves.append(line(time[at], factor * values[at], label, color, **style))
+    left_out = len(columns) - len(chosen)
+    more = f"<br>(and {left_out} more)" if left_out else ""
+    return [Panel(f"{quantity} [{readable(display_unit)}]{more}", curves)]
+
+
+def _coordinates(names: tuple[str, ...], values: Array, kind: str) -> dict[str, Array]:
+    """Columns of translations, or of rotations."""
+    return {n: values[:, k] for k, n in enumerate(names) if unit_of(n) == kind}
+
+
+def _milliseconds(time: Array) -> tuple[Array, str]:
+    return (1e3 * time, "Time [ms]") if time[-1] < 1.0 else (time, "Time [s]")
+
+
+@drawing(
+    heading="Response of the structure",
+    caption="Force and compression of every contact, and the accelerations of the coordinates. The "
+    "force is zero where the contact is lost: there the compression lies within the backlash.",
+    of="Response",
+    made_by="Call tribodyn.dynamics.simulate or steady_state and its plot method.",
+)
+def response(motion: Response) -> Sketch:
+    """Draw contact forces, compressions and accelerations over the time."""
+    time, label = _milliseconds(motion.time)
+    force = motion.contact_force
+    contacts = [f"contact {number + 1}" for number in range(force.shape[1])]
+
+    def by_contact(values: Array) -> dict[str, Array]:
+        return {name: values[:, k] for k, name in enumerate(contacts)}
+
+    names = tuple(motion.names)
+    panels = [
+        *_panel("Contact force", "N", time, by_contact(force)),
+        *_panel("Compression", "m", time, by_contact(motion.deflection)),
+        *_panel("Acceleration", "m/s^2", time, _coordinates(names, motion.acceleration, "m")),
+        *_panel("Angular acceleration", "rad/s^2", time,
+                _coordinates(names, motion.acceleration, "rad")),
+    ]  # fmt: skip
+    kind = "Steady motion" if motion.floquet_multipliers.size else "Transient"
+    cycles = "1 mesh cycle" if motion.periods == 1 else f"{motion.periods} mesh cycles"
+    title = f"{kind} over {cycles} at {significant(motion.mesh_frequency)} Hz"
+    if force.size:
+        ends = (significant(force.min()), significant(force.max()))
+        title += f": contact force {ends[0]} to {ends[1]} N"
+    return stack(title, label, panels)
+
+
+@drawing(
+    heading="Adaptive time integration",
+    caption="Positions at the ends of the accepted steps, and the length of every "
+    "step: steps are short where a contact changes its side and at mesh events.",
+    of="AdaptiveSolution",
+    made_by="Call tribodyn.dynamics.solve_adaptive and its plot method.",
+)
+def adaptive_solution(solution: AdaptiveSolution) -> Sketch:
+    """Draw positions and step lengths over the time."""
+    time, label = _milliseconds(solution.time)
+    names = tuple(solution.names)
+    steps = np.diff(solution.time, prepend=solution.time[0])
+    steps[0] = steps[1] if steps.size > 1 else 0.0
+    panels = [
+        *_panel("Position", "m", time, _coordinates(names, solution.position, "m")),
+        *_panel("Rotation", "rad", time, _coordinates(names, solution.position, "rad")),
+        *_panel("Step", "s", time, {"step": steps}),
+    ]
+    title = (
+        f"{solution.steps} steps at a relative tolerance of {solution.rtol:.1g}, "
+        f"{solution.rejections} repeated, {solution.crossings} changes of side"
+    )
+    return stack(title, label, panels)
+
+
+#: Smallest deviation on the logarithmic axis [%]; smaller ones are plotted there.
+_LEAST = 1e-3
+_VERDICT_COLORS = {"value": PINION, "trend": MUTED, "cannot-reproduce": WHEEL}
+
+
+def _no_numbers(comparison: PaperComparison) -> str:
+    if any(row["deviation"] is not None for row in comparison.rows):
+        return ""
+    return "No row of these tables has both a printed and a computed value."
+
+
+def _symbol(percent: float) -> str:
+    if abs(percent) <= _LEAST:
+        return "circle"
+    return "triangle-up" if percent > 0.0 else "triangle-down"
+
+
+@drawing(
+    heading="Printed and computed values",
+    caption="Absolute deviation from every printed value, in the order of the tables; "
+    "triangles point up where the computed value is larger. Rows that print a word or a range "
+    "have no mark. The table of the report lists the numbers and the reasons.",
+    of="PaperComparison",
+    made_by="Call tribodyn.cases.compare_with_paper(name) and its plot method.",
+    missing=_no_numbers,
+)
+def paper_comparison(comparison: PaperComparison) -> Sketch:
+    """Draw the deviation of every printed number on a logarithmic scale."""
+    rows = [row for row in comparison.rows if row["deviation"] is not None]
+    traces: list[Trace] = []
+    for verdict, color in _VERDICT_COLORS.items():
+        chosen = [(number, row) for number, row in enumerate(rows, 1) if row["verdict"] == verdict]
+        if not chosen:
+            continue
+        percent = np.array([100.0 * row["deviation"] for _, row in chosen])
+        names = [
+            f"{row['table']}, {row['row']}: printed {row['printed']:.5g}, computed "
+            f"{row['computed']:.5g}, {each:+.3g} %"
+            for (_, row), each in zip(chosen, percent, strict=True)
+        ]
+        x, y = np.array([number for number, _ in chosen]), np.maximum(np.abs(percent), _LEAST)
+        marker = {"color": color, "size": 8, "symbol": [_symbol(each) for each in percent]}
+        facts: Trace = {"customdata": names, "hovertemplate": "%{customdata}<extra></extra>"}
+        traces.append(dots(x, y, verdict, marker, showlegend=True, **facts))
+    inside = sum(abs(row["deviation"]) <= 0.01 for row in rows)
+    return stack(
+        f"{inside} of {len(rows)} printed values agree within 1 %",
+        "Printed value, in the order of the tables",
+        [Panel("Deviation [%]", traces, {"type": "log", "dtick": 1}, 1.6)],
+        {"hovermode": "closest"},
+    )

@@ -8,9 +8,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from tribodyn.drawing import Sketch, drawing
-from tribodyn.plot.signals.lines import strongest_lines
-from tribodyn.plot.signals.maps import amplitude_label, with_unit
 from tribodyn.plot.signals.recorded import outline
+from tribodyn.plot.signals.spectra import amplitude_label, strongest_lines, with_unit
 from tribodyn.plot.theme.colors import COLORS, FILLS, MUTED, PINION, TOTAL, WHEEL
 from tribodyn.plot.theme.labels import axis_label, label_with, readable, significant
 from tribodyn.plot.theme.panels import Panel, event_lines, from_zero, stack

@@ -9,8 +9,12 @@ import numpy as np
 
 from tribodyn.drawing import Sketch, drawing
 from tribodyn.measurement import Comparison, OrderSpectrum, Recording, TrackedOrders
-from tribodyn.plot.signals.lines import spectrum_panel, strongest_lines
-from tribodyn.plot.signals.maps import amplitude_label, with_unit
+from tribodyn.plot.signals.spectra import (
+    amplitude_label,
+    spectrum_panel,
+    strongest_lines,
+    with_unit,
+)
 from tribodyn.plot.theme.colors import MUTED, PAIR_COLORS, PINION, TOTAL
 from tribodyn.plot.theme.labels import axis_label, displayed, label_with, readable, significant
 from tribodyn.plot.theme.panels import Panel, Row, event_lines, from_zero, stack, stack_rows

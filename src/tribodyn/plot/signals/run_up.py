@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from tribodyn.drawing import Sketch, drawing
-from tribodyn.plot.signals.maps import amplitude_heatmap
+from tribodyn.plot.signals.spectra import amplitude_heatmap
 from tribodyn.plot.theme.colors import COLORS, MUTED, TOTAL, WHEEL
 from tribodyn.plot.theme.labels import axis_label, displayed, readable, rounded, significant
 from tribodyn.plot.theme.panels import Panel, stack

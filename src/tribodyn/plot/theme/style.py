@@ -9,10 +9,10 @@ import numpy as np
 
 from tribodyn.drawing import Sketch
 from tribodyn.plot.theme.colors import GRID, INK, MUTED
-from tribodyn.types import Array
+from tribodyn.types import Array, Tree
 
 #: Part of a figure, such as a curve or an axis, as plotly describes it.
-Trace = dict[str, Any]
+Trace = Tree
 
 FONT = "system-ui, -apple-system, 'Segoe UI', Roboto, 'Helvetica Neue', Arial, sans-serif"
 #: Axis that marks its zero, one without a grid, and that of powers of ten; legend on top.
@@ -229,12 +229,7 @@ def animated(
 
 
 def player(
-    labels: Sequence[str],
-    milliseconds: int,
-    *,
-    redraw: bool,
-    slider: Trace,
-    buttons: float,
+    labels: Sequence[str], milliseconds: int, *, redraw: bool, slider: Trace, buttons: float
 ) -> Trace:
     """Slider over :func:`animated` frames with a label each, and buttons that play them.
 

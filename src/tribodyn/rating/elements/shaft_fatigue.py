@@ -296,11 +296,7 @@ def _yield_factors(notch: ShaftNotch, material: ShaftMaterial, index: int, alpha
 
 
 def rate_shaft(
-    notch: ShaftNotch,
-    material: ShaftMaterial,
-    stress: ShaftStress,
-    *,
-    constant_ratio: bool = True,
+    notch: ShaftNotch, material: ShaftMaterial, stress: ShaftStress, *, constant_ratio: bool = True
 ) -> ShaftRating:
     """Safeties of a notched shaft section against fatigue and against yield.
 

@@ -21,11 +21,11 @@ from tribodyn.compiled import announced, source_digest
 from tribodyn.compiled.cache import cached_njit
 from tribodyn.compiled.jit import INNER_OPTIONS
 from tribodyn.interrupt import STOPPED
-from tribodyn.types import Array, Index
+from tribodyn.types import Array, Index, Tree
 
 #: NaN stays detectable: neither "nnan" nor "ninf".
-_JIT: dict[str, Any] = {"nogil": True, "fastmath": {"contract", "nsz"}, "error_model": "numpy"}
-_INNER: dict[str, Any] = {**_JIT, **INNER_OPTIONS}
+_JIT: Tree = {"nogil": True, "fastmath": {"contract", "nsz"}, "error_model": "numpy"}
+_INNER: Tree = {**_JIT, **INNER_OPTIONS}
 
 #: Residual of a pair over the approach that counts as zero.
 _TIGHT = 1e-13

@@ -12,7 +12,7 @@ from tribodyn.contact import path_of_contact
 from tribodyn.errors import InputError, ModelOption, Problem, require_positive
 from tribodyn.model import number, numbers
 from tribodyn.stiffness.model import MODELS, MeshState, share_equally
-from tribodyn.types import Array, Mask
+from tribodyn.types import Array, Mask, Tree
 
 
 def rectangular_stiffness(
@@ -312,7 +312,7 @@ def _order_problems(x: Array, name: str, unit: str) -> list[Problem]:
     return []
 
 
-def _named_values(options: dict[str, Any]) -> dict[str, Any]:
+def _named_values(options: Tree) -> Tree:
     """Call bare values by what their abscissa makes of them."""
     options = dict(options)
     values = options.pop("values", None)
@@ -322,7 +322,7 @@ def _named_values(options: dict[str, Any]) -> dict[str, Any]:
     return options
 
 
-def _over_roll_angle(state: MeshState, options: dict[str, Any]) -> Array:
+def _over_roll_angle(state: MeshState, options: Tree) -> Array:
     pair, path, in_contact = state.pair, state.path, state.in_contact
     ends = path_of_contact(pair).roll_angles
     radius = pair.driving.base_radius

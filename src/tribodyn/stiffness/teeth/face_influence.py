@@ -19,7 +19,7 @@ from tribodyn.compiled import announced, source_digest
 from tribodyn.compiled.cache import cached_njit
 from tribodyn.compiled.jit import INNER_OPTIONS
 from tribodyn.errors import Argument, InputError
-from tribodyn.types import Array
+from tribodyn.types import Array, Tree
 
 #: Distance beyond the ends of the face, over its width, that is rounding.
 _ROUNDING = 1e-9
@@ -226,7 +226,7 @@ def _unusable(what: str) -> InputError:
     )
 
 
-_JIT: dict[str, Any] = {"nogil": True, "fastmath": {"contract", "nsz"}, "error_model": "numpy"}
+_JIT: Tree = {"nogil": True, "fastmath": {"contract", "nsz"}, "error_model": "numpy"}
 
 
 @nb.njit(**_JIT, **INNER_OPTIONS)

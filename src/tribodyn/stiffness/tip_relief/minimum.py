@@ -7,7 +7,7 @@ from collections.abc import Callable
 
 import numpy as np
 
-from tribodyn.checks import require_whole
+from tribodyn.nomenclature import require_whole
 from tribodyn.types import Array
 
 #: Points of the map from which the search goes on: the best one, and others that lie apart.

@@ -19,7 +19,7 @@ from typing import Any, NamedTuple, TypeVar
 import numpy as np
 
 from tribodyn import units
-from tribodyn.arguments.quantities import UnitRefusedError, magnitude, quantity_in, unit_text
+from tribodyn.arguments.annotations import UnitRefusedError, magnitude, quantity_in, unit_text
 from tribodyn.errors import Problem, shortened
 from tribodyn.model import REQUIRED, Option
 from tribodyn.nomenclature import GEARS

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from tribodyn import units
-from tribodyn.arguments.quantities import quantity_in, without_units
+from tribodyn.arguments.annotations import quantity_in, without_units
 from tribodyn.model import Option
 from tribodyn.study.case.checks import DEFAULT_MARK
 from tribodyn.study.case.gears import is_idle

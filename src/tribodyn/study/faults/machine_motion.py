@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 from fractions import Fraction
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 from tribodyn.faults import Fault, drive
 from tribodyn.interrupt import single_blas_thread
@@ -19,9 +19,10 @@ from tribodyn.study.faults.clock import (
     phases_with_faults,
     rate_of,
 )
-from tribodyn.study.faults.driven_shafts import drive_machine_over_phases, driven_rotation
-from tribodyn.study.faults.loose_seat import (
+from tribodyn.study.faults.driven_shafts import (
     LooseSeat,
+    drive_machine_over_phases,
+    driven_rotation,
     loose_seats,
     with_lifted_forces,
     with_loose_seats,
@@ -39,6 +40,7 @@ from tribodyn.study.faults.turning import (
 from tribodyn.study.machine.first_look import warn_of_orders
 from tribodyn.study.machine.motion import MachineMotion, machine_motion, phase_units, unit_of
 from tribodyn.study.mesh_inputs import mesh_inputs, named_mesh
+from tribodyn.types import Tree
 
 if TYPE_CHECKING:
     from tribodyn.dynamics import Response
@@ -84,7 +86,7 @@ def turning_machine(case: MachineCase, sound: LoadResult | Balanced) -> Machine:
 
 def _mesh_over_turns(
     case: MachineCase, sound: LoadResult | Balanced, name: str, faults: list[Fault]
-) -> dict[str, Any]:
+) -> Tree:
     """Fields of a mesh with faults; empty where all its teeth are equal."""
     from tribodyn.study.pipeline.assembly import mesh_contacts, mesh_damping
     from tribodyn.study.pipeline.tooth_contact import load_friction_of

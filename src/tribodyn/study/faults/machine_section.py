@@ -19,6 +19,7 @@ from tribodyn.study.faults.section import (
     part_of,
     read_fault,
 )
+from tribodyn.types import Tree
 
 if TYPE_CHECKING:
     from tribodyn.faults import BearingForce, BearingImpacts, Fault, ShaftExcitation
@@ -142,7 +143,7 @@ def faults_of_mesh(case: MachineCase, machine: Machine, mesh: str) -> list[Fault
 
 def _changes(
     machine: Machine, fault: PartFaultTable, gear: str, meshes: tuple[str, str]
-) -> dict[str, Any] | None:
+) -> Tree | None:
     """Changed keys of a fault in another mesh of its gear; None where it does not act there."""
     first, other = meshes
     if first == other:
@@ -189,9 +190,7 @@ def bearing_impacts(case: MachineCase, fault: PartFaultTable) -> BearingForce:
 
     name = part_of(fault.bearing)
     rolling = case.bearings[name].rolling
-    values: dict[str, Any] = {
-        key: getattr(fault, key) for key in (*_GEOMETRY, "contact_angle", "slip")
-    }
+    values: Tree = {key: getattr(fault, key) for key in (*_GEOMETRY, "contact_angle", "slip")}
     if rolling is not None:
         geometry = (rolling.elements, rolling.element_diameter, rolling.pitch)
         bearing_data = {**dict(zip(_GEOMETRY, geometry, strict=True))}

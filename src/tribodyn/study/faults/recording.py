@@ -8,9 +8,9 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from tribodyn.checks import require_number, require_whole
 from tribodyn.errors import InputError, require_between, require_positive
-from tribodyn.signals.lines import sum_of_lines
+from tribodyn.nomenclature import require_number, require_whole
+from tribodyn.signals.spectrum import sum_of_lines
 from tribodyn.types import Array, ComplexArray
 
 if TYPE_CHECKING:

@@ -15,9 +15,9 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from tribodyn.checks import require_whole
 from tribodyn.errors import InputError
 from tribodyn.files import atomic_write
+from tribodyn.nomenclature import require_whole
 from tribodyn.progress import SILENT, Progress
 from tribodyn.study.faults.machine_section import defects_of
 from tribodyn.study.faults.motion import turning_motion
@@ -25,6 +25,7 @@ from tribodyn.study.faults.recording import Scatter, recording_of
 from tribodyn.study.faults.sensors import check_sensors, sensors_of
 from tribodyn.study.studies.runner import run_each
 from tribodyn.study.studies.study_axes import Axis, read_axes
+from tribodyn.types import ByName, Tree
 
 if TYPE_CHECKING:
     from tribodyn.measurement import Recording
@@ -50,8 +51,8 @@ class RecordingSet:
     """
 
     folder: Path
-    card: Mapping[str, Any]
-    labels: tuple[Mapping[str, Any], ...]
+    card: ByName
+    labels: tuple[ByName, ...]
 
     def __len__(self) -> int:
         """Number of recordings."""
@@ -68,7 +69,7 @@ class RecordingSet:
             channels = {name: file[name][label["draw"]].astype(float) for name in file}
         return Recording(channels, self.card["sample_rate"], self.card["units"])
 
-    def __iter__(self) -> Iterator[tuple[Mapping[str, Any], Recording]]:
+    def __iter__(self) -> Iterator[tuple[ByName, Recording]]:
         """Labels and recordings in order."""
         for number, label in enumerate(self.labels):
             yield label, self[number]
@@ -82,7 +83,7 @@ class RecordingSet:
 def record_set(
     case: AnyCase,
     folder: str | os.PathLike[str],
-    over: Mapping[str, Any],
+    over: ByName,
     *,
     sensor: str,
     duration: float,
@@ -174,7 +175,7 @@ def record_set(
     return _finished(place, card, axes, points, next(filter(None, units), {}))
 
 
-def _card(case: AnyCase, axes: tuple[Axis, ...], settings: dict[str, Any]) -> dict[str, Any]:
+def _card(case: AnyCase, axes: tuple[Axis, ...], settings: Tree) -> Tree:
     """Description of a set, with a digest of everything that it depends on."""
     from tribodyn import __version__
 
@@ -184,7 +185,7 @@ def _card(case: AnyCase, axes: tuple[Axis, ...], settings: dict[str, Any]) -> di
     return {**card, "digest": hashlib.sha256(content.encode()).hexdigest()}
 
 
-def _opened(folder: Path, card: dict[str, Any]) -> Path:
+def _opened(folder: Path, card: Tree) -> Path:
     """Make the folder, or check that it holds the same set."""
     file = folder / CARD
     if file.is_file():
@@ -209,7 +210,7 @@ def _abandon(folder: Path) -> None:
         folder.rmdir()
 
 
-def _store(folder: Path, card: Mapping[str, Any]) -> None:
+def _store(folder: Path, card: ByName) -> None:
     with atomic_write(folder / CARD) as part:
         part.write_text(json.dumps(card, indent=2, allow_nan=False) + "\n", encoding="utf-8")
 
@@ -234,9 +235,7 @@ def _recorder(case: AnyCase, sensor: str) -> Callable[[float, float, Scatter], R
     return partial(recording_of, motion, defects_of(case), sensor)
 
 
-def _write(
-    part: Path, case: AnyCase, sampling: Mapping[str, Any], draws: list[Scatter]
-) -> Mapping[str, str]:
+def _write(part: Path, case: AnyCase, sampling: ByName, draws: list[Scatter]) -> Mapping[str, str]:
     """Compute the motion of one variant and write all its recordings; return their units."""
     import h5py
 
@@ -255,7 +254,7 @@ def _write(
 
 def _finished(
     folder: Path,
-    card: dict[str, Any],
+    card: Tree,
     axes: tuple[Axis, ...],
     points: list[tuple[Any, ...]],
     units: Mapping[str, str],

@@ -14,6 +14,7 @@ from tribodyn.model import REQUIRED, choice, file_path, integer, number, numbers
 from tribodyn.study.case.section import NamedTables, Section, table
 from tribodyn.study.case.values import KeyedProblems
 from tribodyn.study.faults.kinds import KINDS, LACKS, keys_in, kinds_in
+from tribodyn.types import Tree
 
 if TYPE_CHECKING:
     from tribodyn.faults import BearingDefect, Fault, ShaftExcitation
@@ -209,15 +210,13 @@ class Faults(NamedTables, inner=table(FaultTable, "a fault")):
     """The ``[faults]`` table."""
 
 
-def _stated(fault: FaultTable) -> dict[str, Any]:
+def _stated(fault: FaultTable) -> Tree:
     return {
         name: value for name, value in vars(fault).items() if name != "kind" and value is not None
     }
 
 
-def fault_tables(
-    faults: Faults | Mapping[str, FaultTable] | None,
-) -> Mapping[str, FaultTable]:
+def fault_tables(faults: Faults | Mapping[str, FaultTable] | None) -> Mapping[str, FaultTable]:
     """Tables by name."""
     return vars(faults) if isinstance(faults, Faults) else faults or {}
 

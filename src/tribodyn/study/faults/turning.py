@@ -13,10 +13,10 @@ import numpy as np
 
 from tribodyn.errors import InputError, collected, warn
 from tribodyn.progress import SILENT, Progress
-from tribodyn.signals.lines import sum_of_lines
+from tribodyn.signals.spectrum import sum_of_lines
 from tribodyn.study.faults.sensors import check_tacho
 from tribodyn.study.machine.motion import MotionLine, Unit, line_cause
-from tribodyn.types import Array, ComplexArray, Index
+from tribodyn.types import Array, ByName, ComplexArray, Index, Tree
 
 if TYPE_CHECKING:
     from tribodyn.dynamics import Response
@@ -97,7 +97,7 @@ class PeriodicMotion(ABC):
     cycles: int  #: mesh cycles of the period, of the fastest mesh
     mesh_frequency: float  #: mesh cycles per second [Hz]
     places: Sensors  #: what there is to sense
-    turns: Mapping[str, Any]  #: of each shaft in the period
+    turns: ByName  #: of each shaft in the period
     tacho: str  #: shaft with the tacho
     response: Response  #: without the fluctuation of the mean rotation
     ahead: Lead | None  #: time by which the rotation is ahead of its mean
@@ -114,7 +114,7 @@ class PeriodicMotion(ABC):
         return np.asarray(getattr(self.response, "frequencies", (1.0 / self.period,)))
 
     @cached_property
-    def _listed(self) -> dict[str, Any]:
+    def _listed(self) -> Tree:
         return {}
 
     def _lines(self, quantity: str) -> tuple[Array, ComplexArray, Index]:

@@ -6,11 +6,10 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from tribodyn.checks import require_whole
 from tribodyn.errors import InputError, collected, require_positive
 from tribodyn.gear.mesh_geometry import flank_ranges
 from tribodyn.mesh.face_lines import by_pair, slice_count
-from tribodyn.nomenclature import GEARS
+from tribodyn.nomenclature import GEARS, require_whole
 from tribodyn.progress import SILENT, Progress
 from tribodyn.record import Record, quantity, record
 from tribodyn.types import Array

@@ -15,7 +15,7 @@ from tribodyn.study.case.provenance import effective
 from tribodyn.study.case.to_models import chosen_options, mesh_law_of
 from tribodyn.study.mesh_inputs import MeshInputs, mesh_inputs
 from tribodyn.study.pipeline.tooth_contact import load_friction_of
-from tribodyn.types import Array
+from tribodyn.types import Array, Tree
 
 if TYPE_CHECKING:
     from tribodyn.dynamics import Campbell, Contact, MeshForce, System
@@ -141,7 +141,7 @@ _CONES = (
 def _of_hypoid(case: PairCase, flanks: HypoidFlanks) -> dict[str, float]:
     """Blank of a hypoid pair, its levers and its bodies."""
     blank, body = flanks.blank, bodies(flanks, case.material.density, case.gears)
-    values: dict[str, Any] = {
+    values: Tree = {
         "gear_ratio": case.gear_ratio,
         "backlash": case.backlash,
         "transverse_contact_ratio": contact_ratio(case.gears),
@@ -245,7 +245,7 @@ def static_error(data: Dynamics, phase: Array | float) -> Array:
     return np.asarray(amplitude * np.cos(angle))
 
 
-def contact_values(inputs: MeshInputs, damping: float) -> dict[str, Any]:
+def contact_values(inputs: MeshInputs, damping: float) -> Tree:
     """Damping, backlash and error of the contact of a mesh."""
     data, error = inputs.dynamics, {}
     if data.transmission_error_amplitude > 0.0:

@@ -17,12 +17,7 @@ from tribodyn.study.case.hypoid import hypoid_warnings
 from tribodyn.study.case.provenance import body, changed_keys, effective
 from tribodyn.study.case.section import flat_keys
 from tribodyn.study.case.to_models import gear_warnings
-from tribodyn.study.pipeline.response_series import (
-    compression,
-    first_touch,
-    is_steady,
-    measured,
-)
+from tribodyn.study.pipeline.response_series import compression, first_touch, is_steady, measured
 from tribodyn.types import Array
 
 if TYPE_CHECKING:

@@ -13,6 +13,7 @@ from tribodyn.nomenclature import GEARS
 from tribodyn.study.case.gears import is_idle
 from tribodyn.study.case.provenance import changed_keys
 from tribodyn.study.case.section import section_at
+from tribodyn.types import Tree
 
 if TYPE_CHECKING:
     from tribodyn.study.case.pair import PairCase
@@ -30,7 +31,7 @@ _NAMED = 12
 
 
 @lru_cache(maxsize=1)
-def _library() -> dict[str, dict[str, Any]]:
+def _library() -> dict[str, Tree]:
     import tomllib
     from importlib.resources import files
 
@@ -38,7 +39,7 @@ def _library() -> dict[str, dict[str, Any]]:
     return tomllib.loads(text)
 
 
-def papers(case: AnyCase) -> dict[str, dict[str, Any]]:
+def papers(case: AnyCase) -> dict[str, Tree]:
     """Papers behind the models that a case uses, each once."""
     if not case.lumped:
         entries = _package() | _values_source(case)
@@ -50,11 +51,11 @@ def papers(case: AnyCase) -> dict[str, dict[str, Any]]:
     return entries | {key: _library()[key] for key in _METHODS.get(case.solver.method, ())}
 
 
-def _papers_of_pair(case: PairCase, tables: tuple[str, ...]) -> dict[str, dict[str, Any]]:
+def _papers_of_pair(case: PairCase, tables: tuple[str, ...]) -> dict[str, Tree]:
     """Papers behind the models of some tables of a pair, and behind its teeth and losses."""
     from tribodyn.ehl import SHEAR_MODELS
 
-    keys, unlisted = ["iso-21771", "hertz"], dict[str, dict[str, Any]]()
+    keys, unlisted = ["iso-21771", "hertz"], dict[str, Tree]()
     for table in tables:
         if is_idle(table, case.gears.kind):
             continue
@@ -79,7 +80,7 @@ def _papers_of_pair(case: PairCase, tables: tuple[str, ...]) -> dict[str, dict[s
     )
 
 
-def _package() -> dict[str, dict[str, Any]]:
+def _package() -> dict[str, Tree]:
     title = f"tribodyn {tribodyn.__version__}: gear tribo-dynamics"
     return {"tribodyn": {"type": "misc", "author": "The tribodyn developers", "title": title}}
 
@@ -112,7 +113,7 @@ def _is_built_in(model: Model) -> bool:
     return not homes or any(home.startswith("tribodyn.") for home in homes)
 
 
-def _data_sources(case: PairCase) -> dict[str, dict[str, Any]]:
+def _data_sources(case: PairCase) -> dict[str, Tree]:
     """Sources of the values of a case and of its oil."""
     oil = case.lubricant_properties
     sources = _values_source(case)
@@ -121,7 +122,7 @@ def _data_sources(case: PairCase) -> dict[str, dict[str, Any]]:
     return sources
 
 
-def _values_source(case: AnyCase) -> dict[str, dict[str, Any]]:
+def _values_source(case: AnyCase) -> dict[str, Tree]:
     """The document behind the values of a case, and the values that differ from its own."""
     if not case.origin:
         return {}
@@ -154,7 +155,7 @@ def bibliography() -> dict[str, str]:
     return dict(sorted(references.items(), key=lambda item: item[1].casefold()))
 
 
-def _text(entry: dict[str, Any]) -> str:
+def _text(entry: Tree) -> str:
     authors = entry.get("author", "").replace(" and ", ", ")
     year = f" ({entry['year']})" if "year" in entry else ""
     home = entry.get("journal") or entry.get("booktitle") or entry.get("publisher", "")
@@ -167,7 +168,7 @@ def _text(entry: dict[str, Any]) -> str:
     return f"{head}{entry['title'].rstrip('.')}." + (f" {home}{pages}{doi}." if home else "") + note
 
 
-def _bibtex(key: str, entry: dict[str, Any]) -> str:
+def _bibtex(key: str, entry: Tree) -> str:
     entry = {**entry, "note": entry["note"].replace("_", r"\_")} if "note" in entry else entry
     fields = [f"  {name} = {{{value}}}" for name, value in entry.items() if name != "type"]
     return f"@{entry['type']}{{{key},\n" + ",\n".join(fields) + "\n}"

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from contextlib import suppress
 from dataclasses import replace
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -17,6 +17,7 @@ from tribodyn.study.case.sections import Solver
 from tribodyn.study.case.to_models import mesh_law_of
 from tribodyn.study.pipeline.cautions import tension_cautions
 from tribodyn.study.pipeline.tooth_contact import repeat
+from tribodyn.types import Tree
 
 if TYPE_CHECKING:
     from tribodyn.dynamics import Response, System
@@ -116,7 +117,7 @@ def _transient(
     )
 
 
-def engine_arguments(case: PairCase) -> dict[str, Any]:
+def engine_arguments(case: PairCase) -> Tree:
     """Engine of a case and its options, as arguments of :func:`tribodyn.dynamics.simulate`."""
     from tribodyn.dynamics import ENGINES
 

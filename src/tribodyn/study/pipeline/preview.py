@@ -11,7 +11,7 @@ import numpy as np
 from tribodyn.errors import InputError, collected
 from tribodyn.study.case.to_models import chosen_options
 from tribodyn.study.pipeline.tooth_contact import loaded_settings
-from tribodyn.types import Array
+from tribodyn.types import Array, ByName
 
 if TYPE_CHECKING:
     from tribodyn.dynamics import System
@@ -122,7 +122,7 @@ def standard_figures(case: PairCase) -> dict[str, float]:
 
 
 def _standard_figures(
-    pair: SpurPair, settings: Mapping[str, Any], bored: bool, torque: float
+    pair: SpurPair, settings: ByName, bored: bool, torque: float
 ) -> dict[str, float]:
     from tribodyn.stiffness import iso6336_mesh_stiffness, iso6336_single_stiffness
     from tribodyn.stiffness.loaded.contact import body_share

@@ -21,6 +21,7 @@ from tribodyn.study.pipeline.summary_figures import (
     in_words,
     summary_rows,
 )
+from tribodyn.types import ByName
 
 if TYPE_CHECKING:
     import pandas
@@ -65,7 +66,7 @@ class ResultOfCase(ABC):
 
     @property
     @abstractmethod
-    def loads(self) -> Mapping[str, Any]:
+    def loads(self) -> ByName:
         """Results by load; ``"operation"`` is the operating point."""
 
     @property

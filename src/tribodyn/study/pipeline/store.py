@@ -21,6 +21,7 @@ from tribodyn.study.case.provenance import same
 from tribodyn.study.case.section import Section, Table, table_in
 from tribodyn.study.pipeline.save import new_directory
 from tribodyn.study.pipeline.summary_figures import Figures, in_order, is_figure
+from tribodyn.types import ByName, Tree
 from tribodyn.validated_files import read_bytes, read_dataset, write_dataset
 
 if TYPE_CHECKING:
@@ -132,7 +133,7 @@ def read_stored(folder: Path) -> Stored:
     return Stored(motion, summary, model_warnings, loads)
 
 
-def defaults_of(case: Any) -> dict[str, Any]:
+def defaults_of(case: Any) -> Tree:
     """Values in SI of the keys that a case leaves to defaults, also in the pairs of its meshes."""
     keys = _left_out(case.root, case.data, case.lumped)
     if case.lumped:
@@ -145,9 +146,7 @@ def defaults_of(case: Any) -> dict[str, Any]:
     return {key: value for key, value in values.items() if value is not None}
 
 
-def _left_out(
-    root: type[Section], data: Mapping[str, Any], whole: bool, prefix: str = ""
-) -> Iterator[str]:
+def _left_out(root: type[Section], data: ByName, whole: bool, prefix: str = "") -> Iterator[str]:
     """Keys that have no value in tables, with ``whole`` also in tables of models that lack."""
     keys, chosen = dict(root.keys_for(data)), data.get(root.selector)
     default = keys.get(root.selector)

@@ -12,7 +12,7 @@ from tribodyn.record import Parts, Record, labels_of
 from tribodyn.study.coupling import Coupling
 from tribodyn.study.heat_balance import HeatBalance
 from tribodyn.study.pipeline.response_series import is_steady, signals
-from tribodyn.types import Array
+from tribodyn.types import Array, Tree
 
 if TYPE_CHECKING:
     import xarray
@@ -42,8 +42,8 @@ def parts_of(result: Result) -> Parts:
     """Variables, coordinates and attributes of the data set of a result."""
     response = result.response
     turns = np.array(["theta" in name for name in response.names])
-    variables: dict[str, Any] = {}
-    coordinates: dict[str, Any] = {
+    variables: Tree = {}
+    coordinates: Tree = {
         "time": ("time", response.time, _attributes_of("s", "time")),
         "phase": ("time", response.phase, _attributes_of("1", "mesh phase")),
         "coordinate": ("coordinate", list(response.names)),
@@ -67,10 +67,7 @@ def parts_of(result: Result) -> Parts:
         variables |= _spectra(result)
         attributes = _attributes_of("1", "mesh harmonic")
         coordinates["order"] = ("order", variables.pop("order"), attributes)
-    facts = {
-        "title": result.case.title,
-        "half_backlash": result.half_backlash,
-    }
+    facts = {"title": result.case.title, "half_backlash": result.half_backlash}
     additions = [(_ends(response), _facts(response))]
     if result.friction is not None:
         additions.append(_of_friction(result.friction))
@@ -90,13 +87,13 @@ def _contacts(response: Response) -> tuple[Array, Array]:
     return pressed[:, :1], force.sum(axis=1, keepdims=True)
 
 
-def _spectra(result: Result) -> dict[str, Any]:
+def _spectra(result: Result) -> Tree:
     """Amplitudes of the mesh harmonics of every signal."""
     from tribodyn.analysis import amplitude_spectrum
 
     response = result.response
     highest = min(_HIGHEST, response.time.size // response.periods // 8)
-    spectra: dict[str, Any] = {}
+    spectra: Tree = {}
     for name, (values, unit, meaning) in signals(result, response.fine).items():
         if name == "static_transmission_error":
             continue
@@ -109,9 +106,9 @@ def _spectra(result: Result) -> dict[str, Any]:
     return spectra
 
 
-def _ends(response: Response, prefix: str = "") -> dict[str, Any]:
+def _ends(response: Response, prefix: str = "") -> Tree:
     """Values from which a motion is rebuilt, in addition to its states at the steps."""
-    variables: dict[str, Any] = {
+    variables: Tree = {
         f"{prefix}end_{name}": (
             "coordinate",
             getattr(response.fine, name)[-1],
@@ -143,7 +140,7 @@ _NUMBERS: dict[str, tuple[type, str]] = {
 }
 
 
-def _facts(response: Response, prefix: str = "") -> dict[str, Any]:
+def _facts(response: Response, prefix: str = "") -> Tree:
     """Numbers of a response."""
     return {f"{prefix}{k}": kind(getattr(response, n)) for n, (kind, k) in _NUMBERS.items()}
 
@@ -166,7 +163,7 @@ _FRICTION = {
 _OF_FIT = ("load", "limit", "fit_error")
 
 
-def _of_friction(friction: MeshFriction) -> tuple[dict[str, Any], dict[str, Any]]:
+def _of_friction(friction: MeshFriction) -> tuple[Tree, Tree]:
     """Variables and facts of the friction over the load."""
     variables = {
         key: (("knot", "power", *dims), values, {"long_name": text})
@@ -183,7 +180,7 @@ _PASSES: dict[str, tuple[type[Any], str, str]] = {
 }
 
 
-def of_passes(prefix: str, passes: Record) -> tuple[dict[str, Any], dict[str, Any]]:
+def of_passes(prefix: str, passes: Record) -> tuple[Tree, Tree]:
     """Variables and facts of the passes of an iteration."""
     kind, dimension, meaning = _PASSES[prefix]
     variables, facts = {}, {}
@@ -215,7 +212,7 @@ def stored(result: Result) -> Parts:
     periods, cycles = int(response.periods), _stored_cycles(response)
     first = response.time.size // periods * (periods - cycles)
 
-    def last(named: dict[str, Any]) -> dict[str, Any]:
+    def last(named: Tree) -> Tree:
         return {
             name: (
                 dims,
@@ -282,7 +279,7 @@ def read_friction(mesh: MeshTable, data: xarray.Dataset) -> MeshFriction | None:
 
     if "friction_coefficients" not in data:
         return None
-    values: dict[str, Any] = {
+    values: Tree = {
         **{n: data[key].values for n, (key, *_) in _FRICTION.items() if key in data},
         **{name: float(data.attrs[f"friction_{name}"]) for name in _OF_FIT},
     }

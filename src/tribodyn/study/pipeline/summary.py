@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import tomllib
-from collections.abc import Callable, Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass, replace
 from importlib.resources import files
 from itertools import product
@@ -30,7 +30,7 @@ from tribodyn.study.pipeline.response_series import (
     tooth_force,
     transmission_error,
 )
-from tribodyn.types import Array
+from tribodyn.types import Array, ByName, Tree
 from tribodyn.units import format_quantity
 
 if TYPE_CHECKING:
@@ -72,7 +72,7 @@ _TABLE = tomllib.loads(
     files("tribodyn.study.pipeline").joinpath("summary.toml").read_text(encoding="utf-8")
 )
 #: Figures of each kind of part of a machine, and those of a pair that fit on a screen.
-PARTS: dict[str, dict[str, Any]] = _TABLE.pop("parts")
+PARTS: dict[str, Tree] = _TABLE.pop("parts")
 CHIEF: list[str] = _TABLE.pop("chief")
 for _part in PARTS.values():
     _part.setdefault("of_pairs", [])
@@ -128,7 +128,7 @@ def summary_figure(
         why = f"Parts: {', '.join(PARTS)}"
         raise InputError(f'part = "{part}"', Argument("part"), why, "Choose one, or leave it out")
     key = f"{part}.{name}" if part else name
-    figures: dict[str, Any] = PARTS[part]["figures"] if part else SUMMARY
+    figures: Tree = PARTS[part]["figures"] if part else SUMMARY
     of_package = name in figures or (part and name in PARTS[part]["of_pairs"])
     if of_package and key not in MEASURES.names():
         why = "A figure of the package keeps its meaning"
@@ -147,7 +147,7 @@ _HARMONICS = 5
 def summarize(result: Result) -> dict[str, float]:
     """Compute all figures of a result."""
     moving = _motion_figures(result, measured(result.response))
-    values: dict[str, Any] = {
+    values: Tree = {
         **geometry(result.case),
         **operating_figures(result.case),
         **mesh_figures(result.mesh),
@@ -177,7 +177,7 @@ def summarize(result: Result) -> dict[str, float]:
     return {n: float(values[n]) for n in SUMMARY if values.get(n) is not None}
 
 
-def mesh_figures(mesh: MeshTable) -> dict[str, Any]:
+def mesh_figures(mesh: MeshTable) -> Tree:
     """Figures of teeth at rest and their films."""
     return {
         "mesh_frequency": mesh.mesh_frequency,
@@ -197,7 +197,7 @@ def mesh_figures(mesh: MeshTable) -> dict[str, Any]:
     }
 
 
-def _face_figures(mesh: MeshTable) -> dict[str, Any]:
+def _face_figures(mesh: MeshTable) -> Tree:
     """Distribution of the load over the face, where contacts are slices of it."""
     if mesh.face_position is None:
         return {}
@@ -205,7 +205,7 @@ def _face_figures(mesh: MeshTable) -> dict[str, Any]:
     return {"face_load_factor": mesh.face_load_factor, "load_face_position_range": travel}
 
 
-def _stiffness_parts(mesh: MeshTable) -> dict[str, Any]:
+def _stiffness_parts(mesh: MeshTable) -> Tree:
     """Mean stiffness of the teeth and of the oil films, if these are in series."""
     if mesh.tooth_transmission_error is None:
         return {}
@@ -216,7 +216,7 @@ def _stiffness_parts(mesh: MeshTable) -> dict[str, Any]:
     return figures
 
 
-def _error_parts(mesh: MeshTable) -> dict[str, Any]:
+def _error_parts(mesh: MeshTable) -> Tree:
     """Transmission error at rest of the teeth alone, and its change by oil films in series."""
     teeth = mesh.tooth_transmission_error
     if teeth is None:
@@ -229,13 +229,13 @@ def _error_parts(mesh: MeshTable) -> dict[str, Any]:
     }
 
 
-def _pressure(mesh: MeshTable) -> dict[str, Any]:
+def _pressure(mesh: MeshTable) -> Tree:
     """Greatest Hertzian pressure, which a mesh table of another program may lack."""
     greatest = mesh.hertz_pressure.max()
     return {"maximum_hertz_pressure": greatest} if np.isfinite(greatest) else {}
 
 
-def _static_error_figures(result: Result) -> dict[str, Any]:
+def _static_error_figures(result: Result) -> Tree:
     """Transmission error at rest: of the mesh cycle, or of all teeth where they differ."""
     name = "static_transmission_error"
     figures: tuple[Any, Any, Any]
@@ -266,7 +266,7 @@ def _static_error_figures(result: Result) -> dict[str, Any]:
     }
 
 
-def _film_figures(mesh: MeshTable) -> dict[str, Any]:
+def _film_figures(mesh: MeshTable) -> Tree:
     """Film figures: least values along the path of contact, and those at the pitch point."""
     least = {
         "central_film": mesh.central_film,
@@ -274,7 +274,7 @@ def _film_figures(mesh: MeshTable) -> dict[str, Any]:
         "minimum_film_ratio": mesh.film_ratio,
         "minimum_film_load_share": mesh.film_load_share,
     }
-    figures: dict[str, Any] = {
+    figures: Tree = {
         name: np.fmin.reduce(column[mesh.in_contact])  # the least that is a number
         for name, column in least.items()
         if column is not None
@@ -288,11 +288,11 @@ def _film_figures(mesh: MeshTable) -> dict[str, Any]:
     return figures | {name: value for name, value in at_pitch_point.items() if value is not None}
 
 
-def _motion_figures(result: Result, samples: FineSamples) -> dict[str, Any]:
+def _motion_figures(result: Result, samples: FineSamples) -> Tree:
     """Figures of all signals of a motion, averaged in one pass."""
     from tribodyn.signals.indicators import extremes, mesh_harmonics, moments
 
-    name, figures = "dynamic_transmission_error", dict[str, Any]()
+    name, figures = "dynamic_transmission_error", Tree()
     signals, every = zip(*_signals(result, samples), strict=True)
     averages = (part.tolist() for part in moments(samples, np.array(every).T))
     motions = [every[signals.index(each)] for each in ("mesh_force", name)]
@@ -375,7 +375,7 @@ def _support_signals(result: Result, samples: FineSamples) -> Iterator[tuple[str
     yield from zip(supports, forces, strict=True)
 
 
-def _hypoid_figures(result: Result, in_space: bool) -> dict[str, Any]:
+def _hypoid_figures(result: Result, in_space: bool) -> Tree:
     """Unloaded and loaded transmission error of gears in space, on the line of action."""
     error = result.mesh.unloaded_transmission_error
     if not in_space or error is None:
@@ -386,7 +386,7 @@ def _hypoid_figures(result: Result, in_space: bool) -> dict[str, Any]:
     }
 
 
-def _comparison(result: Result) -> dict[str, Any]:
+def _comparison(result: Result) -> Tree:
     """Figures of the same motion with the friction of the nominal load."""
     if result.friction is None or result.nominal_friction_response is None:
         return {}
@@ -403,7 +403,7 @@ def _comparison(result: Result) -> dict[str, Any]:
     return compared | {"friction_fit_error": result.friction.fit_error}
 
 
-def _line_of_action(figures: Mapping[str, Any]) -> dict[str, Any]:
+def _line_of_action(figures: ByName) -> Tree:
     """Ratio of the bearing force of the pinion across the line of action to that along it."""
     from tribodyn.signals.indicators import across_over_along
 

@@ -22,6 +22,7 @@ from tribodyn.study.mesh_inputs import (
     mesh_inputs,
     model_settings,
 )
+from tribodyn.types import Tree
 
 if TYPE_CHECKING:
     from tribodyn.mesh import HypoidFriction, HypoidLoadedContact, MeshFriction, MeshTable
@@ -214,7 +215,7 @@ def load_friction_of(
 _PHASES = 64  #: phases of a mesh cycle
 
 
-def loaded_settings(case: PairCase) -> dict[str, Any]:
+def loaded_settings(case: PairCase) -> Tree:
     """Provider, its options and material of a case, as arguments of the loaded tooth contact."""
     settings = model_settings(case)
     options = dict(settings["stiffness_options"])

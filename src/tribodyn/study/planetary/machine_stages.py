@@ -18,6 +18,7 @@ from tribodyn.machine.planetary.turning_frame import centrifugal_loads
 from tribodyn.study.case.values import KeyedProblems, Plain
 from tribodyn.study.machine.pair_cases import pair_case, pinion_and_wheel, with_forms
 from tribodyn.study.machine.read_parts import is_faulty, read_gear
+from tribodyn.types import ByName, Tree
 
 if TYPE_CHECKING:
     from tribodyn.gear import CylindricalPair
@@ -35,7 +36,7 @@ class CaseStage:
 
     name: str
     table: Any  #: values of ``[planets.NAME]``
-    data: Mapping[str, Any]  #: tables of the case
+    data: ByName  #: tables of the case
     planets: Sequence[Gear]  #: that at the sun, and of double planets that at the ring
     gears: Mapping[str, Gear]  #: of the case, without planets
     source: Source | None
@@ -74,7 +75,7 @@ class CaseStage:
         name: str = getattr(self.table, role)
         return name if role == "carrier" else self.gears[name].shaft
 
-    def pair_data(self, mesh: str) -> dict[str, Any]:
+    def pair_data(self, mesh: str) -> Tree:
         """Tables of the case with the centre distance and the module of a kind of mesh."""
         body = dict(self.data["planets"][self.name])
         if mesh == "ring" and self.table.ring_normal_module is not None:
@@ -135,7 +136,7 @@ class CaseStage:
             carrier_position=table.carrier_position,
             clearance=table.pin_clearance,
         )
-        double: dict[str, Any] = {"planet_type": table.planet_type}
+        double: Tree = {"planet_type": table.planet_type}
         if len(self.planets) > 1:
             double["ring_planet"] = self.planets[1]
             double["ring_mesh"] = {"normal_module": table.ring_normal_module or table.normal_module}
@@ -161,7 +162,7 @@ class CaseStage:
         """Whether the planets have two gears behind each other."""
         return bool(self.table.planet_type == "stepped")
 
-    def _lags(self, stage: PlanetaryStage, drives: bool, backwards: bool) -> dict[str, Any]:
+    def _lags(self, stage: PlanetaryStage, drives: bool, backwards: bool) -> Tree:
         """Lags behind the sun mesh; a torque on the sun backwards has the mirrored stage."""
         if self.is_stepped:  # the gears of a planet may have any position on its shaft
             return {}
@@ -249,7 +250,7 @@ def carrier_body(table: Any, density: float, radius: float, width: float) -> tup
 
 
 def read_stages(
-    tables: Mapping[str, Any], gears: Mapping[str, Any], problems: KeyedProblems
+    tables: ByName, gears: ByName, problems: KeyedProblems
 ) -> dict[str, tuple[Any, ...]]:
     """Tables and planets of the stages, from the tables of stages and of gears."""
     stages: dict[str, tuple[Any, ...]] = {}
@@ -271,7 +272,7 @@ def read_stages(
     return stages
 
 
-def _stage_problems(key: str, table: Any, gears: Mapping[str, Any]) -> KeyedProblems:
+def _stage_problems(key: str, table: Any, gears: ByName) -> KeyedProblems:
     """Names of no gear, lists of another length, and a ring with external teeth."""
     problems = _double_problems(key, table)
     roles = ("sun", "ring", "planet", "ring_planet")
@@ -297,7 +298,7 @@ def _stage_problems(key: str, table: Any, gears: Mapping[str, Any]) -> KeyedProb
     return problems
 
 
-def stage_by_itself(data: Mapping[str, Any]) -> str | None:
+def stage_by_itself(data: ByName) -> str | None:
     """Name of the stage of tables that describe nothing else; None of other machines."""
     others = ("shafts", "meshes", "bearings", "couplings", "housing")
     stages = data.get("planets", {})
@@ -372,7 +373,7 @@ def stage_figures(result: Any) -> dict[str, dict[str, float]]:
     return figures
 
 
-def stage_mesh(mesh: Mesh, fields: Mapping[str, Any]) -> Mesh:
+def stage_mesh(mesh: Mesh, fields: ByName) -> Mesh:
     """Mesh of a planet with the force law of its teeth, less the excess thickness of the planet."""
     excess = mesh.error
     if fields.get("contacts") and excess:

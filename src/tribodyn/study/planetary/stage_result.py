@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -14,7 +14,7 @@ from tribodyn.machine.planetary.modes import plane_rows
 from tribodyn.machine.planetary.positions import read_angles
 from tribodyn.record import fact, quantity, record
 from tribodyn.study.machine.motion import PeriodicSamples
-from tribodyn.types import Array
+from tribodyn.types import Array, Tree
 
 if TYPE_CHECKING:
     from tribodyn.machine import (
@@ -190,12 +190,12 @@ class StageResult:
         )
 
     @cached_property
-    def plane_data(self) -> dict[str, Any]:
+    def plane_data(self) -> Tree:
         """Arguments of :func:`tribodyn.machine.planetary_plane_model` for the stage by itself."""
         return plane_data(self.result.structure, self.name)
 
 
-def plane_data(structure: MachineStructure, name: str) -> dict[str, Any]:
+def plane_data(structure: MachineStructure, name: str) -> Tree:
     """Arguments of the plane model of a stage, in the direction of the torque on its sun."""
     machine = structure.machine
     stage, flow, pin = machine.planets[name], machine.kinematics, machine.bearings[f"{name}_pin1"]
@@ -203,7 +203,7 @@ def plane_data(structure: MachineStructure, name: str) -> dict[str, Any]:
     turn, rows = flow.meshes[sun].sense, plane_rows(structure, name)
     shafts = {role: machine.gears[getattr(stage, role)].shaft for role in ("sun", "ring")}
     shafts["carrier"] = stage.carrier
-    data: dict[str, Any] = {}
+    data: Tree = {}
     for member in ("carrier", "ring", "sun", "planet1"):
         mobility = np.diag(rows[member] @ np.linalg.solve(structure.mass, rows[member].T))
         inertia = 1.0 / float(mobility[2])

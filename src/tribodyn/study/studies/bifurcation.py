@@ -26,7 +26,7 @@ from tribodyn.study.studies.case_grid import (
 from tribodyn.study.studies.needs import PARTS, kind_of, mesh_in_motion
 from tribodyn.study.studies.runner import identity
 from tribodyn.study.studies.study_axes import Axis, ends_of
-from tribodyn.types import Array
+from tribodyn.types import Array, Tree
 
 if TYPE_CHECKING:
     from tribodyn.nonlinear.bifurcation import Bifurcation
@@ -133,7 +133,7 @@ def bifurcation(
     return replace(diagram, signal=f"mesh {name}") if of_mesh else diagram
 
 
-def _lengths(case: AnyCase, members: list[Moving], options: dict[str, Any]) -> dict[str, Any]:
+def _lengths(case: AnyCase, members: list[Moving], options: Tree) -> Tree:
     """Options with the lengths of motions of a machine, in periods of its clock."""
     if case.lumped:
         return options
@@ -147,12 +147,7 @@ def _lengths(case: AnyCase, members: list[Moving], options: dict[str, Any]) -> d
 
 
 def _members(
-    case: AnyCase,
-    mesh: str,
-    over: str,
-    values: Any,
-    progress: Progress,
-    checkpoints: Checkpoints,
+    case: AnyCase, mesh: str, over: str, values: Any, progress: Progress, checkpoints: Checkpoints
 ) -> list[Moving]:
     """Structure of every value; one shared structure if none differs."""
     if not case.lumped:
@@ -219,7 +214,7 @@ class Findings:
             *self._two(),
         ]
 
-    def figures(self) -> dict[str, Any]:
+    def figures(self) -> Tree:
         """Return the findings as values in SI."""
         onset = self._onset()
         return {

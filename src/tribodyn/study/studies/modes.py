@@ -9,12 +9,7 @@ import numpy as np
 
 from tribodyn.machine import MachineModes, machine_modes
 from tribodyn.progress import SILENT, Progress
-from tribodyn.study.machine.modes import (
-    MachineCampbell,
-    MeshOrder,
-    campbell_of,
-    mesh_orders,
-)
+from tribodyn.study.machine.modes import MachineCampbell, MeshOrder, campbell_of, mesh_orders
 from tribodyn.study.machine.run import structure_at_rest
 from tribodyn.study.pipeline.assembly import ORDERS, diagram_of
 from tribodyn.study.pipeline.tooth_contact import operation_values

@@ -196,9 +196,7 @@ def _read_ends(name: str, ends: Sequence[Any], unit: str) -> tuple[float, float]
     return low, high
 
 
-def _plane_about_equilibrium(
-    structure: Moving,
-) -> tuple[tuple[float, float], tuple[float, float]]:
+def _plane_about_equilibrium(structure: Moving) -> tuple[tuple[float, float], tuple[float, float]]:
     """Ranges of transmission error and rate about the static equilibrium."""
     from tribodyn.dynamics.equations.orbit_coordinates import static_start
     from tribodyn.dynamics.modal.modal_march import compile_motion

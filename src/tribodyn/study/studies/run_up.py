@@ -25,6 +25,7 @@ from tribodyn.study.planetary.common import common_lines, line_labels
 from tribodyn.study.studies.case_grid import Member, results_under, varied
 from tribodyn.study.studies.levels import MachineLevels, levels_of
 from tribodyn.study.studies.study_axes import read_axes
+from tribodyn.types import Tree
 
 if TYPE_CHECKING:
     from tribodyn.dynamics import RunUp, SpeedSweep, System
@@ -208,7 +209,7 @@ def _speed(end: Any, between: tuple[Any, Any]) -> float:
     raise InputError(replace(problem, where="argument between", why=why, remedy=remedy))
 
 
-def supports(system: System) -> dict[str, Any]:
+def supports(system: System) -> Tree:
     """Forces on the supports of the gears as rows over positions and velocities."""
     rows = {}
     for column, name in enumerate(system.names):

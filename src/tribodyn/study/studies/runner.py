@@ -18,6 +18,7 @@ from tribodyn.mesh.film.film_lookup import shared_films
 from tribodyn.model import known_elsewhere
 from tribodyn.progress import SILENT, Progress
 from tribodyn.study.processes import helpers
+from tribodyn.types import Tree
 
 if TYPE_CHECKING:
     from tribodyn.study.machine.case import AnyCase
@@ -32,7 +33,7 @@ _ITEMS_PER_PROCESS = 50
 _NO_VALUES: Mapping[int, Any] = MappingProxyType({})
 
 
-def identity(study: str, case: AnyCase, over: object, **options: object) -> dict[str, Any]:
+def identity(study: str, case: AnyCase, over: object, **options: object) -> Tree:
     """Identity of a study; checkpoints are reused only if it is the same."""
     import tribodyn
 

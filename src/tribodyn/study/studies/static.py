@@ -8,9 +8,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from tribodyn.checks import require_whole
 from tribodyn.errors import Argument, InputError, require_between, shortened
-from tribodyn.nomenclature import GEARS
+from tribodyn.nomenclature import GEARS, require_whole
 from tribodyn.progress import SILENT, Progress
 from tribodyn.record import record
 from tribodyn.stiffness import LeadOptimum, TipReliefOptimum
@@ -25,6 +24,7 @@ from tribodyn.study.pipeline.tooth_contact import (
     read_torques,
 )
 from tribodyn.study.studies.needs import mesh_pair
+from tribodyn.types import Tree
 from tribodyn.units import format_quantity
 
 if TYPE_CHECKING:
@@ -97,11 +97,7 @@ class CaseLeadOptimum(OptimumOfCase, LeadOptimum):
 
 
 def harris_map(
-    case: AnyCase,
-    torque: object = None,
-    *,
-    phases: int | None = None,
-    mesh: str | None = None,
+    case: AnyCase, torque: object = None, *, phases: int | None = None, mesh: str | None = None
 ) -> HarrisMap:
     """Find the static transmission error of a case over phase and torque (Harris map).
 
@@ -159,7 +155,7 @@ def _hypoid_map(case: PairCase, torques: list[float], phases: int | None) -> Har
 
     if phases is not None:
         require_between("phases", require_whole("phases", phases), *_PHASES)
-    steps: dict[str, Any] = {} if phases is None else {"steps": phases}
+    steps: Tree = {} if phases is None else {"steps": phases}
     loaded = hypoid_loaded_contact_of(mesh_inputs(case), **steps)
     return hypoid_transmission_error_over_torque(loaded, torques)
 

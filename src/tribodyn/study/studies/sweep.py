@@ -26,6 +26,7 @@ from tribodyn.study.studies.case_grid import points_of_parts
 from tribodyn.study.studies.runner import Groups, identity, run_groups
 from tribodyn.study.studies.study_axes import Axis, read_axes
 from tribodyn.study.studies.sweep_result import Sweep, SweepPoint
+from tribodyn.types import ByName
 
 if TYPE_CHECKING:
     from tribodyn.study.case.pair import PairCase
@@ -42,7 +43,7 @@ _GROUP_SIZE, _BATCH = 16, 8
 @with_old_names
 def sweep(
     case: AnyCase,
-    over: str | Mapping[str, Any] = "operation.speed",
+    over: str | ByName = "operation.speed",
     between: tuple[Any, Any] | None = None,
     points: int = 40,
     *,
@@ -175,7 +176,7 @@ def points_under(
     return source.points([tuple(change.values()) for change in changes], progress)
 
 
-def _read_ranges(over: str | Mapping[str, Any], between: Any, points: int) -> Mapping[str, Any]:
+def _read_ranges(over: str | ByName, between: Any, points: int) -> ByName:
     if isinstance(over, str):
         if between is None or len(between) != 2:
             remedy = 'Write, for example, between=("400 rpm", "3500 rpm")'

@@ -20,7 +20,7 @@ from tribodyn.record import Parts, Record, html_table, record
 from tribodyn.study.pipeline.save import new_directory
 from tribodyn.study.pipeline.summary_figures import figure_of, in_order, in_words
 from tribodyn.study.studies.study_axes import Axis
-from tribodyn.types import Array
+from tribodyn.types import Array, Tree
 from tribodyn.validated_files import csv_text, write_dataset
 
 #: Figures in tables and reports, and those added if a key of the film or the oil varies.
@@ -142,7 +142,7 @@ class Sweep(Record):
         done = "" if self.complete else f", {len(self.points)} of {prod(self.shape)} done"
         return f"Sweep({ranges}{done}{f', {failed} failed' if failed else ''})"
 
-    def rows(self) -> Iterator[dict[str, Any]]:
+    def rows(self) -> Iterator[Tree]:
         """Iterate over the finished points.
 
         Yields
@@ -162,18 +162,15 @@ class Sweep(Record):
 
     def _parts(self) -> Parts:
         names = self._dimensions()
-        axes: dict[str, Any] = {
+        axes: Tree = {
             name: (name, np.array(axis.values), {"units": axis.unit or "1", "key": axis.key})
             for name, axis in zip(names, self.axes, strict=True)
         }
-        data: dict[str, Any] = {
+        data: Tree = {
             name: (
                 names,
                 self[name],
-                {
-                    "units": figure_of(name).unit or "1",
-                    "long_name": figure_of(name).meaning,
-                },
+                {"units": figure_of(name).unit or "1", "long_name": figure_of(name).meaning},
             )
             for name in self.figures
         }

@@ -8,10 +8,10 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from tribodyn.checks import require_whole
 from tribodyn.drawing import draw as draw_figure
 from tribodyn.drawing import figures_of
 from tribodyn.errors import Argument, InputError, quiet, require_one_of
+from tribodyn.nomenclature import require_whole
 from tribodyn.progress import SILENT, Progress
 from tribodyn.record import Record, fact, quantity, record
 from tribodyn.study.uncertain.cycles import SIGNALS, steady_cycles

@@ -25,7 +25,7 @@ from tribodyn.study.studies.case_grid import (
     varied,
 )
 from tribodyn.study.studies.sweep import points_under
-from tribodyn.types import Array, Index
+from tribodyn.types import Array, ByName, Index, Tree
 from tribodyn.uncertainty import distribution, sample
 
 if TYPE_CHECKING:
@@ -64,18 +64,13 @@ class Lanes:
 
 
 def draw(
-    case: AnyCase,
-    spread: Mapping[str, Any],
-    size: int,
-    *,
-    method: Any = "monte-carlo",
-    seed: int,
+    case: AnyCase, spread: ByName, size: int, *, method: Any = "monte-carlo", seed: int
 ) -> dict[str, Array]:
     """Values of keys of a case and of factors, each in the unit that it has there."""
     return sample(distributions_of(case, spread), size, method=method, seed=seed)
 
 
-def distributions_of(case: AnyCase, spread: Mapping[str, object]) -> dict[str, Any]:
+def distributions_of(case: AnyCase, spread: Mapping[str, object]) -> Tree:
     """Distributions of keys of a case and of factors, each in the unit that it has there."""
     distributions = {}
     for key, text in spread.items():

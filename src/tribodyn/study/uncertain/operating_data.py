@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
-from tribodyn.checks import require_whole
 from tribodyn.errors import Argument, InputError
+from tribodyn.nomenclature import require_whole
 from tribodyn.progress import SILENT, Progress
 from tribodyn.study.pipeline.summary_figures import figure_of
 from tribodyn.study.studies.sweep_result import OF_PARTS, level_keys
@@ -16,6 +16,7 @@ from tribodyn.study.uncertain.cycles import steady_cycles
 from tribodyn.study.uncertain.data_set import DataSet
 from tribodyn.study.uncertain.lanes import draw, lanes_of, points_of_values, successful
 from tribodyn.study.uncertain.vibration_data import data_set
+from tribodyn.types import Tree
 
 if TYPE_CHECKING:
     from tribodyn.study.machine.case import AnyCase, MachineCase
@@ -128,7 +129,7 @@ def operating_data(
 
 
 def _of_parts(
-    case: MachineCase, inputs: Mapping[str, Array], settings: dict[str, Any], progress: Progress
+    case: MachineCase, inputs: Mapping[str, Array], settings: Tree, progress: Progress
 ) -> DataSet:
     """Levels of the parts of a machine or a stage, at the points that can be computed."""
     progress.start("Operating points", settings["size"])

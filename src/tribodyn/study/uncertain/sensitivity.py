@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
-from tribodyn.checks import require_whole
 from tribodyn.errors import Argument, ComputationError, InputError, did_you_mean
+from tribodyn.nomenclature import require_whole
 from tribodyn.nonlinear.parameter_map import SCALES
 from tribodyn.progress import SILENT, Progress
 from tribodyn.record import Record, fact, quantity, record
@@ -16,7 +16,7 @@ from tribodyn.study.pipeline.summary import SUMMARY
 from tribodyn.study.pipeline.summary_figures import in_order, is_figure
 from tribodyn.study.studies.sweep_result import OF_PARTS, SHOWN
 from tribodyn.study.uncertain.lanes import distributions_of, points_of_values, successful
-from tribodyn.types import Array, Texts
+from tribodyn.types import Array, Texts, Tree
 from tribodyn.uncertainty import sobol_indices as indices_of
 
 if TYPE_CHECKING:
@@ -177,7 +177,7 @@ def sobol_indices(
 class _Runs:
     """Summaries of a case by the values of its keys, each computed once."""
 
-    def __init__(self, case: AnyCase, distributions: dict[str, Any], progress: Progress) -> None:
+    def __init__(self, case: AnyCase, distributions: Tree, progress: Progress) -> None:
         self.case, self.distributions, self.progress = case, distributions, progress
         self.summaries: dict[tuple[float, ...], Mapping[str, float]] = {}
 

@@ -4,27 +4,20 @@ from __future__ import annotations
 
 import json
 from collections.abc import Mapping
-from typing import TYPE_CHECKING, Any, Literal, cast
+from typing import TYPE_CHECKING, Literal, cast
 
 import numpy as np
 
 import tribodyn
-from tribodyn.checks import require_flag, require_whole
-from tribodyn.errors import (
-    Argument,
-    InputError,
-    collected,
-    require_one_of,
-    require_positive,
-    warn,
-)
+from tribodyn.errors import Argument, InputError, collected, require_one_of, require_positive, warn
+from tribodyn.nomenclature import require_flag, require_whole
 from tribodyn.nonlinear.parameter_map import SCALES
 from tribodyn.progress import SILENT, Progress
 from tribodyn.study.pipeline.motion import engine_arguments
 from tribodyn.study.uncertain.cycles import SIGNALS, signals_at, steady_cycles
 from tribodyn.study.uncertain.data_set import DataSet
 from tribodyn.study.uncertain.lanes import Lanes, draw, lanes_of
-from tribodyn.types import Array
+from tribodyn.types import Array, Tree
 
 if TYPE_CHECKING:
     from tribodyn.dynamics.time.engines import FixedMarcher
@@ -136,9 +129,7 @@ def vibration_data(
     return data_set("vibration_data", case, columns, settings)
 
 
-def data_set(
-    kind: str, case: AnyCase, columns: dict[str, Array], settings: dict[str, Any]
-) -> DataSet:
+def data_set(kind: str, case: AnyCase, columns: dict[str, Array], settings: Tree) -> DataSet:
     """Columns with their units and their origin."""
     signal_units = {**_TIME_COLUMNS, **SIGNALS}
     specs = {name: case.option_of(name) for name in columns}
