@@ -17,3 +17,6 @@ Texts = NDArray[np.str_]
 Numbers = float | Array
 #: Options of a model by name: numbers, texts, flags, as the model declares them.
 Options = Mapping[str, Any]
+#: Values of any kind by name, as in TOML and JSON: a new one, and one that is only read.
+Tree = dict[str, Any]
+ByName = Mapping[str, Any]

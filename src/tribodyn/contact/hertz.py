@@ -9,9 +9,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from tribodyn.checks import positive
 from tribodyn.errors import require_between, require_positive
 from tribodyn.gear import Material
+from tribodyn.nomenclature import positive
 from tribodyn.types import Array, Numbers
 
 

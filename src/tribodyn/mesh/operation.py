@@ -7,7 +7,6 @@ from types import SimpleNamespace
 import numpy as np
 from numpy.typing import ArrayLike
 
-from tribodyn.checks import one_or_more
 from tribodyn.contact import Kinematics, effective_modulus, hertz_line, path_of_contact
 from tribodyn.ehl import FILM_MODELS
 from tribodyn.errors import InputError, require_between
@@ -22,6 +21,7 @@ from tribodyn.mesh.operating_points import films_over_flank
 from tribodyn.mesh.sharing import LEAST_SHARE, ToothContact, teeth_of
 from tribodyn.mesh.table import MeshTable
 from tribodyn.model import NO_OPTIONS
+from tribodyn.nomenclature import one_or_more
 from tribodyn.progress import SILENT, Progress
 from tribodyn.record import Parts, Record, fact, figure_method, from_parts, quantity, record
 from tribodyn.stiffness import MODELS

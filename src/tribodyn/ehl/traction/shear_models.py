@@ -8,9 +8,9 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import ArrayLike
 
-from tribodyn.checks import positive
 from tribodyn.errors import Argument, InputError, require_between, require_positive
 from tribodyn.model import NO_OPTIONS, Model, Registry, number
+from tribodyn.nomenclature import positive
 from tribodyn.types import Array, Options
 
 #: Limiting stress ``tau_L0 + Lambda p``, which every model may have.

@@ -10,7 +10,6 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from tribodyn.checks import require_whole
 from tribodyn.errors import Argument, InputError, real_numbers
 from tribodyn.machine.bearing import Bearing
 from tribodyn.machine.fields import check_name, check_number, quoted
@@ -25,6 +24,7 @@ from tribodyn.machine.planetary.positions import (
     refuse_touching_pairs,
 )
 from tribodyn.machine.shaft import Shaft
+from tribodyn.nomenclature import require_whole
 from tribodyn.types import Array, Options
 
 #: Largest error of a pin or a tooth [m].

@@ -7,7 +7,6 @@ from types import SimpleNamespace
 
 import numpy as np
 
-from tribodyn.checks import require_number
 from tribodyn.ehl import FILM_MODELS, lubrication_regime
 from tribodyn.errors import require_between, require_one_of
 from tribodyn.gear.hypoid.kinematics import ENTRAINMENTS, CellMotion, cell_motion
@@ -20,6 +19,7 @@ from tribodyn.mesh.hypoid.table import mesh_table_of
 from tribodyn.mesh.sharing import ToothContact
 from tribodyn.mesh.table import MeshTable
 from tribodyn.model import NO_OPTIONS
+from tribodyn.nomenclature import require_number
 from tribodyn.record import Record, fact, figure_method, from_parts, quantity, record
 from tribodyn.types import Array, Mask, Options
 

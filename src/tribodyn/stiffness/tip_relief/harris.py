@@ -8,12 +8,12 @@ from typing import Any, ClassVar
 import numpy as np
 from numpy.typing import ArrayLike
 
-from tribodyn.checks import one_or_more
 from tribodyn.contact import PathOfContact, path_of_contact
 from tribodyn.errors import Argument, InputError
 from tribodyn.gear import Material, SpurPair, default_relief_length
 from tribodyn.gear.mesh_geometry import flank_ranges
 from tribodyn.model import NO_OPTIONS
+from tribodyn.nomenclature import one_or_more
 from tribodyn.record import Labels, Record, fact, quantity, record
 from tribodyn.stiffness.loaded import LoadedContact, loaded_contact
 from tribodyn.stiffness.loaded.problem import mesh_period, slice_widths

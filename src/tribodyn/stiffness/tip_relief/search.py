@@ -9,7 +9,6 @@ from typing import Any, ClassVar
 import numpy as np
 from numpy.typing import ArrayLike
 
-from tribodyn.checks import one_or_more
 from tribodyn.contact import path_of_contact
 from tribodyn.errors import Argument, InputError, Problem, quiet, require_one_of
 from tribodyn.gear import (
@@ -23,6 +22,7 @@ from tribodyn.gear import (
 )
 from tribodyn.gear.modification import LARGEST_AMOUNT
 from tribodyn.model import NO_OPTIONS
+from tribodyn.nomenclature import one_or_more
 from tribodyn.record import Labels, Record, fact, quantity, record
 from tribodyn.stiffness.loaded.contact import contact_problem, contact_settings, phases_of
 from tribodyn.stiffness.loaded.face_problem import has_slices
