@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -9,6 +11,7 @@ from tribodyn.dynamics import Contact, System
 from tribodyn.dynamics.harmonic.newton import newton, solve_linear
 from tribodyn.dynamics.harmonic.phase_balance import _Search
 from tribodyn.dynamics.harmonic.phase_response import phase_response
+from tribodyn.dynamics.harmonic.phase_rows import PhaseRows
 
 FREQUENCIES = np.array([1000.0, 313.0])
 JUMPS = (0.0, 0.6)
@@ -94,3 +97,30 @@ def test_a_mesh_needs_few_points_over_the_phases_of_others():
     at = np.linspace(0.0, 0.05, 300)
     forces = [each.at(at).contact_force for each in (fine, few)]
     assert np.abs(forces[1] - forces[0]).max() < 1e-3 * np.ptp(forces[0])
+
+
+def test_the_derivative_takes_over_what_the_inverse_has_moved():
+    residual, state = state_of(square(4e8), square(4.5e8))
+    right = motion(residual)
+    product, nearly = residual.preconditioned(state)
+    image = residual.derivative(state)(nearly(right))
+    np.testing.assert_allclose(product(right), image, atol=1e-12 * np.abs(image).max())
+
+
+def test_a_part_has_the_entries_of_a_system_with_its_contacts_alone():
+    search = search_of(square(4e8), square(4.5e8))
+    points = np.random.default_rng(3).random((40, 2))
+    for part in search.parts:
+        (number,) = part.members
+        alone = replace(search.rows.system, contacts=[search.rows.system.contacts[number]])
+        expected = PhaseRows.of(replace(alone, force=np.zeros(4)), FREQUENCIES)
+        for name, values in expected.nodes(points)._asdict().items():
+            np.testing.assert_array_equal(getattr(part.rows.nodes(points), name), values)
+        for mine, other in zip(part.rows.meshes, expected.meshes, strict=True):
+            np.testing.assert_array_equal(mine.jumps, other.jumps)
+        weight = [rows.means.nodes.weight for rows in (part.rows, expected)]
+        mean = [
+            np.einsum("rs,rsj->j", share, rows.means.nodes.stiffness)
+            for share, rows in zip(weight, (part.rows, expected), strict=True)
+        ]
+        np.testing.assert_allclose(mean[0], mean[1], rtol=1e-12)

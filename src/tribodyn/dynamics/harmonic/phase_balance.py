@@ -24,6 +24,7 @@ from tribodyn.dynamics.harmonic.phase_response import (
     PhaseResponse,
     marched_response,
     phase_response,
+    recorded,
     sum_lines,
 )
 from tribodyn.dynamics.harmonic.phase_rows import PhaseRows, sampled_forces
@@ -46,10 +47,15 @@ _MANY, _MOST = 2**17, 3 * 2**14
 _SMOOTH, _FALLING, _BROKEN = ((2e-7, _MANY),), 0.1, ((1e-5, 2**13), (2e-3, _MOST))
 #: Memory of a motion per unknown [byte].
 _BYTES = 1.5e3
+#: Time per unknown of all grids of a search, and of a motion on stated points; time per line and
+#: sample of the record [s].
+_SEARCHED, _STATED, _SUMMED = 1e-4, 6e-5, 8e-8
 #: Step error that causes a warning; part of the largest change with which a phase is refined too.
 _LIMIT, _WORST = 1e-2, 0.2
 #: Part of the step error that the error of a motion on the way to finer grids may have.
 _NEARLY = 1e-3
+#: Part of the largest change below which that with twice the points is not estimated again.
+_AGAIN = 1e-3
 #: Damping added at first where Newton's method does not converge, over the critical damping at
 #: the highest mesh frequency, and the factors by which it is reduced; Newton steps with each.
 _ADDED, _TRIES = (0.3, 0.1, 0.03, 0.01, 0.003), 12
@@ -67,17 +73,25 @@ class Follower(NamedTuple):
 
 
 def phase_cost(
-    followers: Sequence[Follower], orders: Any = 0, mesh: int | None = None
-) -> tuple[int, float, float]:
+    followers: Sequence[Follower], frequency: Sequence[float], orders: Any = 0,
+    mesh: int | None = None,
+) -> tuple[int, float, float]:  # fmt: skip
     """Unknowns, memory [byte] and time [s]; ``mesh`` are points of a mesh cycle, if stated."""
-    (fine, others), frequencies = _points_of(followers, orders, mesh), len(followers[0].cycles)
-    unknowns = sum(
-        each.contacts * int(np.prod(np.where(_axes(each.cycles, each.turns), fine, others)))
-        for each in followers
-    )
-    unknowns = max(unknowns, min(2 * unknowns, _MOST)) if mesh is None else unknowns
-    memory = 2e8 + 1.4e8 * frequencies + _BYTES * unknowns
-    return unknowns, memory, 0.3 + 2e-4 * unknowns if mesh is None else 0.1 + 6e-5 * unknowns
+    fine, others = _points_of(followers, orders, mesh)
+    grids = [
+        int(np.prod(np.where(_axes(each.cycles, each.turns), fine, others))) for each in followers
+    ]
+    first = sum(each.contacts * size for each, size in zip(followers, grids, strict=True))
+    unknowns, sizes = max(first, min(2 * first, _MOST)) if mesh is None else first, [first]
+    while sizes[-1] < unknowns or (mesh is None and 2 * sizes[-1] <= _MOST):
+        sizes.append(min(2 * sizes[-1], _MOST))  # where forces bend or jump
+    memory = 2e8 + 1.4e8 * len(frequency) + _BYTES * unknowns
+    same = dict(zip([(tuple(each.cycles), each.turns) for each in followers], grids, strict=True))
+    lines = sum(same.values()) * sizes[-1] / first
+    if mesh is not None:
+        return unknowns, memory, 0.1 + _STATED * unknowns
+    seconds = _SEARCHED * sum(sizes) + _SUMMED * lines * recorded(frequency)
+    return unknowns, memory, 0.3 + seconds
 
 
 def given_points(follower: Follower, orders: Any, mesh: int) -> tuple[int, ...]:
@@ -207,10 +221,12 @@ class _Search:
             for part in residual.parts
         ])  # fmt: skip
 
-    def changes(self, points: Points, residual: PhaseResidual, state: State) -> Array:
-        """Change of a motion with twice the points of each part over each phase."""
-        errors = np.zeros(np.shape(points))
-        for place in np.argwhere(np.ones(errors.shape, dtype=bool)):
+    def changes(
+        self, points: Points, residual: PhaseResidual, state: State, again: Mask, before: Array
+    ) -> Array:
+        """Change of a motion with twice the points of each part over each phase, or of before."""
+        errors = before.copy()
+        for place in np.argwhere(again):
             which = np.zeros(errors.shape, dtype=bool)
             which[*place] = True
             finer = self.residual(doubled(points, which), residual)
@@ -254,7 +270,8 @@ def phase_balance(
     smooth = all(part.cell is None for part in solution.state.each)
     poor, before = np.zeros(np.shape(points), dtype=bool), np.zeros(np.shape(points))
     while solution.error <= limit:
-        errors = search.changes(points, residual, solution.state)
+        again = poor | (before >= _AGAIN * before.max())
+        errors = search.changes(points, residual, solution.state, again, before)
         smooth &= bool(errors[poor].sum() <= _FALLING * before[poor].sum())
         step_error = float(errors.sum())
         if solution.error <= tolerance:

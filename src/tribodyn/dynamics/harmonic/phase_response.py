@@ -307,11 +307,15 @@ def phase_response(
     return _recorded(replace(response, fine=_along(response.turns, response)))
 
 
+def recorded(frequency: Any) -> int:
+    """Number of samples of the record of a motion over phases."""
+    return min(int(np.ceil(_RECORDED * float(max(frequency)) / float(min(frequency)))), _MOST)
+
+
 def _recorded(response: PhaseResponse) -> PhaseResponse:
     """Motion with a record: a cycle of the slowest phase if that is short enough."""
     fastest = _RECORDED * float(response.frequencies.max())
-    count = min(int(np.ceil(fastest / float(response.frequencies.min()))), _MOST)
-    history = response.at(np.arange(count) / fastest)
+    history = response.at(np.arange(recorded(response.frequencies)) / fastest)
     names = ("time", "phase", "position", "velocity", "acceleration", "deflection", "contact_force")
     columns = {name: getattr(history, name) for name in names}
     return replace(response, **columns, periods=history.periods)

@@ -66,7 +66,7 @@ class PhaseCost(NamedTuple):
         return (
             f"The motion is found over {len(self.phases)} phases without a common period "
             f"({listed}): about {self.unknowns} unknowns, {1e-9 * self.memory:.2g} GB and "
-            f"{self.time:.2g} s for each load"
+            f"{self.time:.2g} s for each load once all is compiled"
         )
 
 
@@ -107,7 +107,8 @@ def cost_over_phases(
     from tribodyn.dynamics.harmonic.phase_balance import Follower, phase_cost
 
     pairs = tuple(zip(names, phases.frequency, strict=True))
-    return PhaseCost(pairs, *phase_cost([Follower(*each) for each in followers], orders, mesh))
+    listed = [Follower(*each) for each in followers]
+    return PhaseCost(pairs, *phase_cost(listed, phases.frequency, orders, mesh))
 
 
 def refuse_memory(cost: PhaseCost, memory: float, key: str, remedy: str) -> None:
