@@ -180,7 +180,9 @@ class FilmModel(Model):
         if kind not in self.stiffness_kinds:
             what = f'stiffness = "{kind}"'
             remedy = 'Choose one of these, or the film model "newton"'
-            problems.append(Problem(what, f'film model "{self.name}"', self.why_not(kind), remedy))
+            problems.append(
+                Problem(what, f'film model "{self.name}"', self.why_not(str(kind)), remedy)
+            )
         if problems:
             raise InputError(problems)
         return {**self.options, **supplied}

@@ -219,7 +219,7 @@ def _shear(inputs: UserInput, law: FrictionLaw | None) -> KeyedProblems:
     models = SHEAR_MODELS.all()
     name = inputs.get("friction.shear_model", law.options["shear_model"])
     for key in ("carreau_stress", "carreau_exponent", "yasuda_exponent"):
-        if f"friction.{key}" in inputs and key not in models[name].options:
+        if f"friction.{key}" in inputs and key not in models[str(name)].options:
             owner = next(other for other in models if key in models[other].options)
             what = f'{inputs.show(f"friction.{key}")} does not belong to shear_model = "{name}"'
             why = "It is a parameter of another shear model"
