@@ -118,7 +118,7 @@ LINES: dict[str, int] = {
     "cookbook": 102,
     "drawing": 196,
     "dynamics": 15658,
-    "ehl": 9588,
+    "ehl": 9590,
     "errors": 224,
     "exchange": 2165,
     "faults": 1702,
