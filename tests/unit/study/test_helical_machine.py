@@ -272,3 +272,44 @@ def test_check_shows_overlap_and_axial_force_without_computing(result) -> None:
     axial = figures["meshes.first.axial_force"] / figures["meshes.first.static_mesh_force"]
     mean = computed["meshes.first.axial_force"] / computed["meshes.first.mean_mesh_force"]
     assert axial == pytest.approx(mean, rel=1e-12)
+
+
+@pytest.mark.parametrize(
+    ("stated", "hand"),
+    [
+        ({}, "right"),
+        ({"z1": "left"}, "left"),
+        ({"z2": "left"}, "right"),
+        ({"z1": "left", "z2": "right"}, "left"),
+    ],
+)
+def test_the_hand_of_a_gear_is_that_of_its_mesh(stated: dict[str, str], hand: str) -> None:
+    parts = deepcopy(PARTS)
+    del parts["meshes"]["first"]["hand"]
+    for gear, its in stated.items():
+        parts["gears"][gear]["hand"] = its
+    case, written = td.Case(**parts), machine(meshes={"first.hand": hand})
+    assert case.machine().meshes["first"].hand == hand
+    forces = [each.machine().kinematics.meshes["first"].force for each in (case, written)]
+    np.testing.assert_array_equal(*forces)
+    assert case.pair("first", case.operating_point).gears.hand == hand
+
+
+def test_gears_whose_hands_do_not_mesh_are_refused() -> None:
+    with pytest.raises(td.InputError, match=r"z2\.hand: the pinion is left-handed"):
+        machine(gears={"z1.hand": "left", "z2.hand": "left"}, meshes={"first.hand": "left"})
+    with pytest.raises(td.InputError, match="hand = .right. and hand = .left. are both given"):
+        machine(gears={"z1.hand": "left"})
+
+
+@pytest.mark.parametrize(
+    ("gear", "hand"), [("sun", "left"), ("planet", "right"), ("ring", "right")]
+)
+def test_the_hand_of_a_gear_is_that_of_its_stage(gear: str, hand: str) -> None:
+    changes = {
+        "planets.low.center_distance": "83.0059 mm",
+        "planets.low.helix_angle": "20 deg",
+        "dynamics.backlash": None,
+    }
+    stage = td.load_case("planetary-stage").replace(changes | {f"gears.{gear}.hand": hand})
+    assert stage.machine().planets["low"].hand == "left"

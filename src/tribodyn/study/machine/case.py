@@ -28,7 +28,7 @@ from tribodyn.study.case.case import Case
 from tribodyn.study.case.pair import PairCase
 from tribodyn.study.case.provenance import Assumption, reason_faults
 from tribodyn.study.case.section import Section, choices, table_in
-from tribodyn.study.case.sections import LubricantData, heat_problems
+from tribodyn.study.case.sections import heat_problems
 from tribodyn.study.case.user_input import Source, UserInput, values_in_si
 from tribodyn.study.case.values import KeyedProblems, read_table, with_typed_keys
 from tribodyn.study.faults.machine_section import impossible_faults, machine_fault_problems
@@ -37,6 +37,7 @@ from tribodyn.study.machine.housing_files import read_housing
 from tribodyn.study.machine.pair_cases import (
     constant_law,
     inputs_under,
+    mesh_hand,
     pair_case,
     pinion_and_wheel,
     read_blanks,
@@ -79,9 +80,7 @@ from tribodyn.study.planetary.machine_stages import (
 #: Tables in which problems of parts are placed.
 _PLACED = (*GROUPS, "planets", "operation", "housing", "lubricant")
 #: Keys of a mesh that its object takes as they are.
-_OF_MESH = (
-    *("normal_module", "helix_angle", "hand", "angle", "center_distance", "stiffness", "offset"),
-)
+_OF_MESH = (*("normal_module", "helix_angle", "angle", "center_distance", "stiffness", "offset"),)
 
 
 @with_old_names
@@ -146,8 +145,7 @@ class MachineCase(Case):
         self.couplings = each_part(groups["couplings"], read_coupling, problems)
         self.housing: Housing | None = read_housing(tables.housing, problems)
         self.losses, self.oil = tables.losses, tables.lubricant
-        heated = getattr(self.oil, "heat_transfer", None)
-        self.heat: LubricantData | None = self.oil if heated else None
+        self.heat = self.oil if getattr(self.oil, "heat_transfer", None) else None
         self.rated_parts = read_rated_parts(tables.rating, groups, self.shafts, problems)
         self.motion, self.solver = tables.dynamics, tables.solver
         self.faults: dict[str, Any] = groups["faults"]
@@ -294,9 +292,7 @@ class MachineCase(Case):
     @property
     def planet_names(self) -> tuple[str, ...]:
         """Names of the gears that are planets of stages."""
-        tables = self.data.get("planets")
-        bodies = tables.values() if isinstance(tables, dict) else ()
-        stages = [b for b in bodies if isinstance(b, dict)]
+        stages = [b for b in table_in(self.data, "planets").values() if isinstance(b, dict)]
         return tuple(str(b[k]) for b in stages for k in ("planet", "ring_planet") if k in b)
 
     @cached_property
@@ -391,11 +387,14 @@ class MachineCase(Case):
             return Mesh.hypoid(self._gears_of(name), blank, apex=(apex[0], apex[1]), **values)
         values = {k: getattr(table, k) for k in _OF_MESH}
         values["pressure_angle"] = table.normal_pressure_angle
+        names = self._gears_of(name)
+        internal = any(self.gears[gear].is_ring for gear in names)
+        values["hand"] = mesh_hand(table, names, self.data, internal=internal)
         if (law := self._mesh_dynamics.get(name)) is not None:
             values |= constant_law(law)
         if table.center_distance is None and table.stiffness is None:
             values["center_distance"] = self._pair_of(name).gear_pair.center_distance
-        return self._exchanged(Mesh(self._gears_of(name), **{**values, **fields}))
+        return self._exchanged(Mesh(names, **{**values, **fields}))
 
     def _exchanged(self, mesh: Mesh) -> Mesh:
         """Mesh whose contacts were those of its pinion and its wheel."""

@@ -15,7 +15,7 @@ from tribodyn.study.case import gears
 from tribodyn.study.case.hypoid import blank_of
 from tribodyn.study.case.pair import PairCase
 from tribodyn.study.case.rating_tables import HISTORY, PartRating
-from tribodyn.study.case.section import named_rows, table_in
+from tribodyn.study.case.section import Section, named_rows, table_in
 from tribodyn.study.case.sections import Operation
 from tribodyn.study.case.to_models import usual_backlash
 from tribodyn.study.case.user_input import Source
@@ -30,6 +30,7 @@ from tribodyn.study.machine.tables import (
     mesh_table_kind,
 )
 from tribodyn.study.mesh_inputs import MeshInputs, mesh_inputs
+from tribodyn.types import ByName
 
 if TYPE_CHECKING:
     from tribodyn.gear import HypoidBlank
@@ -190,6 +191,14 @@ def pair_case(
             tables["dynamics"] = {**tables["dynamics"], "backlash": Plain(play)}
             case = PairCase(keyed, **tables)
     return case
+
+
+def mesh_hand(table: Section, names: Sequence[str], data: ByName, *, internal: bool = False) -> str:
+    """Hand of the first gear of a mesh: stated, that of a gear, or right where none has one."""
+    first, second = (data["gears"].get(name, {}).get("hand") for name in names)
+    if second and not internal:
+        second = "left" if second == "right" else "right"
+    return str(table.hand or first or second or "right")
 
 
 def teeth_under(case: MachineCase, mesh: str, load: LoadCase) -> TeethUnder:

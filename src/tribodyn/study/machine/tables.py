@@ -253,7 +253,12 @@ class MeshTable(Section):
         example='"21 deg"',
         meaning="helix angle at the reference circle; 0 for spur gears",
     )  # fmt: skip
-    hand: str = choice("right", ("right", "left"), meaning="hand of the teeth of the first gear")
+    hand: str | None = choice(
+        None,
+        ("right", "left"),
+        meaning="hand of the teeth of the first gear",
+        basis="the hand of a gear, right where none has one",
+    )
     angle: float = number(
         0.0, -_TURN, _TURN, "one turn",
         unit="rad",

@@ -16,7 +16,7 @@ from tribodyn.machine.planetary.mesh_laws import gear_lag
 from tribodyn.machine.planetary.stage_parts import mesh_kinds
 from tribodyn.machine.planetary.turning_frame import centrifugal_loads
 from tribodyn.study.case.values import KeyedProblems, Plain
-from tribodyn.study.machine.pair_cases import pair_case, pinion_and_wheel, with_forms
+from tribodyn.study.machine.pair_cases import mesh_hand, pair_case, pinion_and_wheel, with_forms
 from tribodyn.study.machine.read_parts import is_faulty, read_gear
 from tribodyn.types import ByName, Tree
 
@@ -144,9 +144,13 @@ class CaseStage:
             for mesh, name in (("ring", "ring"), ("planet", "pair")):
                 distance = abs(self.gear_pair(mesh).center_distance)
                 double[f"{name}_center_distance"] = distance
+        alike = self.planet_names[:1] if len(self.planets) > 1 else (table.planet, table.ring)
+        hands = {name: self.data["gears"].get(name, {}).get("hand") for name in alike}
+        at_sun = next((name for name, hand in hands.items() if hand), alike[0])
+        hand = mesh_hand(table, (table.sun, at_sun), self.data)
         stage = PlanetaryStage(
             *(table.sun, table.ring, table.carrier, self.planet, table.count),
-            *(table.normal_module, table.helix_angle, table.hand, self.center_distance),
+            *(table.normal_module, table.helix_angle, hand, self.center_distance),
             table.normal_pressure_angle,
             angles=table.angles,
             pin=pin,
