@@ -60,12 +60,12 @@ RENAMED: Mapping[str, str] = {
 class Alias:
     """Old name of an attribute, a property or a method of a class."""
 
-    def __init__(self, old: str, new: str) -> None:
-        self.old, self.new = old, new
+    def __init__(self, owner: str, old: str, new: str) -> None:
+        self.owner, self.old, self.new = owner, old, new
 
     def __get__(self, instance: object, owner: type) -> Any:
         """Warn, and return the value of the new name."""
-        warn_of_old_name(f"{owner.__name__}.{self.old}", f"{owner.__name__}.{self.new}")
+        warn_of_old_name(f"{self.owner}.{self.old}", f"{self.owner}.{self.new}")
         return getattr(owner if instance is None else instance, self.new)
 
 
@@ -76,7 +76,7 @@ def with_old_names(named: _Named) -> _Named:
     for name, new in RENAMED.items():
         owner, _, old = name.partition(".")
         if owner == named.__name__ and "(" not in old:
-            setattr(named, old, Alias(old, new))
+            setattr(named, old, Alias(owner, old, new))
     if any(name.startswith(f"{named.__name__}(") for name in RENAMED):
         named.__init__ = _accepting(named.__init__, named.__name__)  # type: ignore[misc]
     return named

@@ -103,6 +103,7 @@ __all__ = ["ANY", "FILES", "LINES", "import_circles", "lines_of_code", "measures
 #: interrupt, stiffness, types: a run starts without SciPy's linear algebra; options have a type
 #: dynamics: time of motions over phases is stated and shorter
 #: study: hands of gears in meshes and stages
+#: dynamics: motions whose disturbances grow are warned of
 LINES: dict[str, int] = {
     "__init__": 105,
     "__main__": 3,
@@ -118,7 +119,7 @@ LINES: dict[str, int] = {
     "contact": 417,
     "cookbook": 102,
     "drawing": 196,
-    "dynamics": 15658,
+    "dynamics": 15689,
     "ehl": 9590,
     "errors": 224,
     "exchange": 2165,

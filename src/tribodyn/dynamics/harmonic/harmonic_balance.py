@@ -60,6 +60,8 @@ _ADDED = (0.3, 0.1, 0.03, 0.01, 0.003)
 _TRIES, _MARCHED, _LONG = 12, (3, 6, 12, 24), (1, 2)
 #: Rounding of two equal multipliers, which is the root of that of one.
 _NEUTRAL = 1e-3
+#: Steps per cycle of the fastest mesh with which the growth of disturbances is looked at.
+_PER_CYCLE = 64
 #: Natural logarithm of the decay in a period after which nothing is left of a start.
 _FORGOTTEN = 10.0
 
@@ -173,7 +175,8 @@ def harmonic_balance(
     periods in modal coordinates before the next attempt. ``error`` is the size of the last step,
     ``step_error`` the change of the motion when the steps are halved, or an estimate of it where
     ``steps`` is chosen automatically. With dead zones the start decides which of several motions
-    is found, and without ``stability`` it may be an unstable one.
+    is found. One whose disturbances grow by more than 0.1 % a period, which the linearized contacts
+    show, is warned of; ``stability`` computes the multipliers.
     A body that nothing loads starts in the middle between its flanks and floats there without
     force, if they leave it room.
 
@@ -256,6 +259,11 @@ def _on_clock(
     grid = prepared.grid(max(fine, min(prepared.grids)))
     assessed = stability and solution.error <= tolerance
     multipliers = _multipliers(prepared, residual, solution) if assessed else np.zeros(0, complex)
+    if not assessed and solution.error <= tolerance and prepared.structure.modes is not None:
+        from tribodyn.dynamics.harmonic.tangent_march import TangentMarch
+
+        linear = TangentMarch(residual, solution.state, _PER_CYCLE * system.cycles)
+        _warn_of_growth(linear.leading_multiplier(), 1.0 + _NEUTRAL)
     error = max(solution.error, float(np.finfo(float).eps))
     facts = {"error": error, "step_error": step_error, "floquet_multipliers": multipliers}
     converged = bool(np.isfinite(error) and error <= tolerance)
@@ -279,14 +287,18 @@ def _multipliers(prepared: Prepared, residual: ClockResidual, solution: Solution
     multipliers = motion.multipliers(state, residual.frequency, torque)
     # A body that floats between its flanks keeps a disturbance, two multipliers of 1.
     limit = 1.0 if solution.state.held is None else 1.0 + _NEUTRAL
-    if np.abs(multipliers[:1]).max(initial=0.0) > limit:
+    _warn_of_growth(float(np.abs(multipliers[:1]).max(initial=0.0)), limit)
+    return multipliers
+
+
+def _warn_of_growth(multiplier: float, limit: float) -> None:
+    if multiplier > limit:
         warn(
             "unstable-orbit",
-            f"the motion is unstable: largest Floquet multiplier {np.abs(multipliers[0]):.6g}, "
-            "limit 1. Try another start, or simulate over time",
+            f"the motion is unstable: largest Floquet multiplier {multiplier:.6g}, limit 1. "
+            "Try another start, or simulate over time",
             stacklevel=3,
         )
-    return multipliers
 
 
 def _fft_length(steps: int) -> int:

@@ -22,15 +22,21 @@ if TYPE_CHECKING:
 
 #: Part of the start that is left when the motion is recorded.
 _LEFT = 1e-4
+#: Coordinates up to which all multipliers are computed.
+_DENSE = 24
 _OPTIONS: dict[str, Any] = {
     "nogil": True, "fastmath": {"contract", "nsz", "reassoc"}, "error_model": "numpy",
 }  # fmt: skip
 
 
 class TangentMarch:
-    """Integrate the linearized equations of a motion over one period of the clock."""
+    """Integrate the linearized equations of a motion over one period of the clock.
 
-    def __init__(self, residual: ClockResidual, state: State) -> None:
+    With ``fewest`` the stiffness and damping of the contacts are means over steps of which there
+    are at least as many.
+    """
+
+    def __init__(self, residual: ClockResidual, state: State, fewest: int | None = None) -> None:
         structure, self.rate = residual.structure, residual.rate
         assert structure.modes is not None
         values, right, left = structure.modes
@@ -38,6 +44,10 @@ class TangentMarch:
         values, into = values[chosen], left[chosen] @ structure.input
         output = structure.output @ (right[:, chosen] * np.where(values.imag > 0.0, 2.0, 1.0))
         steps = len(state.y)
+        tangents = _tangents(residual, state)
+        if fewest is not None:
+            steps = next(n for n in range(min(fewest, steps), steps + 1) if steps % n == 0)
+            tangents = tangents.reshape(steps, -1, *tangents.shape[1:]).mean(axis=1)
         h = 1.0 / (residual.frequency * steps)
         x = values * h
         decay = np.exp(x)
@@ -54,13 +64,37 @@ class TangentMarch:
         self._direct = np.ascontiguousarray((signals @ after).real)
         settling = math.log(1.0 / _LEFT) / max(structure.decay, 1e-300)
         self._lead = int(min(settling / h, steps))
-        self._tangents = _tangents(residual, state)
+        self._tangents = tangents
 
     def __call__(self, motion: Array) -> Array:
         """Motion whose product with the derivative of the residual is nearly this one."""
         right = np.concatenate((motion, self.rate(motion)), axis=1)
         parts = self._decay, self._output, self._push, self._direct, self._tangents
-        return np.asarray(motion + march_tangent(*parts, right, self._lead))
+        rest = np.zeros(self._decay.size)
+        return np.asarray(motion + march_tangent(*parts, right, rest, self._lead))
+
+    def leading_multiplier(self) -> float:
+        """Size of the largest Floquet multiplier, to the second order of the step."""
+        from scipy.sparse.linalg import ArpackNoConvergence, LinearOperator, eigs
+
+        parts = self._decay, self._output, self._push, self._direct, self._tangents
+        size, nothing = self._decay.size, np.zeros((len(self._tangents), self._tangents.shape[2]))
+
+        def period(state: Array) -> Array:
+            end = np.array(state, dtype=float).ravel()
+            march_tangent(*parts, nothing, end, 0)
+            return end
+
+        if size <= _DENSE:
+            values = np.linalg.eigvals(np.stack([period(row) for row in np.eye(size)], axis=1))
+        else:
+            operator = LinearOperator((size, size), matvec=period, dtype=float)
+            start = np.random.default_rng(0).standard_normal(size)
+            try:
+                values = eigs(operator, 1, v0=start, tol=1e-4, return_eigenvectors=False)
+            except ArpackNoConvergence as error:
+                values = np.append(error.eigenvalues, 1.0)
+        return float(np.abs(values).max(initial=0.0))
 
 
 def _tangents(residual: ClockResidual, state: State) -> Array:
@@ -80,13 +114,13 @@ def _build(digest: str) -> Any:
     @cached_njit(**_OPTIONS)
     def march_tangent(
         decay: Array, output: Array, push: Array, direct: Array, tangents: Array, right: Array,
-        lead: int,
+        z: Array, lead: int,
     ) -> Array:  # fmt: skip
-        """Motion at the contacts (steps, r), after ``lead`` samples before the first."""
+        """Motion at the contacts (steps, r), after ``lead`` samples; modes ``z`` go to the end."""
         digest  # noqa: B018  # a closure variable, hence part of the key of the disk cache
         steps, wide = right.shape
         m, s, r = decay.shape[1], push.shape[0], wide // 2
-        motion, z = np.zeros((steps, r)), np.zeros(2 * m)
+        motion = np.zeros((steps, r))
         signal, force, a = np.empty(wide), np.empty(s), np.empty((s, s))
         for step in range(steps - lead, 2 * steps):
             row = step % steps
