@@ -257,13 +257,9 @@ def _on_clock(
     progress.finish()
     fine = count if steps is not None else min(samples // (2 * system.cycles), _RECORDED)
     grid = prepared.grid(max(fine, min(prepared.grids)))
-    assessed = stability and solution.error <= tolerance
-    multipliers = _multipliers(prepared, residual, solution) if assessed else np.zeros(0, complex)
-    if not assessed and solution.error <= tolerance and prepared.structure.modes is not None:
-        from tribodyn.dynamics.harmonic.tangent_march import TangentMarch
-
-        linear = TangentMarch(residual, solution.state, _PER_CYCLE * system.cycles)
-        _warn_of_growth(linear.leading_multiplier(), 1.0 + _NEUTRAL)
+    multipliers = np.zeros(0, complex)
+    if solution.error <= tolerance and prepared.structure.modes is not None:
+        multipliers = _assessed(prepared, residual, solution, exactly=stability)
     error = max(solution.error, float(np.finfo(float).eps))
     facts = {"error": error, "step_error": step_error, "floquet_multipliers": multipliers}
     converged = bool(np.isfinite(error) and error <= tolerance)
@@ -277,9 +273,15 @@ def _on_clock(
     return _marched(prepared, residual, response, **facts)
 
 
-def _multipliers(prepared: Prepared, residual: ClockResidual, solution: Solution) -> ComplexArray:
-    """Floquet multipliers, with a warning of an unstable motion."""
-    if prepared.structure.modes is None:
+def _assessed(
+    prepared: Prepared, residual: ClockResidual, solution: Solution, *, exactly: bool
+) -> ComplexArray:
+    """Floquet multipliers, if they are asked for; warns of a motion that is unstable."""
+    if not exactly:
+        from tribodyn.dynamics.harmonic.tangent_march import TangentMarch
+
+        linear = TangentMarch(residual, solution.state, _PER_CYCLE * prepared.system.cycles)
+        _warn_of_growth(linear.leading_multiplier(), 1.0 + _NEUTRAL)
         return np.zeros(0, dtype=complex)
     grid = _marching_grid(prepared, residual)
     state, torque = starting_state(residual, solution.state)

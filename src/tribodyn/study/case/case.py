@@ -110,9 +110,9 @@ class Case(CaseTables):
 
         def __init__(self, source: Source | None = None, /, **data: Any) -> None: ...
 
-    def __init_subclass__(cls, case: bool = False) -> None:
+    def __init_subclass__(cls) -> None:
         """Register a kind of case, whose members show on this class too."""
-        super().__init_subclass__(case=case)
+        super().__init_subclass__()
         Case.kinds[:0] = [cls]
         Case.kinds.sort(key=lambda kind: not kind.groups)
         names = (*vars(cls), *cls.fields)

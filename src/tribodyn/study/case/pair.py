@@ -27,7 +27,7 @@ from tribodyn.study.case.provenance import (
     without_records,
 )
 from tribodyn.study.case.rating_tables import Materials, RatingTable
-from tribodyn.study.case.section import choices, flat, section_at, signature_of, table
+from tribodyn.study.case.section import Section, choices, flat, section_at, signature_of, table
 from tribodyn.study.case.sections import (
     Dynamics,
     Film,
@@ -58,7 +58,7 @@ if TYPE_CHECKING:
     from tribodyn.mesh.table_file import TableFile
 
 
-class PairCase(Case, case=True):
+class PairCase(Case):
     """One gear pair under one load, or several: frozen, checked, in SI.
 
     Created by :func:`tribodyn.load_case`, or from nested keywords: a float is SI, text and pint
@@ -325,6 +325,7 @@ PairCase.__signature__ = signature_of(PairCase)
 PairCase.root = PairCase
 #: What help and signature display of the class of every kind.
 Case.fields, Case.__signature__ = PairCase.fields, PairCase.__signature__
+Section.case_class = Case
 #: Attributes derived from the tables, which are not pickled.
 _DERIVED = {
     "_shared",

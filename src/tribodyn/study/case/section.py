@@ -64,10 +64,8 @@ class Section:
     needed: ClassVar[tuple[str, ...]] = ()  #: keys that a remedy lists; empty: the required keys
     case_class: ClassVar[type[Section]]  #: the table that contains all others
 
-    def __init_subclass__(cls, case: bool = False) -> None:
+    def __init_subclass__(cls) -> None:
         """Collect the declared keys in their order."""
-        if case:
-            Section.case_class = cls
         declared = {k: v for k, v in vars(cls).items() if isinstance(v, Option | Table)}
         cls.fields = {**cls.fields, **declared}
         chosen = [k for k, v in declared.items() if isinstance(getattr(v, "names", None), Models)]
