@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import warnings
 from typing import Any
 
 import numpy as np
@@ -47,11 +48,22 @@ def felt(system: System, pins: list[RadialClearance], position: Any) -> Any:
     return position @ np.concatenate(rows).T
 
 
+def multiplier(load: float, supports: int) -> tuple[Any, float]:
+    """Motion on one clock, and the Floquet multiplier that is warned of; 0 without a warning."""
+    with warnings.catch_warnings(record=True) as caught:
+        warnings.simplefilter("always")
+        motion = clearance_motion(*two_stages(ON_CLOCK, load, supports), 300.0, steps=400)
+    grown = [str(each.message) for each in caught if "unstable-orbit" in str(each.message)]
+    assert len(caught) == len(grown) <= 1
+    return motion.fine, float(grown[0].split("multiplier ")[1].split(",")[0]) if grown else 0.0
+
+
 @pytest.mark.parametrize(("load", "supports"), [(3000.0, 1), (3000.0, 2), (300.0, 1)])
 def test_two_phases_are_one_clock(load: float, supports: int) -> None:
     system, pins = two_stages(OVER_PHASES, load, supports)
     motion = clearance_motion(system, pins, (900.0, 600.0))
-    clock = clearance_motion(*two_stages(ON_CLOCK, load, supports), 300.0, steps=400).fine
+    clock, grows = multiplier(load, supports)
+    assert (grows > 1.0) == (load < 1000.0)
     at = motion.at(clock.time)
     expected = felt(system, pins, clock.position)
     difference = np.abs(felt(system, pins, at.position) - expected).max()
@@ -61,18 +73,9 @@ def test_two_phases_are_one_clock(load: float, supports: int) -> None:
     np.testing.assert_allclose(force, pushed, atol=2e-5 * pushed.max())
 
 
-@pytest.mark.slow
-@pytest.mark.parametrize(("load", "supports"), [(3000.0, 2), (300.0, 1)])
-def test_a_march_that_starts_on_the_motion_stays_on_it(load: float, supports: int) -> None:
-    system, pins = two_stages(OVER_PHASES, load, supports)
-    frequencies = np.array([900.0, 900.0 / np.sqrt(2.3)])
-    motion = clearance_motion(system, pins, frequencies)
-    times = np.linspace(0.0, 40.0 / 900.0, 161)
-    at, inverse, free = (
-        motion.at(times),
-        np.linalg.inv(system.mass),
-        plain_slope(system, frequencies),
-    )
+def slope_of(system: System, pins: list[RadialClearance], frequencies: Any) -> Any:
+    """Rates of the motion and its velocity with supports that have their exact law."""
+    inverse, free = np.linalg.inv(system.mass), plain_slope(system, frequencies)
 
     def slope(time: float, state: Any) -> Any:
         rates = free(time, state)
@@ -81,6 +84,32 @@ def test_a_march_that_starts_on_the_motion_stays_on_it(load: float, supports: in
             rates[8:] -= inverse @ held
         return rates
 
+    return slope
+
+
+def test_a_disturbance_in_a_loose_bearing_grows_as_its_warning_says() -> None:
+    system, pins = two_stages(OVER_PHASES, 300.0)
+    frequencies = np.array([900.0, 600.0])
+    motion = clearance_motion(system, pins, frequencies)
+    times = np.arange(9) / 300.0
+    at = motion.at(times)
+    start = np.concatenate((at.position[0], at.velocity[0]))
+    start[:8] += 1e-9 * np.random.default_rng(1).standard_normal(8)
+    options = {"method": "DOP853", "rtol": 1e-10, "atol": 1e-16, "t_eval": times}
+    slope = slope_of(system, pins, frequencies)
+    path = solve_ivp(slope, (0.0, times[-1]), start, **options).y[:8].T
+    away = np.linalg.norm(felt(system, pins, path) - felt(system, pins, at.position), axis=1)
+    assert away[-1] / away[-2] == pytest.approx(multiplier(300.0, 1)[1], rel=2e-3)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(("load", "supports"), [(3000.0, 2), (300.0, 1)])
+def test_a_march_that_starts_on_the_motion_stays_on_it(load: float, supports: int) -> None:
+    system, pins = two_stages(OVER_PHASES, load, supports)
+    frequencies = np.array([900.0, 900.0 / np.sqrt(2.3)])
+    motion = clearance_motion(system, pins, frequencies)
+    times = np.linspace(0.0, 40.0 / 900.0, 161)
+    at, slope = motion.at(times), slope_of(system, pins, frequencies)
     begin = np.concatenate((at.position[0], at.velocity[0]))
     marched = solve_ivp(slope, times[[0, -1]], begin, "DOP853", times, rtol=1e-9, atol=1e-14)
     moved = felt(system, pins, at.position)

@@ -278,10 +278,14 @@ def test_a_shaft_that_carries_nothing_changes_nothing_at_rest(seed: int) -> None
 
 @pytest.mark.slow
 @pytest.mark.parametrize(
-    ("seed", "change"), [(5, 0.0), (5, 1e-12), (5, 1e-8), (5, 1e-2), (0, 1e-9), (1, 1e-6), (2, 0.0)]
+    ("seed", "change", "close"),
+    [
+        *((5, change, 2e-3) for change in (0.0, 1e-12, 1e-8, 1e-2)),
+        *((0, 1e-9, 4e-3), (1, 1e-6, 2e-3), (2, 0.0, 2e-3)),
+    ],
 )
 def test_a_shaft_that_carries_nothing_changes_the_motion_by_its_modes_alone(
-    seed: int, change: float, tmp_path: Path
+    seed: int, change: float, close: float, tmp_path: Path
 ) -> None:
     """Means are those of the torques; modal damping, and so peaks, know the idle shaft a little."""
     tables = drawn(seed)
@@ -297,7 +301,7 @@ def test_a_shaft_that_carries_nothing_changes_the_motion_by_its_modes_alone(
         mean = alone[f"{key}mean_mesh_force"]
         assert joined[f"{key}mean_mesh_force"] == pytest.approx(mean, rel=1e-4)
         for name in ("peak_mesh_force", "minimum_mesh_force", "alternating_rms_mesh_force"):
-            assert joined[key + name] == pytest.approx(alone[key + name], abs=1e-2 * mean), name
+            assert joined[key + name] == pytest.approx(alone[key + name], abs=close * mean), name
 
 
 def in_a_machine(stage: Any) -> MachineCase:

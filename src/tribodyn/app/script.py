@@ -56,12 +56,12 @@ def script_of(session: TabSession) -> str:
 
 def _case_lines(session: TabSession, before: Edited | None, now: Edited) -> Iterator[str]:
     """Lines that lead from one case to another."""
-    known = 0
+    written = 0
     if before is not None and now.follows(before):
-        known = len(before.changes)
+        written = len(before.changes)
     else:
         yield f"case = {_opening(session, now)}"
-    for changes in now.changes[known:]:
+    for changes in now.changes[written:]:
         yield f"case = case.replace({_literal(changes, 20)})"
 
 

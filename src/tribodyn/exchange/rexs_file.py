@@ -396,8 +396,8 @@ def version_remark(file: RexsFile) -> str:
         "The file names no version of REXS"
     )  # fmt: skip
     listed = "; of ".join(lost) or "gears, shafts, bearings: none"
-    known = "is read by the names of attributes in versions 1.0 to 2.0.0"
-    return f"{version} and {known}; not read are, of {listed}"
+    reading = "is read by the names of attributes in versions 1.0 to 2.0.0"
+    return f"{version} and {reading}; not read are, of {listed}"
 
 
 def kinds(components: Iterable[Component]) -> dict[str, int]:

@@ -58,9 +58,9 @@ def _channel(data: RecordingData, path: str, wanted: tuple[str, str, str, str]) 
     """Samples of a column in SI, at evenly spaced times."""
     quantity, name, unit, si = wanted
     if name not in data.channels:
-        known = list(data.channels)
-        why = f"{Path(path).name} has {', '.join(known[:20])}"
-        remedy = did_you_mean(name, known, f"Write {quantity}_column")
+        columns = list(data.channels)
+        why = f"{Path(path).name} has {', '.join(columns[:20])}"
+        remedy = did_you_mean(name, columns, f"Write {quantity}_column")
         raise InputError(f"there is no column {name}", Argument(f"{quantity}_column"), why, remedy)
     if name in data.times:
         rate_of(data.times[name], path)  # refuses times that are not evenly spaced

@@ -277,8 +277,8 @@ class _Block:
         change = lengths(np.diff(states, axis=0))[:, 0]
         rate = float(np.max(change[1:] / np.maximum(change[:-1], 1e-300)))
         size = max(float(lengths(states[-1])[0]), float(self.least[0]))
-        near = rate < _FAST and change[-1] <= (1.0 - rate) * self.tolerance * size
-        return rate if near else 1.0
+        certified = rate < _FAST and change[-1] <= (1.0 - rate) * self.tolerance * size
+        return rate if certified else 1.0
 
     def _end_early(self, states: Array, balanced: bool) -> None:
         """End the only motion, which repeats after each cycle, unless the torque still changes."""

@@ -277,11 +277,11 @@ def _summarize(carrier: Carrier, growth: Array, divergence: Array, count: int) -
     if period:
         span = period / mesh_frequency
         repeated = list(carrier.last)[-period:]
-        values, share, known = floquet_growth(repeated, carrier.frame, carrier.braked)
+        values, share, separated = floquet_growth(repeated, carrier.frame, carrier.braked)
         averages, deviations = _averages(growth)
         values, errors = (
-            np.where(known, values / span, averages),
-            np.where(known, mismatch / span, deviations),
+            np.where(separated, values / span, averages),
+            np.where(separated, mismatch / span, deviations),
         )
         mean = float(divergence[-period:].mean())
     elif not np.nanmax(values) > _SURE * np.nan_to_num(errors[int(values.argmax())]):

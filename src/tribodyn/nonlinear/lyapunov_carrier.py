@@ -273,7 +273,7 @@ def floquet_growth(
         uppers.append(upper)
     turn = old.T @ frame
     gain = np.log(np.abs([np.diag(upper) for upper in uppers])).sum(axis=0)
-    growth, share, known = gain.copy(), np.zeros(len(turn)), np.ones(len(turn), dtype=bool)
+    growth, share, separated = gain.copy(), np.zeros(len(turn)), np.ones(len(turn), dtype=bool)
     for first, last in pairwise(edges_of(turn)):
         block, scale = np.eye(last - first), 0.0
         for upper in uppers:
@@ -283,10 +283,10 @@ def floquet_growth(
         values, vectors = np.linalg.eig(turn[first:last, first:last] @ block)
         order = np.argsort(-np.abs(values), kind="stable")
         share[first:last] = share_in(directions, old[:, first:last] @ vectors[:, order])
-        known[first:last] = np.ptp(gain[first:last]) <= 1.5 * _TOGETHER
-        if known[first]:
+        separated[first:last] = np.ptp(gain[first:last]) <= 1.5 * _TOGETHER
+        if separated[first]:
             growth[first:last] = np.log(np.abs(values[order])) + scale
-    return growth, share, known
+    return growth, share, separated
 
 
 def _pairwise(matrices: Array) -> Array:

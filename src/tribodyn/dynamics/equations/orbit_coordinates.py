@@ -295,15 +295,15 @@ def at_rest(compiled: Compiled) -> Rest:
     """Static equilibrium; a body that nothing loads is in the middle between its flanks."""
     nodes, position = compiled.nodes, static_start(compiled)
     lowest = lowest_of_each_law(nodes) & nodes.stiffness.any(axis=(0, 1))
-    floating, rest = has_gap(nodes) & lowest & _unloaded(compiled, position), position
+    floating, state = has_gap(nodes) & lowest & _unloaded(compiled, position), position
     while floating.any():
         middle = nodes._replace(gap=np.where(floating, 0.0, nodes.gap))
-        rest = static_start(replace(compiled, nodes=middle))
-        free = floating & _unloaded(replace(compiled, nodes=middle), rest)
+        state = static_start(replace(compiled, nodes=middle))
+        free = floating & _unloaded(replace(compiled, nodes=middle), state)
         if np.array_equal(free, floating):
             break
-        floating, rest = free, position
-    return Rest(rest[: compiled.system.size], floating)
+        floating, state = free, position
+    return Rest(state[: compiled.system.size], floating)
 
 
 def _unloaded(compiled: Compiled, state: Array) -> Mask:

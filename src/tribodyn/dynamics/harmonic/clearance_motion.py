@@ -12,7 +12,14 @@ from tribodyn.dynamics.harmonic.harmonic_balance import TOLERANCE, harmonic_bala
 from tribodyn.dynamics.harmonic.phase_balance import phase_balance
 from tribodyn.dynamics.harmonic.radial_clearance import REMEDY, RadialClearance
 from tribodyn.dynamics.time.response import Response
-from tribodyn.errors import Argument, ComputationError, InputError
+from tribodyn.errors import (
+    Argument,
+    ComputationError,
+    InputError,
+    ModelWarning,
+    collected,
+    warn,
+)
 from tribodyn.types import Array
 
 #: Change of a displacement over its size that ends the search, and the most passes of it; steps by
@@ -95,9 +102,10 @@ def clearance_motion(
                 else rigid.linearized(lambda phase: np.zeros((np.size(phase), 2)))
             )
         try:
-            response = harmonic_balance(
-                replace(system, contacts=contacts), frequency, steps=steps, start=response
-            )
+            with collected() as remarks:  # those about the last pass hold
+                response = harmonic_balance(
+                    replace(system, contacts=contacts), frequency, steps=steps, start=response
+                )
         except ComputationError as error:
             what = f"no motion in the clearances of {len(supports)} supports is found"
             why = f"At its last approximation {error.problems[0].what}"
@@ -107,20 +115,26 @@ def clearance_motion(
         if not paths:  # the load that pushes the point beyond its clearance
             paths = [_pushed(d, s.clearance) for d, s in zip(moved, supports, strict=True)]
             if not any(support.clearance for support in supports):
-                return response
+                return _with(remarks, response)
             continue
         change = max(
             float(np.abs(new - old).max()) / (support.clearance + float(np.abs(new).max()))
             for new, old, support in zip(moved, paths, supports, strict=True)
         )
         if change <= _SAME:
-            return response
+            return _with(remarks, response)
         share = max(0.5 * share, 0.05) if change > last else min(1.0, 2.0 * share)
         last = change
         paths = [old + share * (new - old) for new, old in zip(moved, paths, strict=True)]
     what = f"the motion in the clearances of {len(supports)} supports does not settle"
     why = f"After {_PASSES} passes the displacements change by {change:.2g} of their size"
     raise ComputationError(what, "clearance_motion", why, REMEDY)
+
+
+def _with(remarks: Sequence[ModelWarning], response: Response) -> Response:
+    for each in remarks:
+        warn(each.code, each.message, stacklevel=3)
+    return response
 
 
 def _pushed(displacement: Array, clearance: float) -> Array:

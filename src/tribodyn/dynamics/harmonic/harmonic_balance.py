@@ -73,7 +73,7 @@ class Prepared:
     system: System
     structure: ClosedStructure
     closed: Mask  #: springs that are closed at rest (contacts, m)
-    rest: Rest  #: static equilibrium
+    equilibrium: Rest  #: static equilibrium
     grids: dict[int, Compiled]
     samples: dict[int, ContactEquations] = field(default_factory=dict)
 
@@ -88,7 +88,7 @@ class Prepared:
                 else finer.coarser()
             )
         return ClockResidual(
-            self.structure, self.samples[steps], frequency, self.closed, self.rest.floating
+            self.structure, self.samples[steps], frequency, self.closed, self.equilibrium.floating
         )
 
     def grid(self, steps: int) -> Compiled:
@@ -108,9 +108,11 @@ def prepare(system: System, frequency: float, steps: int = 0) -> Prepared:
     refuse_disconnected(compiled)
     coordinates = structure_coordinates(compiled)
     warn_of_unbalanced(compiled, coordinates)
-    rest = at_rest(compiled)
-    structure, closed = close_contacts(compiled, np.zeros((0, system.size)), rest, coordinates)
-    prepared = Prepared(system, structure, closed, rest, {steps: compiled})
+    equilibrium = at_rest(compiled)
+    structure, closed = close_contacts(
+        compiled, np.zeros((0, system.size)), equilibrium, coordinates
+    )
+    prepared = Prepared(system, structure, closed, equilibrium, {steps: compiled})
     _cache[:] = [(weakref.ref(system), prepared), *_cache[:3]]
     return prepared
 
@@ -288,7 +290,7 @@ def _assessed(
     motion = ModalMotion(grid, prepared.structure)
     multipliers = motion.multipliers(state, residual.frequency, torque)
     # A body that floats between its flanks keeps a disturbance, two multipliers of 1.
-    limit = 1.0 if solution.state.held is None else 1.0 + _NEUTRAL
+    limit = 1.0 if solution.state.mean_stiffness is None else 1.0 + _NEUTRAL
     _warn_of_growth(float(np.abs(multipliers[:1]).max(initial=0.0)), limit)
     return multipliers
 
@@ -327,7 +329,9 @@ def _start(
             axis=1,
         )
     position = (
-        prepared.rest.position if start is None else read_start(prepared.system, start)[:size]
+        prepared.equilibrium.position
+        if start is None
+        else read_start(prepared.system, start)[:size]
     )
     y = np.tile(position @ into, (contacts.steps, 1))
     if start is not None:

@@ -53,7 +53,9 @@ class MeshwiseInverse:
                 part.mean(axis=others) - mean for part, mean in zip(parts, self.mean, strict=True)
             ]
             if np.abs(varying).max() > _SMALL * np.abs(stiffness).max(initial=0.0):
-                self.phases.append(_OnePhase(residual, axis, self.mean, varying, state.held))
+                self.phases.append(
+                    _OnePhase(residual, axis, self.mean, varying, state.mean_stiffness)
+                )
 
     def __call__(self, right: Array) -> Array:
         """Product with a right-hand side (p, r)."""
@@ -102,7 +104,7 @@ class _OnePhase:
 
     def __init__(
         self, residual: OnGrid, axis: int, mean: list[Array], varying: list[Array],
-        held: Array | None,
+        mean_stiffness: Array | None,
     ) -> None:  # fmt: skip
         grid = residual.grid
         self.shape, self.axis = grid.shape, axis
@@ -117,8 +119,8 @@ class _OnePhase:
         receptances[unpaired] = 0.0
         rate = np.where(unpaired, 0.0, 1j * omega)
         mean_gain = receptances @ (mean[0] + rate[..., None, None] * mean[1])
-        if held is not None:
-            mean_gain[0, 0] -= receptances[0, 0] @ held
+        if mean_stiffness is not None:
+            mean_gain[0, 0] -= receptances[0, 0] @ mean_stiffness
         self.base = np.linalg.inv(np.eye(mean_gain.shape[-1]) - mean_gain)
         varying = [varying[0], varying[1] * np.abs(omega).max()]
         varying = [part.reshape(self.teeth, -1, *part.shape[1:]).mean(axis=0) for part in varying]

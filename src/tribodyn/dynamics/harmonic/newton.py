@@ -34,7 +34,8 @@ class State(NamedTuple):
     force: Array  #: components of the force on the closed structure (steps, s)
     residual: Array  #: (steps, r)
     cell: Cell | None = None  #: where forces are integrated between their breaks
-    held: Array | None = None  #: stiffness for the mean of a change, of what nothing holds (s, r)
+    #: Stiffness for the mean of a change, of what nothing holds (s, r).
+    mean_stiffness: Array | None = None
     parts: tuple[State, ...] = ()  #: of contacts on grids of their own
 
     @property
@@ -78,8 +79,8 @@ def force_change(part: Any, state: State) -> Callable[[Array], Array]:
             force = cell.pieces.gather(force)
         if spread is not None:
             force += spread @ np.einsum("bsr,br->bs", breaks.tangent, gather @ motion)
-        if state.held is not None:
-            force -= state.held @ motion.mean(axis=0)
+        if state.mean_stiffness is not None:
+            force -= state.mean_stiffness @ motion.mean(axis=0)
         return np.asarray(force)
 
     return change

@@ -132,10 +132,10 @@ class _Search:
         means = rows.means
         refuse_disconnected(means)
         orbit_coordinates(means, float(frequency.max()))  # warns of forces that do not balance
-        rest = at_rest(means)
-        structure, _ = close_contacts(means, sampled_forces(system), rest)
-        parts = parts_of(rows, structure, rest)
-        return cls(rows, parts[0].structure, parts, rest.position)
+        equilibrium = at_rest(means)
+        structure, _ = close_contacts(means, sampled_forces(system), equilibrium)
+        parts = parts_of(rows, structure, equilibrium)
+        return cls(rows, parts[0].structure, parts, equilibrium.position)
 
     def residual(self, points: Points, prior: PhaseResidual | None = None) -> PhaseResidual:
         """Residual on grids with so many points over each phase."""
@@ -243,12 +243,12 @@ def _supported(
     # Springs without clearance first, whose displacements have the directions of the loads.
     for laws in ([replace(each, clearance=0.0) for each in supports], supports):
         pairs = [about_load(each, load, cycles) for each, load in zip(laws, loads, strict=True)]
-        springs = [spring for _, both in pairs for spring in both]
-        held = replace(system, contacts=[*system.contacts, *springs])
+        springs = [spring for _, two in pairs for spring in two]
+        supported = replace(system, contacts=[*system.contacts, *springs])
         if laws is not supports:
-            position = at_rest(PhaseRows.of(held, frequency).means).position
+            position = at_rest(PhaseRows.of(supported, frequency).means).position
             loads = np.array([each.displacement(position) for each in supports])
-    return held, [law for law, _ in pairs]
+    return supported, [law for law, _ in pairs]
 
 
 def phase_balance(
@@ -266,7 +266,7 @@ def phase_balance(
     _refuse_large(search, points)
     points, residual, solution = search.first(points, start, tolerance, steps is None)
     step_error, limit = float("nan"), tolerance
-    kept = points, residual, solution, step_error
+    converged_motion = points, residual, solution, step_error
     smooth = all(part.cell is None for part in solution.state.each)
     poor, before = np.zeros(np.shape(points), dtype=bool), np.zeros(np.shape(points))
     while solution.error <= limit:
@@ -275,7 +275,7 @@ def phase_balance(
         smooth &= bool(errors[poor].sum() <= _FALLING * before[poor].sum())
         step_error = float(errors.sum())
         if solution.error <= tolerance:
-            kept = points, residual, solution, step_error
+            converged_motion = points, residual, solution, step_error
         poor, before = search.poor(points, errors, smooth), errors
         if steps is not None or not poor.any():
             break
@@ -283,7 +283,7 @@ def phase_balance(
         finer = search.residual(points, residual)
         start_y = residual.refined(solution.state.y, finer)
         residual, solution = finer, newton(finer, start_y, 0.01 * tolerance, patience=_PATIENCE)
-    points, residual, solution, step_error = kept
+    points, residual, solution, step_error = converged_motion
     converged = bool(solution.error <= tolerance)
     error = max(solution.error, float(np.finfo(float).eps))
     facts = {"error": error, "step_error": step_error, "converged": converged}

@@ -69,7 +69,7 @@ class Part:
         return OnGrid.of(self, grid, contacts, loaded, self.members, self.closed, self.floating)
 
 
-def parts_of(rows: PhaseRows, structure: ClosedStructure, rest: Rest) -> list[Part]:
+def parts_of(rows: PhaseRows, structure: ClosedStructure, equilibrium: Rest) -> list[Part]:
     """Divide a system into the contacts that follow the same phases, and close them all."""
     groups: dict[tuple[frozenset[int], int], list[Mesh]] = {}
     for mesh in rows.meshes:
@@ -78,7 +78,7 @@ def parts_of(rows: PhaseRows, structure: ClosedStructure, rest: Rest) -> list[Pa
     for key, meshes in groups.items():
         some, members = rows.some(meshes), np.sort(np.concatenate([m.contacts for m in meshes]))
         none = np.zeros((0, rows.system.size))
-        resting = rest._replace(floating=rest.floating[members])
+        resting = equilibrium._replace(floating=equilibrium.floating[members])
         law, closed = close_contacts(some.means, none, resting, structure.coordinates)
         means = law.along, law.push, law.contact_stiffness, law.contact_damping
         parts.append(Part(some, members, *key, structure, *means, closed, resting.floating))
@@ -164,20 +164,23 @@ class PhaseResidual(Residual):
         # Each part feels the forces of those before it, which the derivative takes over.
         inverses, changes = self.inverses_at(state), self.changes(state)
 
-        def both(right: Array) -> tuple[list[Array], list[Array]]:
+        def inverted(right: Array) -> tuple[list[Array], list[Array]]:
             lines: list[ComplexArray | None] = [None] * len(self.parts)
-            motions, rest = [], []
+            motions, products = [], []
             for number, (part, piece) in enumerate(zip(self.parts, self.split(right), strict=True)):
                 felt = self.response(number, lines) if number else np.zeros(1)
                 motions.append(inverses[number](piece + felt))
                 lines[number] = part.grid.spectrum(changes[number](motions[-1]))
-                rest.append(motions[-1] - felt)
-            for number, left in enumerate(rest):
+                products.append(motions[-1] - felt)
+            for number, left in enumerate(products):
                 left -= self.response(number, lines)
                 lines[number] = None
-            return motions, rest
+            return motions, products
 
-        return lambda right: self.joined(both(right)[1]), lambda right: self.joined(both(right)[0])
+        return (
+            lambda right: self.joined(inverted(right)[1]),
+            lambda right: self.joined(inverted(right)[0]),
+        )
 
     def correction(self, state: State, accuracy: float = LINEAR) -> tuple[Array, int]:
         """Newton step of a motion, and the number of products that it took."""

@@ -90,8 +90,8 @@ class Mesh:
         """Entries at the different mesh phases of points, and the row of each."""
         phase, rate = turned
         # Phases of different rates are all different, and mostly those along a line.
-        few = len(phase) <= _CACHED or len(_different(phase[:_CACHED])[0]) < _CACHED
-        if np.ndim(rate) or not few:
+        repeated = len(phase) <= _CACHED or len(_different(phase[:_CACHED])[0]) < _CACHED
+        if np.ndim(rate) or not repeated:
             return self.nodes(_rounded(phase), rate, before), slice(None)
         different, rows = _different(phase)
         key = different.tobytes(), rate, before
@@ -200,10 +200,13 @@ class PhaseRows:
         if not self.supports:
             return forces(self.system, nodes, 1.0, q[:, None], v[:, None], extra=extra)
         moved, springs = compression(nodes, q[:, None])[:, 0, first:], nodes.stiffness[0, 0, first:]
-        held, rows = clearance_forces(self.supports, moved)[0], nodes.direction[0, 0, first:]
-        further = extra + (moved * springs - held) @ rows
+        bearing_force, rows = (
+            clearance_forces(self.supports, moved)[0],
+            nodes.direction[0, 0, first:],
+        )
+        further = extra + (moved * springs - bearing_force) @ rows
         motion = forces(self.system, nodes, 1.0, q[:, None], v[:, None], extra=further[:, None])
-        motion.contact[:, 0, first:] = held
+        motion.contact[:, 0, first:] = bearing_force
         return motion
 
     def projected(

@@ -64,9 +64,9 @@ class OnGrid(NamedTuple):
         force = self.integral(law.force, cell) + y @ means[0].T
         force += rate @ means[1].T
         breaks.scatter(force, breaks.correction)
-        return State(y, rate, law, breaks, force, y, cell, self._held(law))
+        return State(y, rate, law, breaks, force, y, cell, self._mean_stiffness(law))
 
-    def _held(self, law: Law) -> Array | None:
+    def _mean_stiffness(self, law: Law) -> Array | None:
         """Stiffness (s, r) that holds the mean place of bodies which nothing holds in a motion."""
         open_throughout = self.floating & (law.side == 0.0).all(axis=0)
         if not open_throughout.any():

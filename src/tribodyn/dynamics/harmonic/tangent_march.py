@@ -70,8 +70,8 @@ class TangentMarch:
         """Motion whose product with the derivative of the residual is nearly this one."""
         right = np.concatenate((motion, self.rate(motion)), axis=1)
         parts = self._decay, self._output, self._push, self._direct, self._tangents
-        rest = np.zeros(self._decay.size)
-        return np.asarray(motion + march_tangent(*parts, right, rest, self._lead))
+        start = np.zeros(self._decay.size)
+        return np.asarray(motion + march_tangent(*parts, right, start, self._lead))
 
     def leading_multiplier(self) -> float:
         """Size of the largest Floquet multiplier, to the second order of the step."""

@@ -283,7 +283,7 @@ def _touch_factor(
 def close_contacts(
     compiled: Compiled,
     extra: Array,
-    rest: Rest | None = None,
+    equilibrium: Rest | None = None,
     coordinates: OrbitCoordinates | None = None,
 ) -> tuple[ClosedStructure, Mask]:
     """Structure with closed contacts, and those closed at rest; ``extra`` (m, n) forces act too."""
@@ -296,7 +296,7 @@ def close_contacts(
         pushes.append(np.asarray(system.balance)[None])
     along = _basis([nodes.direction, nodes.direction_slope], inverse)
     push = _basis(pushes, inverse)
-    still, floating = rest or at_rest(compiled)
+    still, floating = equilibrium or at_rest(compiled)
     stiffness, gap = springs(nodes)
     pressed = compression(nodes, still)[..., None] - gap
     closed = np.einsum("rs,rsjm->jm", nodes.weight, pressed) > 0.0

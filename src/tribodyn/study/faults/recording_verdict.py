@@ -100,8 +100,8 @@ class RecordingVerdict(Record):
     @property
     def statements(self) -> list[str]:
         """The verdict in sentences: severity, its trend, and each finding with its check."""
-        known = bool(np.isfinite(self.speed_ratio)) or not self.findings
-        unknown = [] if known else ["Speed: not known; that of the lines is taken."]
+        has_speed = bool(np.isfinite(self.speed_ratio)) or not self.findings
+        unknown = [] if has_speed else ["Speed: not known; that of the lines is taken."]
         return [*self._severity(), *self._trend(), *unknown, *map(_sentence, self.findings)]
 
     def _severity(self) -> Iterator[str]:
@@ -272,9 +272,9 @@ def _findings(
             carrier = carriers[part] * scales[-1]
             evidence = _sidebands(plain[-1], carrier, carrier - now)
         elif kind in ("f", "GMF"):
-            whole = bands[lowest if now < _BAND[0] else _BAND[0]]
-            if whole > min(ends, default=0.0):
-                evidence = _dominance(plain[-1], now, whole, analyses[-1].unit)
+            band_level = bands[lowest if now < _BAND[0] else _BAND[0]]
+            if band_level > min(ends, default=0.0):
+                evidence = _dominance(plain[-1], now, band_level, analyses[-1].unit)
         if evidence:
             history = tuple(
                 _line(each, frequency * scale, _EXACT).amplitude
@@ -344,11 +344,11 @@ def _speed_ratio(analysis: SignalAnalysis, lines: KinematicFrequencies) -> float
     if analysis.mesh_frequency is not None:
         ratios = analysis.mesh_frequency / np.array(meshes)
         return float(ratios[np.argmin(np.abs(np.log(ratios)))])
-    seen = []
+    measured = []
     for frequency in meshes:
         with suppress(InputError):  # a record that is too short, or sampled too slowly
-            seen.append(mesh_speed(analysis.signal, analysis.sample_rate, frequency).ratio)
-    ratios = np.array([ratio for ratio in seen if np.isfinite(ratio)])
+            measured.append(mesh_speed(analysis.signal, analysis.sample_rate, frequency).ratio)
+    ratios = np.array([ratio for ratio in measured if np.isfinite(ratio)])
     if not ratios.size:
         return float("nan")
     return float(ratios[np.argmin(np.abs(ratios[:, None] - ratios).sum(axis=1))])

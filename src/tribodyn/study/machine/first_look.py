@@ -134,8 +134,8 @@ def warn_of_gears(case: MachineCase) -> None:
     for name, pair, under in computed_pairs(case):
         names = dict(zip(("pinion", "wheel"), under.names, strict=True))
         for each in (*case_cautions(pair, case), *teeth_cautions(pair)):
-            words = re.split(r"(?<![\w.])(pinion|wheel)\b", each.message)
-            text = "".join(names.get(word, word) for word in words)
+            pieces = re.split(r"(?<![\w.])(pinion|wheel)\b", each.message)
+            text = "".join(names.get(piece, piece) for piece in pieces)
             listed.setdefault(text, MeshWarning(name, "", ModelWarning(each.code, text)))
     warn_of_meshes(listed.values())
 

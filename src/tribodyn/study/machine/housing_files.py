@@ -154,10 +154,10 @@ class Superelement:
     @classmethod
     def of(cls, files: Mapping[str, Superelement]) -> Superelement:
         """One of files that have a matrix each."""
-        whole = cls()
-        whole.matrices = {name: file.matrices["matrix"] for name, file in files.items()}
-        whole.symmetric = {name: file.symmetric["matrix"] for name, file in files.items()}
-        return whole
+        joined = cls()
+        joined.matrices = {name: file.matrices["matrix"] for name, file in files.items()}
+        joined.symmetric = {name: file.symmetric["matrix"] for name, file in files.items()}
+        return joined
 
     def names(self) -> dict[str, str]:
         """Names of the stiffness, the mass and the damping in the file."""
@@ -349,7 +349,7 @@ def _matrix_output(lines: list[str]) -> Array | Superelement:
             f"line {wrong[0]}: each row has node, component, node, component and value, or row, "
             "column and value"
         )
-    whole = Superelement()
+    element = Superelement()
     entries: dict[tuple[Point, Point], float] = {}
     for number, (*labels, value) in listed:
         try:
@@ -360,14 +360,14 @@ def _matrix_output(lines: list[str]) -> Array | Superelement:
         if entries.setdefault(points, entry) != entry:
             raise ValueError(f"line {number}: the entry is there twice, with another value")
     # a triangle stands for both, a square has pairs
-    whole.symmetric["matrix"] = not any(r != c and (c, r) in entries for r, c in entries)
-    whole.matrices["matrix"] = entries
+    element.symmetric["matrix"] = not any(r != c and (c, r) in entries for r, c in entries)
+    element.matrices["matrix"] = entries
     if len(listed[0][1]) == 5:
-        return whole
+        return element
     size = max(row for points in entries for row, _ in points)
     if not 0 < size < _MOST or min(row for points in entries for row, _ in points) < 1:
         raise ValueError(f"its rows are not numbers from 1 to {_MOST - 1}")
-    return whole.matrix("matrix", [(row, 0) for row in range(1, size + 1)])
+    return element.matrix("matrix", [(row, 0) for row in range(1, size + 1)])
 
 
 def _harwell_boeing(lines: list[str]) -> Array:

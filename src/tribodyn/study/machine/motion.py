@@ -418,8 +418,8 @@ def machine_motion(
         count = max(len(mesh.contacts), 1)
         force[name] = fine.contact_force[:, first : first + count].sum(axis=1)
         compression[name] = fine.deflection[:, first]
-        apart = mesh.has_play & ((force[name] == 0.0) | (compression[name] < 0.0))
-        separated[name] = apart.astype(float)
+        separate = mesh.has_play & ((force[name] == 0.0) | (compression[name] < 0.0))
+        separated[name] = separate.astype(float)
         error[name] = fine.position @ mesh_rotation(structure, name)
         first += count
     bearings = {

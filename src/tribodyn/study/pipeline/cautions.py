@@ -109,14 +109,14 @@ def case_cautions(case: PairCase, machine: Case | None = None) -> tuple[ModelWar
     return case._once("cautions", tables, lambda: _of_gears(case, machine or case))
 
 
-def _of_gears(case: PairCase, whole: Case) -> tuple[ModelWarning, ...]:
+def _of_gears(case: PairCase, source_case: Case) -> tuple[ModelWarning, ...]:
     pair = case.gear_pair
     warnings = list(gear_warnings(case.gears, case.dynamics.backlash))
     for name, gear in pair.gears.items():
         warnings += [
             *_rim(case, name, gear),
-            *_mass(case, whole, name, gear),
-            *_other_gear(case, whole, name, gear),
+            *_mass(case, source_case, name, gear),
+            *_other_gear(case, source_case, name, gear),
         ]
     return (*warnings, *_starved(case))
 
@@ -155,9 +155,11 @@ def _solid(gear: SpurGear, density: float) -> MassProperties:
         return mass_properties(bare, density)
 
 
-def _other_gear(case: PairCase, whole: Case, name: str, gear: SpurGear) -> Iterator[ModelWarning]:
+def _other_gear(
+    case: PairCase, source_case: Case, name: str, gear: SpurGear
+) -> Iterator[ModelWarning]:
     """Warn of a given mass that was not adapted to the changed shape of its gear."""
-    changed, base = changed_keys(whole), whole.stated.base
+    changed, base = changed_keys(source_case), source_case.stated.base
     of_shape = {case.source.key(key) for key in body(name)}
     shape = [key for key in changed if key in of_shape]
     for key, unit, factor in _INERTIAS:
@@ -173,12 +175,12 @@ def _other_gear(case: PairCase, whole: Case, name: str, gear: SpurGear) -> Itera
         )
 
 
-def _mass(case: PairCase, whole: Case, name: str, gear: SpurGear) -> Iterator[ModelWarning]:
+def _mass(case: PairCase, source_case: Case, name: str, gear: SpurGear) -> Iterator[ModelWarning]:
     """Compare given inertias with those of the solid: a wrong unit is far off."""
     solid = _solid(gear, case.density(name))
     for key, unit, factor in _INERTIAS:
         value, reference = getattr(gear, key), getattr(solid, key)
-        most = _OF_SOURCE if _is_stated(case, whole, name, key) else _UNLIKELY
+        most = _OF_SOURCE if _is_stated(case, source_case, name, key) else _UNLIKELY
         if value is not None and not 1.0 / most <= value / reference <= most:
             yield ModelWarning(
                 "mass-unlikely",
@@ -188,9 +190,9 @@ def _mass(case: PairCase, whole: Case, name: str, gear: SpurGear) -> Iterator[Mo
             )
 
 
-def _is_stated(case: PairCase, whole: Case, name: str, key: str) -> bool:
+def _is_stated(case: PairCase, source_case: Case, name: str, key: str) -> bool:
     """Whether the document that the case began with states the value, for a gear of this shape."""
-    changed, base = changed_keys(whole), whole.stated.base
+    changed, base = changed_keys(source_case), source_case.stated.base
     full, *shape = map(case.source.key, (f"gears.{name}.{key}", *body(name)))
     stated = base.get("origin") and base.get(full) is not None
     return bool(stated) and not any(k in changed for k in (full, *shape))

@@ -144,9 +144,9 @@ class CaseStage:
             for mesh, name in (("ring", "ring"), ("planet", "pair")):
                 distance = abs(self.gear_pair(mesh).center_distance)
                 double[f"{name}_center_distance"] = distance
-        alike = self.planet_names[:1] if len(self.planets) > 1 else (table.planet, table.ring)
-        hands = {name: self.data["gears"].get(name, {}).get("hand") for name in alike}
-        at_sun = next((name for name, hand in hands.items() if hand), alike[0])
+        equal_hands = self.planet_names[:1] if len(self.planets) > 1 else (table.planet, table.ring)
+        hands = {name: self.data["gears"].get(name, {}).get("hand") for name in equal_hands}
+        at_sun = next((name for name, hand in hands.items() if hand), equal_hands[0])
         hand = mesh_hand(table, (table.sun, at_sun), self.data)
         stage = PlanetaryStage(
             *(table.sun, table.ring, table.carrier, self.planet, table.count),
