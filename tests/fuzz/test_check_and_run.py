@@ -119,7 +119,7 @@ def _refusal(work: Callable[[], object]) -> str:
 @pytest.mark.filterwarnings("ignore::tribodyn.errors.ModelWarning")
 def test_check_refuses_the_cases_that_run_refuses(draws: Draws) -> None:
     differ, accepted = [], 0
-    for rng in draws(8):
+    for rng in draws(14):
         name, changes = _draw_changes(rng)
         try:
             case = load_case(name).replace(changes)

@@ -19,7 +19,7 @@ from tribodyn.dynamics import (
     harmonic_balance,
     simulate,
 )
-from tribodyn.errors import InputError
+from tribodyn.errors import InputError, ModelWarning
 
 
 def wave(*terms):
@@ -193,7 +193,8 @@ def test_the_stated_error_is_that_against_a_fine_solution(options, points, fine)
 
 @pytest.mark.filterwarnings("ignore:.*step-size")
 def test_flanks_that_separate_are_solved_with_second_order():
-    clock = harmonic_balance(two_meshes((5, 3), gap=0.1, amplitude=0.12), 0.05)
+    with pytest.warns(ModelWarning, match="unstable-orbit"):
+        clock = harmonic_balance(two_meshes((5, 3), gap=0.1, amplitude=0.12), 0.05)
     system, errors = two_meshes(((1, 0), (0, 1)), gap=0.1, amplitude=0.12), []
     for points in (24, 48, 96):
         phases = harmonic_balance(system, (0.25, 0.15), steps=points)

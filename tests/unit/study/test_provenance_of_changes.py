@@ -218,7 +218,9 @@ def test_all_of_it_holds_on_the_command_line(
     Path("my.toml").write_text(text.replace('\nface_width = "20 mm"', '\nface_width = "30 mm"'))
     capsys.readouterr()
     assert call(["check", "my.toml"]) == 0
-    assert capsys.readouterr().err == by_set
+    # What has no effect is named at its line, and a copy of the case has other lines.
+    places = re.compile(r"^\S+\.toml:\d+: (?=.* has no effect)", re.MULTILINE)
+    assert places.sub("", capsys.readouterr().err) == places.sub("", by_set)
     assert call(["check", "my.toml", "--json"]) == 0
     out = capsys.readouterr()
     assert "20 mm wide" not in out.out + out.err

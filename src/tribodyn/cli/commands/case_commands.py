@@ -72,9 +72,11 @@ def check(case: CaseName, /, *, set_: Settings = None, json: Flag = False) -> No
 
 
 def _tell_of_idle(case: AnyCase, keys: Mapping[str, str]) -> None:
-    """Name the keys that have no effect beside the other values of a case."""
+    """Name the keys that have no effect beside the other values, but those with their default."""
     for key, why in keys.items():
-        tell(f"{case.source.where(key)} has no effect: {why}.")
+        option = case.option_of(key)
+        if option is None or case.get(key) != option.default:
+            tell(f"{case.source.where(key)} has no effect: {why}.")
 
 
 def _check_machine(case: MachineCase, json: bool) -> None:

@@ -72,6 +72,7 @@ def clearance_motion(
 
     Examples
     --------
+    >>> from tribodyn.dynamics import Contact
     >>> pin = RadialClearance([[1.0, 0.0], [0.0, 1.0]], 1e8, 20e-6)
     >>> mesh = Contact([1.0, 0.0], 1e3, error=lambda phase: 1e-6 * np.cos(2 * np.pi * phase))
     >>> body = System(np.eye(2), 1e3 * np.eye(2), np.zeros((2, 2)), [0.0, 1e3], [mesh])

@@ -22,6 +22,8 @@ if TYPE_CHECKING:
 
 #: Part of the start that is left when the motion is recorded.
 _LEFT = 1e-4
+#: Part of a disturbance that is left after a period, below which none grows.
+_FORGOTTEN = 1e-6
 #: Coordinates up to which all multipliers are computed.
 _DENSE = 24
 _OPTIONS: dict[str, Any] = {
@@ -75,8 +77,6 @@ class TangentMarch:
 
     def leading_multiplier(self) -> float:
         """Size of the largest Floquet multiplier, to the second order of the step."""
-        from scipy.sparse.linalg import ArpackNoConvergence, LinearOperator, eigs
-
         parts = self._decay, self._output, self._push, self._direct, self._tangents
         size, nothing = self._decay.size, np.zeros((len(self._tangents), self._tangents.shape[2]))
 
@@ -85,11 +85,15 @@ class TangentMarch:
             march_tangent(*parts, nothing, end, 0)
             return end
 
+        start = np.random.default_rng(0).standard_normal(size)
+        if np.linalg.norm(period(start)) <= _FORGOTTEN * np.linalg.norm(start):
+            return 0.0
         if size <= _DENSE:
             values = np.linalg.eigvals(np.stack([period(row) for row in np.eye(size)], axis=1))
         else:
+            from scipy.sparse.linalg import ArpackNoConvergence, LinearOperator, eigs
+
             operator = LinearOperator((size, size), matvec=period, dtype=float)
-            start = np.random.default_rng(0).standard_normal(size)
             try:
                 values = eigs(operator, 1, v0=start, tol=1e-4, return_eigenvectors=False)
             except ArpackNoConvergence as error:

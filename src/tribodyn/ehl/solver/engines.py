@@ -289,7 +289,7 @@ def _cycles(record: Array) -> Cycles:
 
 
 #: Fall of the differences that shows that the inlet is resolved, and that of the theory.
-_RESOLVED, _FOURFOLD = 0.33, 0.25
+_INLET_FALL, _FOURFOLD = 0.33, 0.25
 #: Slowest assumed convergence, and safety factor of the estimate.
 _SLOWEST, _MARGIN = 0.75, 1.3
 #: Further margins of the least film: for its place, and for where the grid begins.
@@ -321,7 +321,7 @@ def _of_intervals(
     steps = np.abs(np.diff(films))
     fall = float(steps[-1] / steps[-2]) if steps.size > 1 and steps[-2] > 0.0 else 1.0
     n = grid.n
-    first = (n // 2, 2 * n) if fall < _RESOLVED or 2 * n >= MOST else (2 * n, n // 2)
+    first = (n // 2, 2 * n) if fall < _INLET_FALL or 2 * n >= MOST else (2 * n, n // 2)
     for intervals in first:
         other = _on(problem, grid, intervals)
         if other is not None:

@@ -115,8 +115,8 @@ def surrogate(result: Surrogate) -> Sketch:
     return stack_rows(title, rows, {"hovermode": "closest"})
 
 
-#: Fraction of the variants in a band, its least width over the range of the curve, opacity.
-_SHARE, _LEAST, _FAINT = 0.95, 1e-6, 0.22
+#: Least width of a band over the range of the curve, opacity.
+_LEAST, _FAINT = 1e-6, 0.22
 #: Traces that have a band or error bars; a field or a body has none.
 _BANDED = ("scatter", "bar")
 #: Most curves of variants where a band is not defined.

@@ -19,6 +19,7 @@ from tribodyn.progress import SILENT, Progress, StageProgress
 from tribodyn.study.case.to_models import locate_errors
 from tribodyn.study.first_use import compile_in_parallel
 from tribodyn.study.machine.case import AnyCase, MachineCase
+from tribodyn.study.machine.first_look import shape_figures
 from tribodyn.study.machine.rated_meshes import rated_figures
 from tribodyn.study.machine.result import LoadResult
 from tribodyn.study.machine.result import steps_of as steps_of_machine
@@ -92,7 +93,7 @@ def results_under(
                 changed = case.replace(change)
                 point = changed.operating_point
                 result = run_load(changed, point, stages, of_meshes, start)
-                result.figures.update(rated_figures(changed, result))
+                result.figures.update(shape_figures(changed) | rated_figures(changed, result))
             except (InputError, ComputationError) as error:
                 yield error, ()
                 continue
