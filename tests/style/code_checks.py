@@ -11,6 +11,7 @@ from source_tree import Module, listed_names
 
 __all__ = [
     "broad_errors",
+    "constants_bound_twice",
     "exports",
     "left_overs",
     "long_file",
@@ -42,6 +43,21 @@ def long_file(module: Module) -> list[str]:
     """A file is a room that one can look over."""
     lines = len(module.text.splitlines())
     return [f"{module.path}: {lines} lines"] if lines > LONGEST_FILE else []
+
+
+def constants_bound_twice(module: Module) -> list[str]:
+    """A constant has one value: modules that were joined may have had one name for two."""
+    bound: dict[str, int] = {}
+    for statement in module.tree.body:
+        if isinstance(statement, ast.Assign):
+            for node in (each for t in statement.targets for each in ast.walk(t)):
+                if not isinstance(node, ast.Name) or not isinstance(node.ctx, ast.Store):
+                    continue
+                if node.id.isupper():
+                    bound[node.id] = bound.get(node.id, 0) + 1
+    return [
+        f"{module.path}: {name} has {count} values" for name, count in bound.items() if count > 1
+    ]
 
 
 def long_functions(module: Module) -> list[str]:

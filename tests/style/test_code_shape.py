@@ -11,6 +11,7 @@ CHECKS = [getattr(code_checks, name) for name in code_checks.__all__]
 
 BAD = {
     "long_file": "x = 1\n" * 501,
+    "constants_bound_twice": "_SHARE, _LEAST = 0.5, 2\n_SHARE = 0.7\n",
     "long_functions": "def f():\n" + "    x = 1\n" * 60,
     "star_imports": "from math import *\n",
     "broad_errors": "try:\n    x = 1\nexcept:\n    raise\n",

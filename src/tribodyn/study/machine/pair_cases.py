@@ -35,6 +35,7 @@ from tribodyn.types import ByName
 if TYPE_CHECKING:
     from tribodyn.gear import HypoidBlank
     from tribodyn.machine import Gear
+    from tribodyn.machine.mesh import Hand
     from tribodyn.study.machine.case import MachineCase
     from tribodyn.study.machine.read_parts import LoadCase
 
@@ -193,12 +194,15 @@ def pair_case(
     return case
 
 
-def mesh_hand(table: Section, names: Sequence[str], data: ByName, *, internal: bool = False) -> str:
+def mesh_hand(
+    table: Section, names: Sequence[str], data: ByName, *, internal: bool = False
+) -> Hand:
     """Hand of the first gear of a mesh: stated, that of a gear, or right where none has one."""
     first, second = (data["gears"].get(name, {}).get("hand") for name in names)
     if second and not internal:
         second = "left" if second == "right" else "right"
-    return str(table.hand or first or second or "right")
+    hand: Hand = table.hand or first or second or "right"
+    return hand
 
 
 def teeth_under(case: MachineCase, mesh: str, load: LoadCase) -> TeethUnder:

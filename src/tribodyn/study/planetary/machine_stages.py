@@ -150,8 +150,9 @@ class CaseStage:
         hand = mesh_hand(table, (table.sun, at_sun), self.data)
         stage = PlanetaryStage(
             *(table.sun, table.ring, table.carrier, self.planet, table.count),
-            *(table.normal_module, table.helix_angle, hand, self.center_distance),
-            table.normal_pressure_angle,
+            *(table.normal_module, table.helix_angle),
+            hand,
+            *(self.center_distance, table.normal_pressure_angle),
             angles=table.angles,
             pin=pin,
             pin_errors=table.pin_errors or 0.0,
