@@ -77,6 +77,7 @@ def test_levels_and_sweeps_have_the_figures_of_single_runs(case, result):
 
 
 def test_speeds_share_the_teeth_that_do_not_depend_on_them(case, monkeypatch):
+    sys.modules["tribodyn.mesh.build"]._cached_teeth.cache_clear()
     computed, compute = [], sharing.ramps_about
     monkeypatch.setattr(sharing, "ramps_about", lambda *a: computed.append(a) or compute(*a))
     stage = case.replace({"stiffness.model": "iso6336", "stiffness.pair_stiffness": None})

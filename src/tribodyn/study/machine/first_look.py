@@ -206,12 +206,20 @@ def warn_of_steps(
     warn("long-period", f"{period}. Each motion takes {cost}. {remedy}")
 
 
+#: Geometry of cylindrical meshes that is among the figures of every load.
+_OF_LOADS = (
+    *("center_distance", "operating_pressure_angle", "transverse_contact_ratio", "overlap_ratio"),
+)
+
+
 def shape_figures(case: MachineCase) -> dict[str, float]:
     """Gears and oil of the meshes with computed teeth, of planets those of the first."""
     values: dict[str, float] = {}
     for name, pair, _ in computed_pairs(case):
         figures = {**geometry(pair), **operating_figures(pair)}
-        names = (key for key in figures if key in PARTS["meshes"]["of_pairs"])
+        of_loads = () if pair.gears.kind == "hypoid" else _OF_LOADS
+        of_pairs = [key for key in PARTS["meshes"]["of_pairs"] if key not in of_loads]
+        names = (key for key in figures if key in of_pairs)
         values |= {f"meshes.{name}.{key}": float(figures[key]) for key in names}
     return values
 

@@ -35,7 +35,12 @@ from tribodyn.progress import SILENT, Progress
 from tribodyn.study.coupling import load_of_torque, mesh_under_load
 from tribodyn.study.heat_balance import HeatBalance, Temperatures
 from tribodyn.study.machine.case import MachineCase
-from tribodyn.study.machine.first_look import over_phases, warn_of_gears, warn_of_motion
+from tribodyn.study.machine.first_look import (
+    over_phases,
+    shape_figures,
+    warn_of_gears,
+    warn_of_motion,
+)
 from tribodyn.study.machine.motion import MachineMotion, machine_motion, motion_from
 from tribodyn.study.machine.pair_cases import inputs_under, read_teeth, teeth_under
 from tribodyn.study.machine.read_parts import LoadCase
@@ -402,7 +407,10 @@ def restored(case: MachineCase, stored: Stored) -> MachineResult:
     loads = [_restored_load(case, *each) for each in zip(cases, stored.loads, strict=True)]
     for number, load in enumerate(loads):
         name = load.load.name if number else ""
-        vars(load)["figures"] = figures_of_load(stored.summary, name)
+        figures = figures_of_load(stored.summary, name)
+        for key in () if number else shape_figures(case):  # of all loads
+            figures.pop(key, None)
+        vars(load)["figures"] = figures
     return MachineResult(case, loads[0], tuple(loads[1:]), stored.warnings)
 
 
