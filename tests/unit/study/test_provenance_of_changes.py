@@ -401,8 +401,7 @@ def test_an_edited_copy_of_a_named_case_knows_what_was_changed(name: str, tmp_pa
     file, text = tmp_path / "copy.toml", all_files()[name].read_text(encoding="utf-8")
     file.write_text(text, encoding="utf-8")
     assert td.load_case(file) == td.load_case(name)
-    speed = re.search(r'^speed = "([\d.]+) rpm"', text, re.MULTILINE)
-    assert speed is not None
-    line = f'speed = "{2.0 * float(speed[1])} rpm"'
-    file.write_text(text.replace(speed[0], line, 1), encoding="utf-8")
+    (speed, *_) = re.findall(r'^speed = "([\d.]+) rpm"', text, re.MULTILINE)
+    line = f'speed = "{2.0 * float(speed)} rpm"'
+    file.write_text(text.replace(f'speed = "{speed} rpm"', line, 1), encoding="utf-8")
     assert changed_keys(td.load_case(file)) == ("operation.speed",)

@@ -146,8 +146,8 @@ def defaults_of(case: Any) -> Tree:
     return {key: value for key, value in values.items() if value is not None}
 
 
-def _left_out(root: type[Section], data: ByName, whole: bool, prefix: str = "") -> Iterator[str]:
-    """Keys that have no value in tables, with ``whole`` also in tables of models that lack."""
+def _left_out(root: type[Section], data: ByName, models: bool, prefix: str = "") -> Iterator[str]:
+    """Keys that have no value in tables, with ``models`` also in tables of models that lack."""
     keys, chosen = dict(root.keys_for(data)), data.get(root.selector)
     default = keys.get(root.selector)
     if isinstance(default, Option) and (model := root.model_named(chosen or default.default)):
@@ -156,8 +156,8 @@ def _left_out(root: type[Section], data: ByName, whole: bool, prefix: str = "") 
         if not isinstance(field, Table):
             if data.get(name) is None:
                 yield f"{prefix}{name}"
-        elif name in data or (field.default == "empty" and (whole or not field.kind.selector)):
-            yield from _left_out(field.kind, table_in(data, name), whole, f"{prefix}{name}.")
+        elif name in data or (field.default == "empty" and (models or not field.kind.selector)):
+            yield from _left_out(field.kind, table_in(data, name), models, f"{prefix}{name}.")
 
 
 def as_computed(case: Case, stored: Stored) -> Case:
