@@ -128,7 +128,24 @@ def test_check_prints_values_with_units_warnings_and_assumptions(
     captured = capsys.readouterr()
     assert re.search(r"center_distance +91\.5 mm +distance", captured.out)
     assert "warning [thin-tip]" in captured.err
-    assert "values are assumed" in captured.err
+    assert "(--all): 20 assumed, 25 default" in captured.err
+    assert call(["check", "fzg-roughness", "--all"]) == 0
+    text = capsys.readouterr().err
+    assert "dynamics.backlash = 0.05 mm (assumed): the printed equations are linear" in text
+    assert (text.count(" (assumed): "), text.count(" (default): ")) == (20, 25)
+
+
+def test_check_of_a_machine_fits_a_screen(capsys: pytest.CaptureFixture[str]) -> None:
+    assert call(["check", "two-stage-spur"]) == 0
+    lines = capsys.readouterr().out.splitlines()
+    assert len(lines) <= 80
+    assert max(map(len, lines)) <= 100
+    (row,) = [line for line in lines if "center_distance [mm]" in line]
+    shown = [float(value) for value in row.split("]")[1].split()]
+    assert call(["check", "two-stage-spur", "--json"]) == 0
+    values = json.loads(capsys.readouterr().out)
+    meshes = [name for name in values if name.endswith(".center_distance")]
+    assert shown == pytest.approx([1e3 * values[name] for name in meshes], rel=1e-4)
 
 
 def test_set_changes_a_value_and_is_named_in_errors(

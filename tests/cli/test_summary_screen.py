@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from tribodyn.cli import call
-from tribodyn.cli.commands.run_command import screen
+from tribodyn.cli.screen import chief_figures
 from tribodyn.study import SUMMARY
 from tribodyn.study.pipeline.summary_figures import figure_of, is_chief, part_figures
 
@@ -19,7 +19,7 @@ _SUMMARIES = json.loads(_FROZEN.read_text(encoding="utf-8"))
 @pytest.mark.parametrize("case", _SUMMARIES)
 def test_a_summary_fits_a_screen(case: str) -> None:
     values = _SUMMARIES[case]["summary"]
-    lines = screen(values).splitlines()
+    lines = chief_figures(values).splitlines()
     assert len(lines) <= 50
     assert max(map(len, lines)) <= 100
     hidden = sum(not is_chief(name) for name in values)
@@ -35,7 +35,7 @@ def test_a_reducer_of_two_stages_fits_a_screen() -> None:
         for n in range(count)
         for name in part_figures()[kind]
     }
-    lines = screen(values).splitlines()
+    lines = chief_figures(values).splitlines()
     assert len(lines) <= 50
     assert max(map(len, lines)) <= 100
     assert lines[-1].startswith(f"{sum(not is_chief(name) for name in values)} more figures")
@@ -50,7 +50,7 @@ def test_numbers_of_many_parts_stand_under_their_names() -> None:
     }
     values |= {"bearings.a.b.mean_radial_force": 1234.5, "bearings.a.b.mean_axial_force": 1e-9}
     values |= {"load_cases.slow 1.5.meshes.mesh0.peak_mesh_force": 77.0}
-    text = screen(values)
+    text = chief_figures(values)
     lines = text.splitlines()
     assert max(map(len, lines)) <= 100
     heads = [i for i, line in enumerate(lines) if line.startswith("Meshes")]

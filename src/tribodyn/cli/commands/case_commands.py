@@ -2,18 +2,21 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections import Counter
+from collections.abc import Iterable
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING, Annotated, Any
 
 from cyclopts import Parameter
 
 from tribodyn.cli.console import figures, say, say_json, show_warnings, table, tell
+from tribodyn.cli.screen import screen
 from tribodyn.cli.settings import CaseName, Flag, Settings, Words, changed_any_case, check_file
-from tribodyn.errors import InputError
+from tribodyn.errors import InputError, ModelWarning
 from tribodyn.units import UnitProblemError, parse
 
 if TYPE_CHECKING:
+    from tribodyn.study.case.pair import PairCase
     from tribodyn.study.machine.case import AnyCase, MachineCase
 
 
@@ -34,74 +37,73 @@ def cases(*, json: Flag = False) -> None:
         say(table([[name, title] for name, title in titles.items()], indent=""))
 
 
-def check(case: CaseName, /, *, set_: Settings = None, json: Flag = False) -> None:
+def check(
+    case: CaseName, /, *, set_: Settings = None, all: Flag = False, json: Flag = False
+) -> None:
     """Check a case, rehearse its run and show the geometry that follows from it.
 
     Parameters
     ----------
+    all : bool
+        Print each figure with its meaning, and each assumption.
     json : bool
         Write one flat JSON object in SI to stdout.
     """
+    from tribodyn.study.pipeline.summary_figures import summary_rows
+
+    ready = changed_any_case(case, set_ or [])
+    checked: Any = _checked_pair if ready.lumped else _checked_machine
+    values, warned, idle, remarks = checked(ready)
+    if json:
+        say_json(values)
+    else:
+        every = all or ready.lumped
+        text = figures(summary_rows(values)) if every else screen(values, values)
+        say(f"{ready.title}\n{text}")
+    show_warnings(warned)
+    for key, why in idle.items():
+        option = ready.option_of(key)
+        if option is None or ready.get(key) != option.default:
+            tell(f"{ready.source.where(key)} has no effect: {why}.")
+    kinds = Counter(assumption.kind for assumption in ready.assumptions)
+    counts = ", ".join(f"{count} {kind}" for kind, count in sorted(kinds.items()))
+    for remark in [*(ready.assumptions if all else ()), *remarks]:
+        tell(str(remark))
+    tell(f"The case is in order; values that it does not state (--all): {counts or 'none'}.")
+
+
+#: Figures, warnings, keys without effect with their reason, and remarks on the motion.
+_Checked = tuple[dict[str, float], Iterable[ModelWarning], dict[str, str], list[str]]
+
+
+def _checked_pair(case: PairCase) -> _Checked:
+    """Geometry and load of a pair, after rehearsing its run."""
     from tribodyn.study.pipeline.assembly import geometry
     from tribodyn.study.pipeline.cautions import case_cautions, idle_values
     from tribodyn.study.pipeline.preview import operating_figures
     from tribodyn.study.pipeline.run import rehearse
-    from tribodyn.study.pipeline.summary_figures import summary_rows
 
-    ready = changed_any_case(case, set_ or [])
-    if not ready.lumped:
-        _check_machine(ready, json)
-        return
-    warnings = rehearse(ready)
-    values = {n: float(v) for n, v in (geometry(ready) | operating_figures(ready)).items()}
-    if json:
-        say_json(values)
-    else:
-        say(f"{ready.title}\n{figures(summary_rows(values))}")
-        if ready.faults is not None:
-            from tribodyn.study.faults.clock import turning_clock
+    warned = rehearse(case)
+    values = {n: float(v) for n, v in (geometry(case) | operating_figures(case)).items()}
+    remarks: list[str] = []
+    if case.faults is not None:
+        from tribodyn.study.faults.clock import turning_clock
 
-            say(f"The motion with its faults repeats after {turning_clock(ready)}.")
-    show_warnings([*case_cautions(ready), *warnings])
-    _tell_of_idle(ready, dict(idle_values(ready)))
-    kinds = [assumption.kind for assumption in ready.assumptions]
-    tell(
-        f"The case is in order; {kinds.count('assumed')} values are assumed, "
-        f"{kinds.count('default')} are defaults."
-    )
+        remarks = [f"The motion with its faults repeats after {turning_clock(case)}."]
+    return values, [*case_cautions(case), *warned], dict(idle_values(case)), remarks
 
 
-def _tell_of_idle(case: AnyCase, keys: Mapping[str, str]) -> None:
-    """Name the keys that have no effect beside the other values, but those with their default."""
-    for key, why in keys.items():
-        option = case.option_of(key)
-        if option is None or case.get(key) != option.default:
-            tell(f"{case.source.where(key)} has no effect: {why}.")
-
-
-def _check_machine(case: MachineCase, json: bool) -> None:
-    """Show speeds, torques and power of a machine, after rehearsing its teeth."""
+def _checked_machine(case: MachineCase) -> _Checked:
+    """Speeds, torques and power of a machine, after rehearsing its teeth."""
     from tribodyn.errors import collected
     from tribodyn.study.faults.machine_motion import rehearse_faults
     from tribodyn.study.machine.first_look import idle_keys, kinematic_figures
     from tribodyn.study.machine.run import rehearse_machine
-    from tribodyn.study.pipeline.summary_figures import summary_rows
 
-    with collected() as warnings:
+    with collected() as warned:
         costs = rehearse_faults(case, rehearse_machine(case))
         values = kinematic_figures(case)
-    if json:
-        say_json(values)
-    else:
-        say(f"{case.title}\n{figures(summary_rows(values))}")
-    for assumption in case.assumptions:
-        text = ", ".join(filter(None, (assumption.value, assumption.reason)))
-        tell(f"assumed: {assumption.key}: {text}")
-    show_warnings(warnings)
-    _tell_of_idle(case, idle_keys(case))
-    for cost in costs:
-        tell(cost)
-    tell("The case is in order.")
+    return values, warned, idle_keys(case), costs
 
 
 def frequencies(
