@@ -92,18 +92,22 @@ def _row(verdict: Verdict) -> tuple[str, ...]:
 
 
 def damage_table(rating: CaseRating) -> RatingTable:
-    """Damage of each gear by load case and in total, by Miner."""
-    cases = [case.name for case in rating.spectra[0].rating.cases] if rating.spectra else []
+    """Damage of each gear by load case and in total, by Miner, with the loads of the pinion."""
+    kinds = list(product(("pitting", "bending"), ("pinion", "wheel")))
+    loads = ("pinion torque [N*m]", "pinion speed [rpm]", "time [h]")
+    head = ("mesh", "load", *loads, *(f"{mode} of {gear}" for mode, gear in kinds))
     rows = []
     for each in rating.spectra:
-        for name, damage in zip(each.gears, (each.rating.pinion, each.rating.wheel), strict=True):
-            for mode in ("pitting", "bending"):
-                values = getattr(damage, f"{mode}_damage")
-                parts = (f"{value:.3g}" for value in (*values, sum(values)))
-                rows.append((mode, name, each.mesh, *parts))
-    return RatingTable(
-        "Damage by load case", ("mode of failure", "gear", "mesh", *cases, "total"), rows
-    )
+        damages = [getattr(getattr(each.rating, g), f"{mode}_damage") for mode, g in kinds]
+        mesh = f"{each.mesh}: {each.gears[0]}, {each.gears[1]}"
+        for case, *parts in zip(each.rating.cases, *damages, strict=True):
+            speed = 30.0 / math.pi * case.speed
+            numbers = case.torque, speed, case.duration / 3600.0, *parts
+            rows.append((mesh, case.name, *(f"{number:.4g}" for number in numbers)))
+        hours = sum(case.duration for case in each.rating.cases) / 3600.0
+        totals = (f"{number:.4g}" for number in (hours, *map(sum, damages)))
+        rows.append((mesh, "total", "", "", *totals))
+    return RatingTable("Damage by load case", head, rows)
 
 
 def bearing_table(rating: CaseRating) -> RatingTable:

@@ -13,6 +13,7 @@ from known_ratings import ring_example
 from tribodyn.errors import InputError, ModelWarning
 from tribodyn.rating import GearOil, RatedGear, ShaperCutter, load_classes, rate_pair, rate_spectrum
 from tribodyn.study import Case, MachineCase
+from tribodyn.study.rating_summary import damage_table
 from unit.study.test_rating_of_cases import MACHINE, PAIR, changed
 
 TORQUE = np.array([0.0, 150.0, 240.0, -90.0, 260.0, 30.0, 250.0, 200.0])
@@ -56,6 +57,18 @@ def test_a_pair_is_rated_under_the_classes_of_its_history(tmp_path: Path) -> Non
     assert "operation" not in {verdict.load for verdict in verdicts}
     assert {v.computed for v in verdicts if v.load.startswith("class")} == {None}
     assert rating.ratings[0].load == "operation"
+    table = damage_table(rating)
+    assert [row[1] for row in table.rows] == [*(case.name for case in listed), "total"]
+    assert [float(row[2]) for row in table.rows[:-1]] == [each.torque for each in listed]
+    assert float(table.rows[-1][4]) == pytest.approx(
+        7.2e7 / 3600.0 * sum(each.duration for each in listed) / 8.0, rel=1e-3
+    )
+    for column, mode in ((5, "pitting"), (8, "bending")):
+        parts = [float(row[column]) for row in table.rows]
+        gear = "pinion" if mode == "pitting" else "wheel"
+        damage = getattr(getattr(spectrum.rating, gear), f"{mode}_damage")
+        assert parts == pytest.approx([*damage, sum(damage)], rel=1e-3)
+        assert table.head[column] == f"{mode} of {gear}"
 
 
 def _of_life(each: Any) -> Any:
