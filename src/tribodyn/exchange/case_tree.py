@@ -338,7 +338,7 @@ class _CaseTree(ModelTree):
         tool = self.shared("rack_shaped_tool", "Rack", [
             ("addendum_coefficient_reference_profile", "none", case.gears.dedendum_coefficient),
             ("dedendum_coefficient_reference_profile", "none", case.gears.addendum_coefficient),
-            ("tip_radius_factor", "none", case.gears.rack_tip_radius_coefficient),
+            ("tip_radius_factor", "none", gear.rack.tip_radius_coefficient),
         ])  # fmt: skip
         self.relate("ordered_reference", origin=number, referenced=tool)
         self.add_forms(flanks, options.modification)

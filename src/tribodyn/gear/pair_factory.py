@@ -278,7 +278,7 @@ def cylindrical_pair(
         Total play on the line of action [m], by equal thinning of both gears; by default the
         play that follows from the other figures.
     pinion_rack, wheel_rack : BasicRack, optional
-        Generating profiles; ISO 53 profile A by default.
+        Generating profiles; :meth:`BasicRack.usual` by default.
     pinion_mass, wheel_mass : float, optional
         Masses [kg] that replace those of the solids.
     pinion_moment_of_inertia, wheel_moment_of_inertia : float, optional
@@ -323,9 +323,10 @@ def cylindrical_pair(
     >>> round(ring.wheel.tip_diameter * 1e3, 3), round(ring.transverse_contact_ratio, 4)
     (145.48, 1.7081)
     """
+    rack = BasicRack.usual(normal_pressure_angle)
     inputs = locals() | {
-        "pinion_rack": pinion_rack or BasicRack(),
-        "wheel_rack": wheel_rack or BasicRack(),
+        "pinion_rack": pinion_rack or rack,
+        "wheel_rack": wheel_rack or rack,
         "wheel_face_width": pinion_face_width if wheel_face_width is None else wheel_face_width,
         "pinion_modification": pinion_modification or FlankModification(),
         "wheel_modification": wheel_modification or FlankModification(),
@@ -399,7 +400,7 @@ def spur_pair(
         Total play on the line of action [m], by equal thinning of both gears; by default the
         play that follows from the other figures.
     pinion_rack, wheel_rack : BasicRack, optional
-        Generating profiles; ISO 53 profile A by default.
+        Generating profiles; :meth:`BasicRack.usual` by default.
     pinion_mass, wheel_mass : float, optional
         Masses [kg] that replace those of the solids.
     pinion_moment_of_inertia, wheel_moment_of_inertia : float, optional

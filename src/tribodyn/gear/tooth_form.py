@@ -9,7 +9,7 @@ its tooth is the space of the external gear with the same base circle.
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 
 from tribodyn.errors import Argument, InputError, Problem
@@ -63,6 +63,36 @@ class BasicRack:
         ]
         if problems:
             raise InputError(problems)
+
+    @classmethod
+    def usual(cls, pressure_angle: float, *heights: float) -> BasicRack:
+        """Rack with the tip radius of profile A, or the full round where that is smaller.
+
+        Parameters
+        ----------
+        pressure_angle : float
+            Pressure angle of the rack [rad]; beyond those of gears the radius is that of profile A.
+        *heights : float
+            Coefficients of addendum and dedendum, if not those of profile A.
+
+        Returns
+        -------
+        BasicRack
+
+        Notes
+        -----
+        Source: ISO 53, largest fillet radius of the basic rack.
+
+        Examples
+        --------
+        >>> round(BasicRack.usual(math.radians(25.0)).tip_radius_coefficient, 4)
+        0.3178
+        """
+        rack = cls(*heights)
+        if not 0.0 <= pressure_angle < 0.25 * math.pi:
+            return rack
+        fitting = rack.fitting_tip_radius_coefficient(pressure_angle)
+        return replace(rack, tip_radius_coefficient=max(fitting, 0.0))
 
     def tip_half_width_coefficient(self, pressure_angle: float) -> float:
         """Half width of the sharp rack tooth at its tip line, over the module.

@@ -220,7 +220,13 @@ class Machine:
             the power of a mesh is that of its driving gear.
         """
         loads = kinematics(self._mobility, self.meshes, self._drive, efficiency)
-        return replace(loads, shafts={name: loads.shafts[name] for name in self.shafts})
+        shafts = {name: loads.shafts[name] for name in self.shafts}
+        for pin in self.bearings.values():
+            if pin.carrier:
+                planet, carrier = shafts[pin.shaft], shafts[pin.carrier]
+                rolling = planet.torque * abs(planet.speed - carrier.speed)
+                shafts[pin.shaft] = replace(planet, power=rolling)
+        return replace(loads, shafts=shafts)
 
     @cached_property
     def clock(self) -> Clock:

@@ -1,13 +1,17 @@
 """Circles, thickness and checks of one gear."""
 
 import math
+import warnings
 from collections.abc import Callable
 from dataclasses import FrozenInstanceError
+from typing import Any
 
 import pytest
 
+from tribodyn import load_case
 from tribodyn.errors import InputError, ModelWarning
-from tribodyn.gear import BasicRack, SpurGear
+from tribodyn.gear import BasicRack, SpurGear, spur_pair
+from tribodyn.study.case.to_models import gear_warnings
 
 Maker = Callable[..., SpurGear]
 
@@ -128,3 +132,34 @@ def test_tip_round_that_does_not_fit_is_reduced_with_a_warning(make_gear: Maker)
     largest = rack.largest_tip_radius_coefficient(math.radians(20.0))
     assert gear.trochoid.tip_radius == pytest.approx(largest * 4e-3)
     assert gear.trochoid.center_offset == pytest.approx(0.0, abs=1e-18)
+
+
+def test_default_tip_round_fits_between_the_flanks_of_its_rack(make_gear: Maker) -> None:
+    """The round of a rack of 25 degrees touches both flanks and the tip line."""
+    angle = math.radians(25.0)
+    round_ = BasicRack.usual(angle).tip_radius_coefficient
+    half_width = math.pi / 4.0 - 1.25 * math.tan(angle)
+    assert round_ * math.tan(math.pi / 4.0 - 0.5 * angle) == pytest.approx(half_width)
+    assert BasicRack.usual(math.radians(20.0)) == BasicRack()
+    data: dict[str, Any] = {
+        "pinion_teeth": 30, "wheel_teeth": 40, "normal_module": 2e-3,
+        "normal_pressure_angle": angle, "pinion_face_width": 20e-3,
+    }  # fmt: skip
+    with warnings.catch_warnings():
+        warnings.simplefilter("error", ModelWarning)
+        assert spur_pair(**data).pinion.rack.tip_radius_coefficient == round_
+    with pytest.warns(ModelWarning, match="full-fillet"):
+        spur_pair(**data, pinion_rack=BasicRack())
+
+
+def test_a_case_of_any_angle_warns_only_of_the_round_that_it_gives() -> None:
+    case = load_case("fzg-film").replace({
+        "gears.normal_pressure_angle": "25 deg", "gears.pinion.profile_shift_coefficient": 0.2,
+        "gears.wheel.profile_shift_coefficient": 0.1, "gears.center_distance": None,
+        "gears.pinion.tip_diameter": None, "gears.wheel.tip_diameter": None,
+    })  # fmt: skip
+    given = case.replace({"gears.rack_tip_radius_coefficient": 0.38})
+    codes = [{each.code for each in gear_warnings(c.gears, None)} for c in (case, given)]
+    assert ["full-fillet" in each for each in codes] == [False, True]
+    forms = [c.gear_pair.pinion.trochoid for c in (case, given)]
+    assert forms[0].tip_radius == pytest.approx(forms[1].tip_radius, rel=1e-15)

@@ -76,6 +76,24 @@ def test_stage_of_a_machine_loses_what_willis_says(held: str, speed: float) -> N
         assert lost(machine, losses) == pytest.approx(sum(stage.power.values()), rel=1e-9)
 
 
+@pytest.mark.parametrize("held", ["sun", "ring", "carrier"])
+def test_planets_transmit_the_rolling_power_of_their_stage(held: str) -> None:
+    """Willis: torque of the sun times its speed relative to the carrier, in equal parts."""
+    first, last = (name for name in ("sun", "carrier", "ring") if name != held)
+    machine = Machine(
+        shafts={name: Shaft() for name in ("sun", "carrier", "ring")},
+        gears={"s": Gear("sun", 0.0, 17, 0.02), "r": Gear("ring", 0.0, -61, 0.02)},
+        meshes={},
+        planets={"low": PlanetaryStage("s", "r", "carrier", Gear("p", 0.0, 22, 0.02), 3, 2e-3)},
+        bearings={held: Bearing(held, 0.0, 1e9, torsional_stiffness=1e8)},
+        operation=Operation(first, last, -50.0, 200.0),
+    )
+    shafts = machine.kinematics.shafts
+    rolling = shafts["sun"].torque * (shafts["sun"].speed - shafts["carrier"].speed)
+    for number in (1, 2, 3):
+        assert shafts[f"low_planet{number}"].power == pytest.approx(abs(rolling) / 3.0, rel=1e-12)
+
+
 def test_split_paths_lose_by_their_shares() -> None:
     machine = split_path()
     efficiency = {"u1": 0.99, "l1": 0.98, "u2": 0.97, "l2": 0.96}

@@ -23,6 +23,13 @@ def test_a_mesh_behind_the_output_is_named(name: str) -> None:
         case.replace({"operation.torque": "0 N*m"}, by="--set")
 
 
+@pytest.mark.parametrize("name", ["two-stage-spur", "planetary-stage", "hypoid-axle"])
+def test_a_load_without_torque_is_refused_when_it_is_read(name: str) -> None:
+    loads = [{"name": "drive"}, {"name": "idle", "torque": 0.0}]
+    with pytest.raises(InputError, match=r"load_cases\.idle\.torque: mesh \w+ carries no torque"):
+        td.load_case(name).replace({"load_cases": loads})
+
+
 def test_a_zip_of_a_model_is_a_case(tmp_path: Path) -> None:
     plain = tmp_path / "gearbox.rexs"
     write_rexs(td.load_case("fzg-roughness"), plain)

@@ -30,7 +30,8 @@ class ShaftLoad:
     torque : float
         Torque that enters the shaft and leaves it again, negative while the output drives [N*m].
     power : float
-        Power that it transmits, negative while the output drives [W].
+        Power that it transmits, of a planet relative to its carrier (rolling power); negative
+        while the output drives [W].
 
     Notes
     -----

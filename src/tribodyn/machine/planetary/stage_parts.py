@@ -27,8 +27,8 @@ from tribodyn.machine.shaft import Shaft
 from tribodyn.nomenclature import require_whole
 from tribodyn.types import Array, Options
 
-#: Largest error of a pin or a tooth [m].
-_LARGEST_ERROR = 0.01
+#: Largest error of a pin or a tooth over the module: beyond, it exceeds any usual backlash.
+LARGEST_ERROR = 0.1
 
 
 def mesh_kinds(planet_type: str) -> dict[str, str]:
@@ -152,9 +152,10 @@ class PlanetaryStage:
             values = real_numbers(
                 where, getattr(self, name), "a number [m], or one for each planet"
             )
-            if values.shape not in ((), (self.count,)) or np.abs(values).max() > _LARGEST_ERROR:
+            most = LARGEST_ERROR * self.normal_module
+            if values.shape not in ((), (self.count,)) or np.abs(values).max() > most:
                 what = f"{name} = {values.tolist()}"
-                why = f"Wanted: one value, or {self.count}, of at most 10 mm"
+                why = f"Wanted: one value, or {self.count}, of at most {1e3 * most:.4g} mm"
                 raise InputError(what, where, why, "Give numbers in m")
             object.__setattr__(self, name, np.broadcast_to(values, (self.count,)))
 

@@ -374,11 +374,12 @@ class Gears(Section):
     dedendum_coefficient: float = number(
         1.25, 0.2, 1.8, _RACK, of="dedendum_coefficient", argument="rack"
     )
-    rack_tip_radius_coefficient: float = number(
-        0.38,
+    rack_tip_radius_coefficient: float | None = number(
+        None,
         0.0,
         0.6,
         "ISO 53 profiles lie between 0.25 and 0.39",
+        basis="ISO 53: 0.38, or the full round where that is smaller",
         of="rack_tip_radius_coefficient",
         argument="tip_radius_coefficient",
     )

@@ -148,11 +148,10 @@ def _spur_pair(gears: Gears, backlash: float | None, modified: _Modified) -> Spu
     from tribodyn.gear import BasicRack, cylindrical_pair
     from tribodyn.gear.pair_checks import mating_hand
 
-    rack = BasicRack(
-        addendum_coefficient=gears.addendum_coefficient,
-        dedendum_coefficient=gears.dedendum_coefficient,
-        tip_radius_coefficient=gears.rack_tip_radius_coefficient,
-    )
+    heights = gears.addendum_coefficient, gears.dedendum_coefficient
+    rack = BasicRack.usual(gears.normal_pressure_angle, *heights)
+    if (stated := gears.rack_tip_radius_coefficient) is not None:
+        rack = BasicRack(*heights, stated)
     other = gears.wheel.hand
     fitting = mating_hand(other, gears.wheel.tooth_count) if other else "right"
     return cylindrical_pair(

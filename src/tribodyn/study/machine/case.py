@@ -43,6 +43,7 @@ from tribodyn.study.machine.pair_cases import (
     read_blanks,
     read_pair,
     read_teeth,
+    refuse_idle_loads,
     teeth_under,
     with_forms,
 )
@@ -166,6 +167,7 @@ class MachineCase(Case):
             self._machines.clear()
             for name in self.meshes_with_teeth:
                 inputs_under(self, name, self.operating_point)
+            refuse_idle_loads(self)
         except InputError as error:
             raise InputError(self._located(error)) from None
         if problems := [*self._impossible(), *faults]:

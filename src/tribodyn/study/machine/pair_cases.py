@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
+from itertools import product
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -284,6 +285,13 @@ def _key_of(case: MachineCase, load: LoadCase, name: str) -> str:
         if load.name == body.get("name", f"load case {number}") and body.get(name) is not None:
             return f"load_cases.{row}.{name}"
     return f"operation.{name}"
+
+
+def refuse_idle_loads(case: MachineCase) -> None:
+    """Refuse loads without torque, under which no mesh with computed teeth carries any."""
+    for load, mesh in product(case.load_cases, list(case.meshes_with_teeth)[:1]):
+        key = _key_of(case, load, "torque")
+        refuse_idle(case.data, mesh, abs(load.torque), case.source, key)
 
 
 def refuse_idle(

@@ -13,7 +13,7 @@ import numpy as np
 from tribodyn.errors import Problem
 from tribodyn.machine import Bearing, Gear, Mesh, PlanetaryStage, Shaft, sun_to_ring_lag
 from tribodyn.machine.planetary.mesh_laws import gear_lag
-from tribodyn.machine.planetary.stage_parts import mesh_kinds
+from tribodyn.machine.planetary.stage_parts import LARGEST_ERROR, mesh_kinds
 from tribodyn.machine.planetary.turning_frame import centrifugal_loads
 from tribodyn.study.case.values import KeyedProblems, Plain
 from tribodyn.study.machine.pair_cases import mesh_hand, pair_case, pinion_and_wheel, with_forms
@@ -294,12 +294,17 @@ def _stage_problems(key: str, table: Any, gears: ByName) -> KeyedProblems:
         why, remedy = "Internal teeth have a negative number", f"Write teeth = {-ring.teeth}"
         problem = Problem(f"teeth = {ring.teeth} of the ring", "", why, remedy)
         problems.append((f"gears.{table.ring}.teeth", problem))
+    most = LARGEST_ERROR * table.normal_module if table.normal_module else math.inf
     for role in ("angles", "pin_errors", "thickness_errors"):
         values = getattr(table, role)
         if values is not None and len(values) != table.count:
             what = f"{role} has {len(values)} values for {table.count} planets"
             problem = Problem(what, "", "", "Give one value for each planet")
             problems.append((f"{key}.{role}", problem))
+        elif role != "angles" and max(map(abs, values or ()), default=0.0) > most:
+            what = f"{role} = {table.spec(role).show(tuple(values))}"
+            why = f"Allowed: {LARGEST_ERROR:g} times the module, {1e3 * most:.4g} mm, at most"
+            problems.append((f"{key}.{role}", Problem(what, "", why, "Correct value and unit")))
     return problems
 
 
