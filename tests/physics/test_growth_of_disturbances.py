@@ -1,8 +1,10 @@
-"""Motions by harmonic balance whose disturbances grow are warned of (Mathieu's equation)."""
+"""Motions whose disturbances grow are warned of, on one clock and over phases (Mathieu)."""
 
 from __future__ import annotations
 
+import re
 import warnings
+from typing import Any
 
 import numpy as np
 import pytest
@@ -52,13 +54,64 @@ def test_a_motion_that_grows_is_named_with_its_multiplier(
     period = np.pi / np.sqrt(square[np.abs(shape[0]).argmax()])
     expected = largest_multiplier(system, depth, period)
     assert (expected > 1.02) == grows
+    named = grown(system, 1.0 / period)
+    assert len(named) == grows
+    for multiplier in named:
+        assert multiplier == pytest.approx(expected, rel=1e-4)
+
+
+def grown(system: System, frequency: Any) -> list[float]:
+    """What the warnings about the motion of a system say."""
     with warnings.catch_warnings(record=True) as caught:
         warnings.simplefilter("always")
-        motion = harmonic_balance(system, 1.0 / period)
+        motion = harmonic_balance(system, frequency)
     assert motion.converged
     texts = [str(each.message) for each in caught if issubclass(each.category, ModelWarning)]
     named = [text for text in texts if "unstable-orbit" in text]
-    assert len(named) == grows
-    for text in named:
-        multiplier = float(text.split("multiplier ")[1].split(",")[0])
-        assert multiplier == pytest.approx(expected, rel=1e-4)
+    return [float(re.findall(r"(\S+), limit", text)[0]) for text in named]
+
+
+def two_meshes(cycles: Any, depth: float) -> System:
+    """Two bodies on a shaft, each on a mesh whose stiffness varies."""
+    meshes = [
+        Contact(row, lambda phase, k=k, d=d: k * (1.0 + d * np.cos(2.0 * np.pi * phase)), cycles=of)
+        for row, k, d, of in zip(
+            [[1.0, 0.0], [0.6, 1.0]], [1.0, 2.3], [depth, 0.3], cycles, strict=True
+        )
+    ]
+    shaft = 0.4 * np.array([[1.0, -1.0], [-1.0, 1.0]])
+    return System(np.eye(2), 2.0 * DAMPING * np.eye(2), shaft, [0.5, 0.3], meshes)
+
+
+def mean_growth(system: System, frequencies: Any, cycles: int) -> float:
+    """Mean logarithm of the growth per cycle of the first phase, by an independent integration."""
+    rows = np.array([mesh.direction for mesh in system.contacts])
+
+    def rate(time: float, state: np.ndarray) -> np.ndarray:
+        x, v = np.split(state, 2)
+        pairs = zip(system.contacts, time * np.array(frequencies), strict=True)
+        force = rows.T @ (np.array([mesh.stiffness(phase) for mesh, phase in pairs]) * (rows @ x))
+        return np.concatenate((v, -2.0 * DAMPING * v - system.stiffness @ x - force))
+
+    times = np.arange(cycles + 1) / frequencies[0]
+    start, options = np.array([1.0, 0.3, -0.2, 0.5]), {"rtol": 1e-9, "atol": 1e-30}
+    path = solve_ivp(rate, times[[0, -1]], start, "DOP853", times, **options).y
+    logs, place = np.diff(np.log(np.linalg.norm(path, axis=0))), np.arange(0.5, cycles) / cycles
+    return float(np.average(logs, weights=np.exp(-1.0 / (place * (1.0 - place)))))
+
+
+@pytest.mark.parametrize("depth", [0.3, 0.02])
+def test_growth_over_phases_is_that_of_their_common_period(depth: float) -> None:
+    first = 0.384  # twice a natural frequency
+    whole = grown(two_meshes((24, 17), depth), first / 24)
+    apart = grown(two_meshes(((1, 0), (0, 1)), depth), (first, first * 17 / 24))
+    assert len(whole) == len(apart) == (depth > 0.1)
+    for multiplier, growth in zip(whole, apart, strict=True):
+        assert growth == pytest.approx(multiplier ** (1 / 24), rel=1e-4)
+
+
+@pytest.mark.parametrize("ratio", [np.sqrt(0.5), 0.031 * np.pi])
+def test_growth_over_phases_is_that_of_an_integration_over_time(ratio: float) -> None:
+    system, frequencies = two_meshes(((1, 0), (0, 1)), 0.3), (0.384, 0.384 * ratio)
+    (growth,) = grown(system, frequencies)
+    assert np.log(growth) == pytest.approx(mean_growth(system, frequencies, 300), rel=3e-3)

@@ -177,8 +177,9 @@ def harmonic_balance(
     periods in modal coordinates before the next attempt. ``error`` is the size of the last step,
     ``step_error`` the change of the motion when the steps are halved, or an estimate of it where
     ``steps`` is chosen automatically. With dead zones the start decides which of several motions
-    is found. One whose disturbances grow by more than 0.1 % a period, which the linearized contacts
-    show, is warned of; ``stability`` computes the multipliers.
+    is found. One whose disturbances grow by more than 0.1 % a period, over several phases in a
+    cycle of the fastest, which the linearized contacts show, is warned of; ``stability`` computes
+    the multipliers of one on a clock.
     A body that nothing loads starts in the middle between its flanks and floats there without
     force, if they leave it room.
 
@@ -279,11 +280,12 @@ def _assessed(
     prepared: Prepared, residual: ClockResidual, solution: Solution, *, exactly: bool
 ) -> ComplexArray:
     """Floquet multipliers, if they are asked for; warns of a motion that is unstable."""
-    if not exactly:
-        from tribodyn.dynamics.harmonic.tangent_march import TangentMarch
+    from tribodyn.dynamics.harmonic.tangent_march import TangentMarch, warn_of_growth
 
-        linear = TangentMarch(residual, solution.state, _PER_CYCLE * prepared.system.cycles)
-        _warn_of_growth(linear.leading_multiplier(), 1.0 + _NEUTRAL)
+    what = "Floquet multiplier"
+    if not exactly:
+        linear = TangentMarch.of(residual, solution.state, _PER_CYCLE * prepared.system.cycles)
+        warn_of_growth(what, linear.leading_multiplier(), 1.0 + _NEUTRAL)
         return np.zeros(0, dtype=complex)
     grid = _marching_grid(prepared, residual)
     state, torque = starting_state(residual, solution.state)
@@ -291,18 +293,8 @@ def _assessed(
     multipliers = motion.multipliers(state, residual.frequency, torque)
     # A body that floats between its flanks keeps a disturbance, two multipliers of 1.
     limit = 1.0 if solution.state.mean_stiffness is None else 1.0 + _NEUTRAL
-    _warn_of_growth(float(np.abs(multipliers[:1]).max(initial=0.0)), limit)
+    warn_of_growth(what, float(np.abs(multipliers[:1]).max(initial=0.0)), limit)
     return multipliers
-
-
-def _warn_of_growth(multiplier: float, limit: float) -> None:
-    if multiplier > limit:
-        warn(
-            "unstable-orbit",
-            f"the motion is unstable: largest Floquet multiplier {multiplier:.6g}, limit 1. "
-            "Try another start, or simulate over time",
-            stacklevel=3,
-        )
 
 
 def _fft_length(steps: int) -> int:

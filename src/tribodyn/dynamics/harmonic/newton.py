@@ -58,14 +58,17 @@ class Solution(NamedTuple):
     krylov: int  #: products with the derivative
 
 
+def tangents(closed: Any, state: State) -> tuple[Array, Array]:
+    """Changes of the force with the motion and its rate (p, s, r), weighted at those of a cell."""
+    if state.cell is not None:
+        return state.cell.stiffness, state.cell.damping
+    stiffness = closed.contact_stiffness - state.law.stiffness
+    return stiffness, closed.contact_damping - state.law.damping
+
+
 def force_change(part: Any, state: State) -> Callable[[Array], Array]:
     """Change of the force on the closed structure with the motion of a part on its grid."""
-    closed, cell = part.structure, state.cell
-    if cell is None:
-        stiffness = closed.contact_stiffness - state.law.stiffness
-        damping = closed.contact_damping - state.law.damping
-    else:
-        stiffness, damping = cell.stiffness, cell.damping
+    cell, (stiffness, damping) = state.cell, tangents(part.structure, state)
     breaks, damped = state.breaks, bool(np.any(damping))
     spread: Any = breaks.spread(len(state.y)) if breaks.step.size else None
     gather: Any = None if spread is None else spread.T.tocsr()

@@ -22,6 +22,7 @@ from tribodyn.dynamics.harmonic.phase_grid import PhaseGrid
 from tribodyn.dynamics.harmonic.phase_residual import Part, PhaseResidual, parts_of
 from tribodyn.dynamics.harmonic.phase_response import (
     PhaseResponse,
+    growth,
     marched_response,
     phase_response,
     recorded,
@@ -59,6 +60,8 @@ _AGAIN = 1e-3
 #: Damping added at first where Newton's method does not converge, over the critical damping at
 #: the highest mesh frequency, and the factors by which it is reduced; Newton steps with each.
 _ADDED, _TRIES = (0.3, 0.1, 0.03, 0.01, 0.003), 12
+#: Growth in a cycle of the fastest phase that is warned of; logarithm of the largest stated one.
+_GROWS, _HIGH = 1.001, 50.0
 #: Newton steps in which the error halves if the points suffice.
 _PATIENCE = 5
 
@@ -292,6 +295,10 @@ def phase_balance(
         return _integrated(search, residual, solution, tolerance, motion)
     if step_error > _LIMIT:
         warn("step-size", _coarse(_most(points), step_error, steps is None), stacklevel=3)
+    from tribodyn.dynamics.harmonic.tangent_march import warn_of_growth
+
+    grows = math.exp(min(growth(residual, solution.state, motion) / float(frequency.max()), _HIGH))
+    warn_of_growth("growth of a disturbance in a cycle of the fastest phase", grows, _GROWS)
     return motion
 
 

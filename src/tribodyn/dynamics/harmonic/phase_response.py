@@ -7,10 +7,11 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from tribodyn.dynamics.harmonic.newton import State
+from tribodyn.dynamics.harmonic.newton import State, tangents
 from tribodyn.dynamics.harmonic.phase_march import PhaseMarch
 from tribodyn.dynamics.harmonic.phase_residual import PhaseResidual
 from tribodyn.dynamics.harmonic.phase_rows import PhaseRows
+from tribodyn.dynamics.harmonic.residual import OnGrid
 from tribodyn.dynamics.modal.closed_structure import ClosedStructure
 from tribodyn.dynamics.time.response import FineSamples, Response
 from tribodyn.errors import real_numbers, require_between, require_one_of
@@ -28,6 +29,9 @@ _TOGETHER, _WAVES = 2**22, 2**15
 #: Samples per cycle of the fastest phase along the closed line, most cycles of it for each further
 #: phase, and cycles over which no phases fall into step on it if it can be.
 _SAMPLED, _LONGEST, _APART = 64, 512, 12
+#: Logarithm of a disturbance over its start, after a cycle of each phase, below which none grows;
+#: fewest cycles of the fastest and the slowest phase over which its growth is averaged.
+_FORGOTTEN, _FEWEST, _TURNS = -7.0, 256, 8
 #: What has lines, in the order of their columns.
 _QUANTITIES = ("position", "velocity", "acceleration", "deflection", "contact_force")
 
@@ -227,22 +231,78 @@ def closed_line(frequency: Array) -> tuple[int, ...]:
     return tuple(lines[order[0]].tolist())
 
 
+def _summed(line: tuple[int, ...], count: int, numbers: Index, values: ComplexArray) -> Array:
+    """Sums of lines at even places of a closed line (count, c), as far as these tell them apart."""
+    orders = numbers @ np.array(line)
+    clear = np.abs(orders) <= count // 2
+    orders, values = orders[clear], values[clear]
+    lines = np.zeros((count // 2 + 1, values.shape[1]), dtype=complex)
+    amplitudes = np.where((orders < 0)[:, None], values.conj(), values)
+    np.add.at(lines, np.abs(orders), 0.5 * count * amplitudes)
+    lines[0] = 2.0 * lines[0].real
+    return np.fft.irfft(lines, count, axis=0)
+
+
+def growth(residual: PhaseResidual, state: State, motion: PhaseResponse) -> float:
+    """Mean rate of the disturbances that grow fastest along the closed line [1/s]."""
+    from tribodyn.dynamics.harmonic.tangent_march import TangentMarch
+
+    structure, line, count = residual.structure, motion.turns, motion.fine.phase.size
+    if structure.modes is None:
+        return -np.inf
+    parts = [
+        (
+            structure.push.T @ part.structure.push,
+            _tangents_along(line, count, part, each),
+            np.kron(np.eye(2), part.structure.along.T @ structure.along),
+        )
+        for part, each in zip(residual.parts, state.each, strict=True)
+    ]
+    step, logs = float(motion.fine.time[1]), np.zeros(0)
+    modes = np.count_nonzero(structure.modes[0].imag >= 0.0)
+    disturbance = np.random.default_rng(0).standard_normal(2 * modes)
+    passes = max(-(-_FEWEST // max(line)), -(-_TURNS // min(line)))
+    for begin in range(0, passes * count, _MOST):
+        at = np.arange(begin, begin + _MOST) % count
+        march = TangentMarch(structure, sum(a @ each[at] @ b for a, each, b in parts), step)
+        for first in range(0, _MOST, _SAMPLED):
+            disturbance = march.moved(disturbance, slice(first, first + _SAMPLED))
+            size = max(float(np.linalg.norm(disturbance)), 1e-300)
+            disturbance, logs = disturbance / size, np.append(logs, np.log(size))
+        if logs.sum() < _FORGOTTEN and (begin + _MOST) * min(line) >= count:
+            break
+    # Source: Das et al. (2017), Nonlinearity 30, 4111: weights that vanish smoothly at the ends.
+    place = (np.arange(logs.size) + 0.5) / logs.size
+    return float(np.average(logs, weights=np.exp(-1.0 / (place * (1 - place))))) / (step * _SAMPLED)
+
+
+def _tangents_along(line: tuple[int, ...], count: int, part: OnGrid, state: State) -> Array:
+    """Changes of the forces of a part with its motion and rate (count, s, 2 r) along a line."""
+    grid, changes = part.grid, tangents(part.structure, state)
+    both = np.concatenate(np.broadcast_arrays(*changes), axis=2)
+    values = both.reshape(len(both), -1)
+    if state.cell is not None:
+        values = state.cell.pieces.gather(values)
+    values = np.broadcast_to(values, (grid.size, values.shape[1]))
+    paired = ~grid.unpaired
+    lines = _cosines(grid.numbers[paired], grid.spectrum(values)[paired], grid.frequency)
+    along = _summed(line, count, *lines).reshape(count, *both.shape[1:])
+    if state.mean_stiffness is not None:  # it holds what nothing else does
+        along[..., : both.shape[2] // 2] -= state.mean_stiffness
+    return along
+
+
 def _along(line: tuple[int, ...], response: PhaseResponse) -> FineSamples:
     """Even samples of a motion along a closed line, each with the same weight."""
     from scipy.fft import next_fast_len
 
     numbers, values = response._all_lines
-    orders = numbers @ np.array(line)
-    highest = max(_SAMPLED * max(line), 2 * int(np.abs(orders).max(initial=0)) + 2)
-    count = int(next_fast_len(highest, real=True))
-    width = 2 * len(response.names)
-    lines = np.zeros((count // 2 + 1, width), dtype=complex)
-    amplitudes = np.where((orders < 0)[:, None], values[:, :width].conj(), values[:, :width])
-    np.add.at(lines, np.abs(orders), 0.5 * count * amplitudes)
-    lines[0] = 2.0 * lines[0].real
+    highest = 2 * int(np.abs(numbers @ np.array(line)).max(initial=0)) + 2
+    count = int(next_fast_len(max(_SAMPLED * max(line), highest), real=True))
     phase = np.arange(count) / count
     points = phase[:, None] * np.array(line) % 1.0
-    samples = response._samples(points, np.fft.irfft(lines, count, axis=0))
+    moved = _summed(line, count, numbers, values[:, : 2 * len(response.names)])
+    samples = response._samples(points, moved)
     fastest = int(np.argmax(line))
     time = phase * line[fastest] / response.frequencies[fastest]
     return FineSamples(phase, time, np.full(count, 1.0 / count), **samples)

@@ -244,4 +244,5 @@ class ClockResidual(Residual):
             return None
         from tribodyn.dynamics.harmonic.tangent_march import TangentMarch
 
-        return TangentMarch(self, state)
+        march = TangentMarch.of(self, state)
+        return lambda motion: march(motion, self.rate(motion))

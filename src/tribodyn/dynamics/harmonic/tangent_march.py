@@ -14,11 +14,14 @@ import numpy as np
 
 from tribodyn.compiled import announced, source_digest
 from tribodyn.compiled.cache import cached_njit
+from tribodyn.dynamics.harmonic.newton import tangents
+from tribodyn.errors import warn
 from tribodyn.types import Array
 
 if TYPE_CHECKING:
     from tribodyn.dynamics.harmonic.newton import State
     from tribodyn.dynamics.harmonic.residual import ClockResidual
+    from tribodyn.dynamics.modal.closed_structure import ClosedStructure
 
 #: Part of the start that is left when the motion is recorded.
 _LEFT = 1e-4
@@ -32,68 +35,68 @@ _OPTIONS: dict[str, Any] = {
 
 
 class TangentMarch:
-    """Integrate the linearized equations of a motion over one period of the clock.
+    """Integrate the linearized equations of a motion, one sample after the other."""
 
-    With ``fewest`` the stiffness and damping of the contacts are means over steps of which there
-    are at least as many.
-    """
-
-    def __init__(self, residual: ClockResidual, state: State, fewest: int | None = None) -> None:
-        structure, self.rate = residual.structure, residual.rate
+    # tangents (steps, s, 2 r): forces per motion and rate at the contacts; step: time of one [s]
+    def __init__(self, structure: ClosedStructure, tangents: Array, step: float) -> None:
         assert structure.modes is not None
         values, right, left = structure.modes
         chosen = values.imag >= 0.0
         values, into = values[chosen], left[chosen] @ structure.input
         output = structure.output @ (right[:, chosen] * np.where(values.imag > 0.0, 2.0, 1.0))
-        steps = len(state.y)
-        tangents = _tangents(residual, state)
-        if fewest is not None:
-            steps = next(n for n in range(min(fewest, steps), steps + 1) if steps % n == 0)
-            tangents = tangents.reshape(steps, -1, *tangents.shape[1:]).mean(axis=1)
-        h = 1.0 / (residual.frequency * steps)
-        x = values * h
+        x = values * step
         decay = np.exp(x)
         small = np.abs(x) < 1e-3
         divisor = np.where(small, 1.0, x)
         first = np.where(small, 1.0 + x / 2.0 + x * x / 6.0, (decay - 1.0) / divisor)
         second = np.where(small, 0.5 + x / 6.0 + x * x / 24.0, (first - 1.0) / divisor)
-        before, after = ((h * part)[:, None] * into for part in (first - second, second))
+        before, after = ((step * part)[:, None] * into for part in (first - second, second))
         signals = np.concatenate((output, output * values))
-        self._output = np.ascontiguousarray(np.concatenate((signals.real, -signals.imag), axis=1))
         pushed = decay[:, None] * after + before
-        self._push = np.ascontiguousarray(np.concatenate((pushed.real, pushed.imag)).T)
-        self._decay = np.stack((decay.real, decay.imag))
-        self._direct = np.ascontiguousarray((signals @ after).real)
         settling = math.log(1.0 / _LEFT) / max(structure.decay, 1e-300)
-        self._lead = int(min(settling / h, steps))
+        self._lead = int(min(settling / step, len(tangents)))
+        self._parts = (
+            np.stack((decay.real, decay.imag)),
+            np.ascontiguousarray(np.concatenate((signals.real, -signals.imag), axis=1)),
+            np.ascontiguousarray(np.concatenate((pushed.real, pushed.imag)).T),
+            np.ascontiguousarray((signals @ after).real),
+        )
         self._tangents = tangents
 
-    def __call__(self, motion: Array) -> Array:
+    @classmethod
+    def of(cls, residual: ClockResidual, state: State, fewest: int | None = None) -> TangentMarch:
+        """Over a period, with means of tangents over steps if fewer suffice."""
+        both, steps = _tangents(residual, state), len(state.y)
+        if fewest is not None:
+            steps = next(n for n in range(min(fewest, steps), steps + 1) if steps % n == 0)
+            both = both.reshape(steps, -1, *both.shape[1:]).mean(axis=1)
+        return cls(residual.structure, both, 1.0 / (residual.frequency * steps))
+
+    def __call__(self, motion: Array, rate: Array) -> Array:
         """Motion whose product with the derivative of the residual is nearly this one."""
-        right = np.concatenate((motion, self.rate(motion)), axis=1)
-        parts = self._decay, self._output, self._push, self._direct, self._tangents
-        start = np.zeros(self._decay.size)
-        return np.asarray(motion + march_tangent(*parts, right, start, self._lead))
+        right, start = np.concatenate((motion, rate), axis=1), np.zeros(self._parts[0].size)
+        march = march_tangent(*self._parts, self._tangents, right, start, self._lead)
+        return np.asarray(motion + march)
+
+    def moved(self, state: Array, steps: slice = slice(None)) -> Array:
+        """Disturbance (m,) of the modes after some steps."""
+        tangents, end = self._tangents[steps], np.array(state, dtype=float).ravel()
+        nothing = np.zeros((len(tangents), tangents.shape[2]))
+        march_tangent(*self._parts, tangents, nothing, end, 0)
+        return end
 
     def leading_multiplier(self) -> float:
         """Size of the largest Floquet multiplier, to the second order of the step."""
-        parts = self._decay, self._output, self._push, self._direct, self._tangents
-        size, nothing = self._decay.size, np.zeros((len(self._tangents), self._tangents.shape[2]))
-
-        def period(state: Array) -> Array:
-            end = np.array(state, dtype=float).ravel()
-            march_tangent(*parts, nothing, end, 0)
-            return end
-
+        size = self._parts[0].size
         start = np.random.default_rng(0).standard_normal(size)
-        if np.linalg.norm(period(start)) <= _FORGOTTEN * np.linalg.norm(start):
+        if np.linalg.norm(self.moved(start)) <= _FORGOTTEN * np.linalg.norm(start):
             return 0.0
         if size <= _DENSE:
-            values = np.linalg.eigvals(np.stack([period(row) for row in np.eye(size)], axis=1))
+            values = np.linalg.eigvals(np.stack([self.moved(row) for row in np.eye(size)], axis=1))
         else:
             from scipy.sparse.linalg import ArpackNoConvergence, LinearOperator, eigs
 
-            operator = LinearOperator((size, size), matvec=period, dtype=float)
+            operator = LinearOperator((size, size), matvec=self.moved, dtype=float)
             try:
                 values = eigs(operator, 1, v0=start, tol=1e-4, return_eigenvectors=False)
             except ArpackNoConvergence as error:
@@ -105,13 +108,23 @@ def _tangents(residual: ClockResidual, state: State) -> Array:
     """Forces per motion and rate at the contacts, at each sample (steps, s, 2 r)."""
     structure, breaks = residual.structure, state.breaks
     (s, r), steps = structure.contact_stiffness.shape, len(state.y)
-    tangents = np.empty((steps, s, 2 * r))
-    tangents[..., :r] = structure.contact_stiffness - state.law.stiffness
-    tangents[..., r:] = structure.contact_damping - state.law.damping
+    both = np.empty((steps, s, 2 * r))
+    both[..., :r], both[..., r:] = tangents(structure, state)
     if breaks.step.size:
         tangent = breaks.tangent.reshape(breaks.step.size, -1)
-        tangents[..., :r] += (breaks.spread(steps) @ tangent).reshape(steps, s, r)
-    return tangents
+        both[..., :r] += (breaks.spread(steps) @ tangent).reshape(steps, s, r)
+    return both
+
+
+def warn_of_growth(what: str, size: float, limit: float) -> None:
+    """Warn of a motion whose disturbances grow."""
+    if size > limit:
+        warn(
+            "unstable-orbit",
+            f"the motion is unstable: largest {what} {size:.6g}, limit 1. "
+            "Try another start, or simulate over time",
+            stacklevel=4,
+        )
 
 
 def _build(digest: str) -> Any:
