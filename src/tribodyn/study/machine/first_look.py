@@ -239,14 +239,22 @@ def idle_keys(case: MachineCase) -> dict[str, str]:
     idle: dict[str, str] = {}
     used: set[str] = set()
     for _, pair, _ in computed_pairs(case):
-        why = dict(idle_values(pair))
+        values = idle_values(pair)  # bodies are those of the shafts
+        why = {key: each for key, each in values if not key.endswith(("density", "face_width"))}
         idle |= {pair.source.key(key): reason for key, reason in why.items()}
         used |= {pair.source.key(key) for key, _ in flat_keys(pair.data) if key not in why}
+    if case.lone_stage is not None:
+        stage = case.stages[case.lone_stage].table
+        keys = [f"gears.{each}.position" for each in (stage.sun, stage.ring)]
+        if not stage.helix_angle:
+            idle |= dict.fromkeys(keys, "the gears of a stage by itself have one plane")
     has_oil = case.losses is not None or case.is_rated or case.heat is not None
     return {
         key: why
         for key, why in idle.items()
-        if key not in used and not (has_oil and key.startswith("lubricant"))
+        if key not in used
+        and case.get(key) is not None
+        and not (has_oil and key.startswith("lubricant"))
     }
 
 

@@ -40,17 +40,21 @@ _RUBS = 0.3
 _COUNT = 'Set friction.law = "mixed", which counts the asperities. '
 #: Results of the film model that asperities do not change.
 _FILMS = "Film and film stiffness are those"
-#: Keys of a length, a shape or a phase, and those of what has it.
-_OWNERS = {
+#: Keys of a length, a shape, a place or a phase, and those of what has it.
+_OWNERS: dict[str, tuple[str, ...]] = {
     **{
-        f"{end}_{of}": end
+        f"{end}_{of}": (end,)
         for end in ("tip_relief", "root_relief", "end_relief")
         for of in ("length", "shape")
     },
-    "run_out_phase": "run_out",
-    "profile_map_interpolation": "profile_map",
-    "transmission_error_phase": "transmission_error_amplitude",
+    "relief_length": ("tip_relief", "root_relief"),
+    "center": ("lengthwise_crowning", "profile_crowning", "bias"),
+    "run_out_phase": ("run_out",),
+    "profile_map_interpolation": ("profile_map",),
+    "transmission_error_phase": ("transmission_error_amplitude",),
 }
+#: Keys that only the heat of a film needs.
+_HEAT = "temperature_viscosity_coefficient", "thermal_conductivity", "specific_heat"
 #: Rim under the root below which the body bends with the teeth [modules].
 _RIM = 1.0
 #: Ratio of a given mass or inertia to that of the solid gear, or its inverse, above which a warning
@@ -374,16 +378,47 @@ def contact_cautions(share: float, *, touches_back: bool) -> tuple[ModelWarning,
     return (ModelWarning("contact-loss", message),)
 
 
+def _is_overhang(case: PairCase, key: str, other_use: object) -> bool:
+    """Whether a face width is that of the wider one of two plain straight gears."""
+    pair, gear = case.spur_pair, key.split(".")[1]
+    if pair is None or pair.pinion.helix_angle or other_use or pair.has_profile_modification:
+        return False
+    return bool(pair.gears[gear].face_width > min(each.face_width for each in pair.gears.values()))
+
+
 def idle_values(case: PairCase) -> Iterator[tuple[str, str]]:
     """Keys that a case gives and that have no effect beside its other values, and why."""
-    dry = case.film.model == "none" and case.friction.law == "constant"
-    dry = dry and case.rating is None and case.losses is None
-    dry = dry and (case.lubricant is None or case.lubricant.heat_transfer is None)
+    film, friction, oil, gears = case.film, case.friction, case.lubricant, case.gears
+    other_use = case.rating or case.losses or getattr(oil, "heat_transfer", None)
+    crossed = gears.kind == "hypoid"
+    dry = film.model == "none" and friction.law in ("none", "constant")
+    dry = dry and not (crossed or other_use)  # crossed flanks have the film of their ellipses
+    warm = (
+        getattr(film.chosen, "heated", False)
+        or friction.inlet_heating
+        or friction.flash_temperature
+    )
+    stiff = crossed and gears.stiffness_model != "fe3d"
+    weighed = [n for n, g in gears.by_name.items() if None not in (g.mass, g.moment_of_inertia)]
     for key, _ in flat_keys({k: v for k, v in case.data.items() if k != "assumed"}):
         table, _, name = key.rpartition(".")
-        owner = _OWNERS.get(name)
-        if owner and not case.get(f"{table}.{owner}"):
-            yield key, f"there is no {owner}"
+        owners = _OWNERS.get(name, ())
+        if owners and not any(case.get(f"{table}.{owner}") for owner in owners):
+            yield key, f"there is no {' and no '.join(owners)}"
+        elif name == "thickness_factor" and stiff:
+            yield key, 'stiffness_model is "line", which does not know the thickness of the teeth'
+        elif name == "outer_backlash" and stiff and case.dynamics.backlash is not None:
+            yield key, "dynamics.backlash is given"
+        elif key == "material.density" and crossed and len(weighed) == len(gears.by_name):
+            yield key, "both gears have mass and moment_of_inertia"
+        elif key in map("gears.{}.face_width".format, weighed) and _is_overhang(
+            case, key, other_use
+        ):
+            yield key, "its mate is narrower, and mass and moment_of_inertia are given"
+        elif name == "damping_in_gap" and case.backlash == 0.0:
+            yield key, "the flanks never part without backlash"
+        elif name in _HEAT and not warm and not (table == "lubricant" and other_use):
+            yield key, "neither film nor friction is heated"
         elif name == "hand" and case.spur_pair is not None and not case.gears.helix_angle:
             yield key, "the teeth are straight"
         elif key == "solver.coupling_tolerance" and case.solver.coupling == "none":
