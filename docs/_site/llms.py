@@ -15,7 +15,7 @@ _HEAD = f"""# tribodyn
 
 Not in this version: {"; ".join(each.text for each in features() if not each.modelled)}.
 
-Start from the recipe nearest to the question: each is a script that runs as it stands and uses
+Start from the recipe nearest to the question: each is a script that runs unchanged and uses
 public names only. `tribodyn cookbook NAME` prints it; `tribodyn explain WORDS` explains any key,
 model or symbol.
 """
@@ -42,6 +42,6 @@ def text() -> str:
 
 
 def write(app: Any, error: Exception | None) -> None:
-    """Write the file beside the pages once the site is built."""
+    """Write the file next to the pages once the site is built."""
     if error is None and app.builder.format == "html":
         (Path(app.outdir) / "llms.txt").write_text(text(), "utf-8")

@@ -88,7 +88,7 @@ def _accepting(function: Callable[..., Any], name: str) -> Callable[..., Any]:
     new_names = {end[:-1]: new for (head, mark, end), new in heads if mark and head == name}
 
     @functools.wraps(function)
-    def accepting_old_names(*args: Any, **named: Any) -> Any:
+    def accepting_old_names(*args: object, **named: object) -> Any:
         for old in new_names.keys() & named.keys():
             if (new := new_names[old]) not in named:
                 warn_of_old_name(f"{name}({old}=...)", f"{name}({new}=...)")

@@ -104,7 +104,7 @@ class Checkpoints:
         """Value of a run that an earlier process has finished, or None."""
         return self._earlier.get(name)
 
-    def keep(self, name: str, value: Any) -> None:
+    def keep(self, name: str, value: object) -> None:
         """Store a finished run."""
         if self._file is not None:
             self._write({"name": name, "value": value})

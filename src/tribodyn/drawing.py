@@ -12,6 +12,7 @@ from __future__ import annotations
 import json
 import math
 import re
+import sys
 from base64 import b64encode
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass, field
@@ -42,7 +43,7 @@ class Need:
     attributes: str  #: attribute names separated by blanks, of which one must not be None
     reason: str  #: message and remedy for a result without any of them
 
-    def __call__(self, subject: Any) -> str:
+    def __call__(self, subject: object) -> str:
         """Return the message if the data are missing."""
         values = (getattr(subject, name, None) for name in self.attributes.split())
         return "" if any(value is not None for value in values) else self.reason
@@ -178,7 +179,7 @@ class Drawing:
         """
         return self.caption if isinstance(self.caption, str) else self.caption(self.subject(result))
 
-    def __call__(self, result: Any, *arguments: Any, **options: Any) -> Any:
+    def __call__(self, result: object, *arguments: object, **options: object) -> Any:
         """Draw the figure of a result.
 
         Parameters
@@ -254,6 +255,12 @@ def figure_text(text: str, argument: str, kinds: Iterable[str] = ()) -> str:
     return f"{text}\n\nParameters\n----------\n{argument} : {what}\n\n{returns}\n"
 
 
+def _second_paragraph(text: str) -> str:
+    """Paragraph below the first line of a docstring, unless a section begins there."""
+    paragraph = f"{text}\n\n\n\n".split("\n\n")[1]
+    return "" if "\n---" in paragraph else " ".join(paragraph.split())
+
+
 FIGURES: Registry[Callable[..., Any]] = Registry("figure", "tribodyn.plot")
 
 
@@ -261,7 +268,7 @@ def drawing(
     name: str = "",
     *,
     heading: str,
-    caption: str | Callable[[Any], str],
+    caption: str | Callable[[Any], str] = "",
     missing: Lack = _always,
     of: str | Iterable[str] = (),
     made_by: str = "",
@@ -275,7 +282,8 @@ def drawing(
     heading : str
         Heading of the figure in a report.
     caption : str or callable
-        What to look for, in plain language; or a function of the result that returns it.
+        What to look for, in plain language; or a function of the result that returns it. By default
+        the paragraph below the first line of the docstring of the function.
     missing : callable
         Function of the result that returns why it cannot be drawn, see :class:`Need`.
     of : str or iterable of str
@@ -289,6 +297,11 @@ def drawing(
     callable
         Decorator that turns the function into a :class:`Drawing`.
 
+    Raises
+    ------
+    TypeError
+        If the function has neither a caption nor such a paragraph.
+
     Examples
     --------
     >>> from tribodyn.plot import FIGURES
@@ -298,9 +311,14 @@ def drawing(
     more = (missing, (of,) if isinstance(of, str) else tuple(of), made_by)
 
     def keep(draw: Callable[..., object]) -> Drawing:
-        argument = next(iter(signature(draw).parameters))
-        figure = Drawing(name or draw.__name__, checked(draw), heading, caption, *more)
-        text = figure_text(cleandoc(draw.__doc__ or ""), argument, figure.of)
+        argument, description = next(iter(signature(draw).parameters)), cleandoc(draw.__doc__ or "")
+        sentences = caption or _second_paragraph(description)
+        if not sentences and sys.flags.optimize < 2:  # which drops docstrings
+            raise TypeError(
+                f"{draw.__name__} has no caption, nor a second paragraph in its docstring"
+            )
+        figure = Drawing(name or draw.__name__, checked(draw), heading, sentences, *more)
+        text = figure_text(description, argument, figure.of)
         object.__setattr__(figure, "__doc__", text)
         FIGURES.register(figure.name)(figure)
         return figure

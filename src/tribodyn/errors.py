@@ -235,7 +235,7 @@ class ModelWarning(UserWarning):
         super().__init__(f"[{code}] {message}")
 
 
-def warn(code: str, message: str, *, stacklevel: int = 2, affected: Any = None) -> None:
+def warn(code: str, message: str, *, stacklevel: int = 2, affected: object = None) -> None:
     """Issue a :class:`ModelWarning` with a stable code.
 
     Parameters
@@ -295,7 +295,7 @@ def quiet(*codes: str) -> Iterator[None]:
 
 
 def real_numbers(
-    where: Argument | ModelOption | str, value: Any, wanted: str = "real numbers"
+    where: Argument | ModelOption | str, value: object, wanted: str = "real numbers"
 ) -> NDArray[np.float64]:
     """Read a number or an array of numbers as floats.
 
@@ -327,7 +327,7 @@ def real_numbers(
 
 
 def floats(
-    where: Argument | ModelOption | str, value: Any, wanted: str = "real numbers"
+    where: Argument | ModelOption | str, value: object, wanted: str = "real numbers"
 ) -> NDArray[np.float64]:
     """Read numbers as floats without a copy where that is possible."""
     try:
@@ -342,7 +342,7 @@ def floats(
     return array.astype(float, copy=False)
 
 
-def _brief(value: Any) -> str:
+def _brief(value: object) -> str:
     text = f'"{value}"' if isinstance(value, str) else repr(value)
     return text if len(text) <= 60 else f"{text[:57]}..."
 
@@ -372,7 +372,7 @@ ENDLESS = 1e60
 _FEW = 8
 
 
-def _all_hold(value: Any, holds: Callable[[Any], Any]) -> bool:
+def _all_hold(value: object, holds: Callable[[Any], Any]) -> bool:
     """Whether floats satisfy a convex limit, checked at the extremes of an array."""
     if isinstance(value, float):
         return abs(value) < ENDLESS and bool(holds(value))
@@ -384,7 +384,7 @@ def _all_hold(value: Any, holds: Callable[[Any], Any]) -> bool:
 
 
 def _check(
-    name: str, value: Any, unit: str, holds: Callable[[Any], Any], limit: str, remedy: str
+    name: str, value: object, unit: str, holds: Callable[[Any], Any], limit: str, remedy: str
 ) -> None:
     if _all_hold(value, holds):
         return
@@ -404,7 +404,7 @@ def _check(
         )
 
 
-def require_positive(name: str, value: Any, unit: str = "", *, remedy: str = "") -> None:
+def require_positive(name: str, value: object, unit: str = "", *, remedy: str = "") -> None:
     """Raise :class:`InputError` unless every element is finite and greater than zero.
 
     Parameters
@@ -431,7 +431,7 @@ def require_positive(name: str, value: Any, unit: str = "", *, remedy: str = "")
 
 
 def require_between(
-    name: str, value: Any, low: float, high: float, unit: str = "", *, remedy: str = ""
+    name: str, value: object, low: float, high: float, unit: str = "", *, remedy: str = ""
 ) -> None:
     """Raise :class:`InputError` unless every element is finite and within [low, high].
 
@@ -462,7 +462,7 @@ def require_between(
 
 
 @with_old_names
-def require_one_of(name: str, value: Any, choices: Iterable[str]) -> str:
+def require_one_of(name: str, value: object, choices: Iterable[str]) -> str:
     """Return a value if it is one of the allowed names, or raise :class:`InputError`.
 
     Parameters

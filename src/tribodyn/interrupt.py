@@ -120,7 +120,7 @@ class Threads:
                 future.set_exception(error)
             del task, future, function, arguments
 
-    def submit(self, function: Callable[..., Value], *arguments: Any) -> Future[Value]:
+    def submit(self, function: Callable[..., Value], *arguments: object) -> Future[Value]:
         """Run a function in one of the threads."""
         future: Future[Value] = Future()
         self._waiting.append(future)
@@ -142,7 +142,7 @@ class Threads:
             raise KeyboardInterrupt
 
     def __enter__(self) -> Threads:
-        """Start the threads; beside them the linear algebra starts none."""
+        """Start the threads; while they exist the linear algebra starts none."""
         self._limits.enter_context(single_blas_thread())
         try:
             if threading.current_thread() is threading.main_thread():
@@ -307,7 +307,7 @@ def aside(work: Callable[[], Value]) -> Value:
         return future.result()
 
 
-def stoppable(kernel: Callable[..., Any], *arguments: Any, brief: bool = False) -> Any:
+def stoppable(kernel: Callable[..., Any], *arguments: object, brief: bool = False) -> Any:
     """Call a compiled function that takes the flag last and returns its status (first)."""
     # Numba compiles a function anew for arrays that are read-only: it gets copies of these.
     items = [np.require(a, None, "W") if isinstance(a, np.ndarray) else a for a in arguments]

@@ -93,7 +93,7 @@ class Option:
 
 
 def number(
-    default: Any,
+    default: object,
     low: float,
     high: float,
     origin: str,
@@ -192,7 +192,7 @@ def file_path(*, meaning: str, example: str) -> Any:
     return Option("file", meaning, example=example)
 
 
-def _declared(default: Any) -> Option:
+def _declared(default: object) -> Option:
     """Option with a default only."""
     if isinstance(default, Option):
         return default
@@ -303,7 +303,7 @@ class Registry(Generic[T]):
 
         return keep
 
-    def define(self, name: str, **details: Any) -> Callable[[Callable[..., Any]], Any]:
+    def define(self, name: str, **details: object) -> Callable[[Callable[..., Any]], Any]:
         """Decorator that registers a function as a model; details are fields of the model class."""
 
         def keep(function: Callable[..., Any]) -> Callable[..., Any]:

@@ -56,7 +56,7 @@ def _show_error(
     shell: Any,
     kind: type[BaseException],
     error: BaseException,
-    traceback: Any,
+    traceback: object,
     tb_offset: Any = None,
 ) -> None:
     """Show an error of the package at the line of the user, without those that led to it."""

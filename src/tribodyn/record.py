@@ -56,19 +56,19 @@ def quantity(
     axis: bool = False,
     name: str = "",
     of: str = "",
-    default: Any = MISSING,
+    default: object = MISSING,
     repr: bool = True,
 ) -> Any:
     """Declare an array over the last of named dimensions, a coordinate if it is an axis."""
     return _field(Labels(dims, unit, axis, name, of), default, repr)
 
 
-def fact(name: str = "", default: Any = MISSING, repr: bool = True) -> Any:
+def fact(name: str = "", default: object = MISSING, repr: bool = True) -> Any:
     """Declare a number or a text about the whole result, an attribute of the data set."""
     return _field(Labels((), name=name), default, repr)
 
 
-def _field(labels: Labels, default: Any, repr: bool) -> Any:
+def _field(labels: Labels, default: object, repr: bool) -> Any:
     return field(default=default, repr=repr, metadata={_KEY: labels})
 
 
@@ -85,7 +85,7 @@ def labels_of(cls: type[Any]) -> dict[str, Labels]:
     return {each.name: each.metadata[_KEY] for each in fields(cls) if _KEY in each.metadata}
 
 
-def from_parts(kind: type[T], /, *parts: object, **values: Any) -> T:
+def from_parts(kind: type[T], /, *parts: object, **values: object) -> T:
     """Record of some values; its other fields are those of the first part that has them."""
     for name in (each.name for each in fields(kind) if each.name not in values):  # type: ignore[arg-type]
         for part in parts:
@@ -119,7 +119,7 @@ class Parts(NamedTuple):
 def figure_method(name: str, text: str) -> Callable[[Any], Any]:
     """Method that draws a result with a registered figure; the text is its docstring."""
 
-    def method(self: Any) -> Any:
+    def method(self: object) -> Any:
         return draw(self, name)
 
     method.__doc__ = f"{text}\n\nReturns\n-------\nplotly.graph_objects.Figure\n"
@@ -343,7 +343,7 @@ def _same_fields(a: Any, b: Any) -> bool:
     return all(_equal(getattr(a, each.name), getattr(b, each.name)) for each in fields(a))
 
 
-def _equal(first: Any, second: Any) -> bool:
+def _equal(first: object, second: object) -> bool:
     if isinstance(first, np.ndarray) or isinstance(second, np.ndarray):
         a, b = np.asarray(first), np.asarray(second)
         numeric = a.dtype.kind in "fc" and b.dtype.kind in "fc"
@@ -359,7 +359,7 @@ def _equal(first: Any, second: Any) -> bool:
     return bool(first == second) or (first != first and second != second)
 
 
-def _short(value: Any) -> str:
+def _short(value: object) -> str:
     """Short text of a value; for an array its range."""
     if isinstance(value, np.ndarray) and value.dtype.kind in "fiu" and value.size:
         if value.size == 1:

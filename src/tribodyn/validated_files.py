@@ -117,7 +117,7 @@ def _content(data: Any) -> _Content:
 
 
 @deferred()
-def write_dataset(data: Any, path: str | PathLike[str] | io.BytesIO) -> None:
+def write_dataset(data: object, path: str | PathLike[str] | io.BytesIO) -> None:
     """Write labelled arrays to a netCDF file or into memory, with a checksum of their content."""
     content = _content(data)
     try:
@@ -262,6 +262,6 @@ def _encoded(attributes: Any) -> bytes:
     return repr(sorted((name, _plain(value)) for name, value in plain.items())).encode()
 
 
-def _plain(value: Any) -> Any:
+def _plain(value: object) -> Any:
     """A list of one number or text equals that number or text."""
     return value[0] if isinstance(value, list) and len(value) == 1 else value

@@ -20,7 +20,7 @@ INDEX = ROOT / "docs" / "cookbook.md"
 _HEAD = """# Cookbook: how do I ...
 
 After this page you have a script for your question: each recipe is a question, a script of at most
-20 lines that runs as it stands, and the figure that it writes. On the command line:
+20 lines that runs unchanged, and the figure that it writes. On the command line:
 
 ```text
 tribodyn cookbook                          list all recipes

@@ -169,7 +169,7 @@ _HEAD = """# How far tribodyn is from its references
 Every figure here is computed by `python tests/docs/validation.py`. A reference is something that
 cannot be tuned: a closed form, another scheme written for this alone (`tests/references`), another
 program, a printed figure. The tolerance is what the tests demand; each row is computed anew in the
-tests and has to be as it stands here.
+tests and has to be as printed here.
 
 | references | figures | largest deviation | of |
 |---|---|---|---|

@@ -3,15 +3,18 @@
 from __future__ import annotations
 
 import types
+from collections.abc import Mapping
 from fractions import Fraction
-from typing import TypeVar
+from typing import Any, TypeVar
 
 import numpy as np
 import pytest
 from numpy.typing import ArrayLike, NDArray
 
 from tribodyn.arguments.annotations import wanted
-from tribodyn.types import Array
+from tribodyn.arguments.reading import checked
+from tribodyn.errors import InputError
+from tribodyn.types import Array, ByName, Options
 
 
 class _Alias:
@@ -33,3 +36,33 @@ def test_named_annotations_are_checked_as_what_they_stand_for() -> None:
     assert wanted(ArrayLike | None, 2).fits()(3.0)
     with pytest.raises(TypeError):
         wanted(NDArray[np.float64], 2).read("text")
+
+
+def _law(options: Options) -> Any:
+    """Friction.
+
+    Parameters
+    ----------
+    options : dict
+        Of the law.
+    """
+    return options
+
+
+def _named_law(options: ByName) -> Any:
+    return options
+
+
+def _plain_law(options: Mapping[str, Any]) -> Any:
+    return options
+
+
+def test_options_of_any_name_have_units_of_their_own() -> None:
+    import pint
+
+    _named_law.__doc__ = _plain_law.__doc__ = _law.__doc__
+    height = pint.UnitRegistry().Quantity(1.0, "um")
+    for law in (_law, _named_law, _plain_law):
+        with pytest.raises(InputError, match="Wanted: a value without a unit"):
+            checked(law)({"height": height})
+        assert checked(law)({"height": 1e-6}) == {"height": 1e-6}

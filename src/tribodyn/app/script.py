@@ -144,25 +144,25 @@ def _film(case: Any, values: Values) -> list[str]:
     return [_call("td.film_over_operation", **options)]
 
 
-def _bifurcation(case: Any, values: Values) -> list[str]:
+def _bifurcation(case: object, values: Values) -> list[str]:
     low, high, points = in_range("values", values["values"])
     options = {name: values[name] for name in ("mesh", "sweep", "cycles", "transient")}
     options["keep"] = min(48, values["cycles"])
     return [_call("td.bifurcation", values["key"], (low, high), points, **options)]
 
 
-def _continuation(case: Any, values: Values) -> list[str]:
+def _continuation(case: object, values: Values) -> list[str]:
     options = {name: values[name] for name in ("periods", "longest_step", "mesh")}
     return [_call("td.continuation", values["key"], ends_in("ends", values["ends"]), **options)]
 
 
-def _basins(case: Any, values: Values) -> list[str]:
+def _basins(case: object, values: Values) -> list[str]:
     names = ("transmission_error", "rate")
     ends = {name: ends_in(name, values[name]) for name in names if values[name]}
     return [_call("td.basins", **ends, points=values["points"], mesh=values["mesh"])]
 
 
-def _sobol(case: Any, values: Values) -> list[str]:
+def _sobol(case: object, values: Values) -> list[str]:
     pairs = (("key", "tolerance"), ("second_key", "second_tolerance"))
     spread = {values[key]: values[tolerance] for key, tolerance in pairs if values[key]}
     figures = (values["figures"] or "").replace(",", " ").split() or None
@@ -170,7 +170,7 @@ def _sobol(case: Any, values: Values) -> list[str]:
     return [call.replace("(case", f"(case.replace({spread!r})", 1)]
 
 
-def _recording(case: Any, values: Values) -> list[str]:
+def _recording(case: object, values: Values) -> list[str]:
     settings = {name: values[name] for name in ("duration", "sample_rate", "noise", "seed")}
     stated = ", ".join(f"{key}={value!r}" for key, value in settings.items())
     sensor = values["sensor"]

@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from tribodyn.app.case_form import field_of
-from tribodyn.app.study_functions import FUNCTIONS, MEASURED, RANGE, WRITERS, Shown, Values, shown
+from tribodyn.app.study_functions import FUNCTIONS, MEASURED, RANGE, WRITERS, Shown, Values, write
 from tribodyn.errors import InputError
 from tribodyn.model import REQUIRED, Option, choice, file_path, integer, number, text
 from tribodyn.nomenclature import GEARS
@@ -30,7 +30,7 @@ _CHECKED = ("number", "integer", "choice")
 _ENDS = "400..3500 rpm"
 
 
-def _text(default: Any, meaning: str, example: str) -> Option:
+def _text(default: object, meaning: str, example: str) -> Option:
     option: Option = text(default, meaning=f"{meaning}, such as {example}", example=example)
     return option
 
@@ -234,7 +234,7 @@ def compute(
     values = STUDIES[kind].read(texts)
     if kind in WRITERS:
         return WRITERS[kind](case, values, progress, target)  # type: ignore[arg-type]
-    return shown(FUNCTIONS[kind](case, values, progress), kind, case, target)  # type: ignore[arg-type]
+    return write(FUNCTIONS[kind](case, values, progress), kind, case, target)  # type: ignore[arg-type]
 
 
 def numeric_keys(options: Mapping[str, Option]) -> list[str]:

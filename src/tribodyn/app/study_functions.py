@@ -72,7 +72,7 @@ def _operation(case: PairCase, values: Values) -> dict[str, list[float] | None]:
     return {n: _points(case, f"operation.{n}", values[n] or "") for n in ("torque", "speed")}
 
 
-def shown(answer: StudyReportData, kind: str, case: PairCase, target: Path) -> Shown:
+def write(answer: StudyReportData, kind: str, case: PairCase, target: Path) -> Shown:
     """Write the directory of a study, and return what the page shows of it."""
     save_study(_KINDS.get(kind, kind), case, target, answer)
     table = ["Table", list(answer.head), [list(row) for row in answer.rows]]
@@ -131,7 +131,7 @@ def _recording(case: PairCase, values: Values, progress: Progress, target: Path)
     settings = {k: values[k] for k in ("duration", "sample_rate", "noise", "seed")}
     sensor = values["sensor"]
     recorded, truth = recorded_motion(case, [sensor], progress, **settings)
-    content = shown(recording_report_data(recorded, sensor), "recording", case, target)
+    content = write(recording_report_data(recorded, sensor), "recording", case, target)
     recorded.save(target / f"recording.{values['format']}", truth={"title": case.title, **truth})
     return content
 

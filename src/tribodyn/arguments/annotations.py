@@ -38,7 +38,7 @@ class UnitRefusedError(ValueRefusedError):
     """A quantity is not of the unit that is wanted."""
 
 
-def quantity_in(value: Any) -> Any:
+def quantity_in(value: object) -> Any:
     """Object with a unit that a value is, or that a labelled array holds; None without a unit."""
     if type(value) in PLAIN or type(value).__module__.partition(".")[0] == "tribodyn":
         return None
@@ -56,7 +56,7 @@ def unit_text(quantity: Any) -> str:
     return "1" if unit in ("", "dimensionless") else unit
 
 
-def _counts_angles(quantity: Any, converted: Any, unit: str) -> bool:
+def _counts_angles(quantity: object, converted: object, unit: str) -> bool:
     """Whether two quantities have one power of the radian, which pint takes for the number 1."""
     if hasattr(quantity, "to_root_units"):
         return angle_power(quantity) == angle_power(converted)
@@ -79,7 +79,7 @@ def _convert(quantity: Any, unit: str) -> Any:
     return quantity.to(unit) if hasattr(quantity, "to") else quantity.rescale(unit)
 
 
-def magnitude(value: Any, unit: str | None) -> Any:
+def magnitude(value: object, unit: str | None) -> Any:
     """Number or array that an object with a unit is in ``unit``; None where none is known."""
     quantity = quantity_in(value)
     if unit is None:
@@ -166,12 +166,12 @@ class Wanted(NamedTuple):
         return quick
 
 
-def _require(holds: Any) -> None:
+def _require(holds: object) -> None:
     if not holds:
         raise TypeError
 
 
-def _array(value: Any, kinds: str) -> Any:
+def _array(value: object, kinds: str) -> Any:
     """Array of numbers of one of these kinds; entries may be NaN for missing values."""
     _require(quantity_in(value) is None)  # NumPy would drop its unit
     array = np.asarray(value)
@@ -204,7 +204,7 @@ def _number(value: Any, sized: int, integer: bool, several: bool) -> Any:
 def _numbers(kinds: str, sized: int, as_given: bool) -> Wanted:
     """Arrays; ``as_given`` leaves the conversion to the function."""
 
-    def read(value: Any) -> Any:
+    def read(value: object) -> Any:
         array = _array(value, kinds)
         if sized and not array.ndim and array != array:
             raise ValueRefusedError("Wanted: numbers, not NaN")
@@ -217,7 +217,7 @@ def _numbers(kinds: str, sized: int, as_given: bool) -> Wanted:
 
 
 def _that(description: str, holds: Callable[[Any], Any], *kinds: type) -> Wanted:
-    def read(value: Any) -> Any:
+    def read(value: object) -> Any:
         _require(holds(value))
         return value
 
@@ -227,7 +227,7 @@ def _that(description: str, holds: Callable[[Any], Any], *kinds: type) -> Wanted
 def _instance(kind: type, strict: bool) -> Wanted:
     """Objects of a class; other objects are refused only after a function has failed."""
 
-    def holds(value: Any) -> bool:
+    def holds(value: object) -> bool:
         if strict and not getattr(kind, "_is_protocol", False):
             return isinstance(value, kind)
         home = type(value).__module__.partition(".")[0]
@@ -237,7 +237,7 @@ def _instance(kind: type, strict: bool) -> Wanted:
     return _that(f"{'an' if name[:1] in 'AEIO' else 'a'} {name}", holds, kind)
 
 
-def _items(hint: Any, origin: type, strict: bool) -> Wanted:
+def _items(hint: object, origin: type, strict: bool) -> Wanted:
     """Lists, tuples and mappings of checked items."""
     kinds = [kind for kind in typing.get_args(hint) if kind is not ...]
     # Entries may be NaN for missing values, as in arrays.
@@ -282,7 +282,7 @@ def _any_of(hints: Iterable[Any], sized: int, strict: bool) -> Wanted:
     several = [wanted(hint, sized, strict) for hint in hints]
     calls = any(alternative.description.startswith("a function") for alternative in several)
 
-    def read(value: Any) -> Any:
+    def read(value: object) -> Any:
         fault = TypeError()
         for alternative in several:
             try:
@@ -334,7 +334,7 @@ _SIMPLE = {
 
 
 def _without_alias(hint: Any) -> Any:
-    """What a name of an annotation stands for, such as that of arrays from NumPy 2.5 on."""
+    """Type that an alias in an annotation names, such as that of arrays from NumPy 2.5 on."""
     alias = typing.get_origin(hint)
     if hasattr(alias, "__value__"):
         return alias.__value__[typing.get_args(hint)]
@@ -342,7 +342,7 @@ def _without_alias(hint: Any) -> Any:
     return _without_alias(hint.__value__) if named else hint
 
 
-def wanted(hint: Any, sized: int, strict: bool = False, several: bool = False) -> Wanted:
+def wanted(hint: object, sized: int, strict: bool = False, several: bool = False) -> Wanted:
     """Check of an annotation; ``strict`` after a function has failed.
 
     ``sized`` is 0 for records, whose numbers may be NaN, 1 for methods, and 2 for functions;

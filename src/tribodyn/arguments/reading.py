@@ -42,7 +42,7 @@ from tribodyn.types import ByName, Tree
 _VALUE, _LINE = 240, 400
 
 
-def brief(value: Any) -> str:
+def brief(value: object) -> str:
     """Text of a value in one line; of a long array its shape."""
     if isinstance(value, np.ndarray) and value.size > 8:
         return f"array({' x '.join(map(str, value.shape))})"
@@ -104,7 +104,7 @@ class _Names(Tree):
         return vars(builtins)[name]
 
 
-def _makes(function: Any) -> bool:
+def _makes(function: object) -> bool:
     return getattr(function, "__name__", "") in ("__init__", "__new__")
 
 
@@ -128,9 +128,10 @@ def _parameters(function: Any, owner: type | None, strict: bool = False) -> dict
         unit = next((u for u in (_unit(each, name) for each in documents) if u is not None), None)
         if parameter.kind is parameter.VAR_KEYWORD:
             name, want, unit = _OTHERS, ANYTHING, None
-        anything = none or bool(re.search(r"\b(Any|object)\b", str(parameter.annotation)))
-        if re.search(r"\[str, (Any|object)\]", str(parameter.annotation)):
-            unit = None  # options have units of their own
+        written = str(parameter.annotation)
+        options = re.search(r"\[str, (Any|object)\]|\b(ByName|Options|Tree)\b", written)
+        anything = none or bool(options or re.search(r"\b(Any|object)\b", written))
+        unit = None if options else unit  # they have units of their own
         cases = reads_units and anything
         if name not in ("self", "cls") and not (cases and not unit):
             want = _with_unit(want, unit, inside=not cases)
@@ -141,7 +142,7 @@ def _parameters(function: Any, owner: type | None, strict: bool = False) -> dict
 def _with_unit(want: Wanted, unit: str | None, inside: bool) -> Wanted:
     """Check that first converts quantities to the unit of the parameter."""
 
-    def read(value: Any) -> Any:
+    def read(value: object) -> Any:
         return want.read(without_units(value, unit, inside))
 
     return want._replace(read=read)
@@ -164,7 +165,7 @@ class _Entry(NamedTuple):
 
 
 @functools.cache
-def _entries(documented: Any) -> dict[str, _Entry]:
+def _entries(documented: object) -> dict[str, _Entry]:
     """Entries of the parameters in a docstring."""
     entries: dict[str, _Entry] = {}
     section = _SECTION.search(inspect.getdoc(documented) or "")
@@ -175,12 +176,12 @@ def _entries(documented: Any) -> dict[str, _Entry]:
     return entries
 
 
-def _entry(documented: Any, name: str) -> str:
+def _entry(documented: object, name: str) -> str:
     entry = _entries(documented).get(name, _Entry())
     return _MARKUP.sub(r"\1", f"{entry.kind}|{entry.text}")
 
 
-def _unit(documented: Any, name: str) -> str | None:
+def _unit(documented: object, name: str) -> str | None:
     """Documented unit of a parameter; empty for a pure number, None where none is known."""
     entry = _entries(documented).get(name)
     if entry is None:
@@ -203,7 +204,7 @@ def _unit(documented: Any, name: str) -> str | None:
     return "" if unit in ("1", "-") else unit
 
 
-def _fault(documented: Any, name: str, value: Any, want: Wanted) -> Problem | None:
+def _fault(documented: object, name: str, value: object, want: Wanted) -> Problem | None:
     """Problem of one argument, with documented unit and meaning; None if it is valid."""
     try:
         want.read(value)
@@ -223,7 +224,7 @@ def _fault(documented: Any, name: str, value: Any, want: Wanted) -> Problem | No
     return Problem(f"{name} = {shown_value}", Argument(owner + name), why, remedy)
 
 
-def _short_repr(value: Any) -> str:
+def _short_repr(value: object) -> str:
     try:
         return shortened(repr(value), 60)
     except Exception:  # __repr__ of a foreign object may fail
@@ -333,7 +334,7 @@ def checked(function: Callable[..., Any], owner: type | None = None) -> Callable
     readers: list[_Reader] = []
 
     @functools.wraps(function)
-    def reading_arguments(*args: Any, **named: Any) -> Any:
+    def reading_arguments(*args: object, **named: object) -> Any:
         caller = sys._getframe(1)
         if caller.f_globals.get("__name__") == "dataclasses":  # replace
             caller = caller.f_back or caller
@@ -358,7 +359,7 @@ def checked(function: Callable[..., Any], owner: type | None = None) -> Callable
     return reading_arguments
 
 
-def guarded(member: Any, page: str) -> Any:
+def guarded(member: object, page: str) -> Any:
     """Check the arguments of one public function or class; other objects are returned unchanged.
 
     Parameters

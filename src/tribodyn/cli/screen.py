@@ -48,7 +48,7 @@ def _listed(values: Mapping[str, float], names: list[str]) -> Iterator[str]:
 
 
 def _grid(values: Mapping[str, float], names: list[str], title: str) -> Iterator[str]:
-    """Figures over parts: columns that do not fit beside each other follow below."""
+    """Figures over parts: columns that do not fit next to each other follow below."""
     cells: dict[tuple[str, str], tuple[str, str]] = {}
     numbers = _numbers(values, names)
     for name in names:

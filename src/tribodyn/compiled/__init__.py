@@ -42,7 +42,7 @@ def announced(kernel: Kernel, description: str, time: str) -> Kernel:
     return kernel
 
 
-def _announce_kernel(kernel: Any) -> None:
+def _announce_kernel(kernel: object) -> None:
     """Announce the compilation of a kernel once."""
     text = _texts.pop(kernel, None)
     if text is not None:
@@ -66,7 +66,7 @@ def _listen() -> None:
             self.depth += 1
             _announce_kernel(event.data["dispatcher"])
 
-        def on_end(self, event: Any) -> None:
+        def on_end(self, event: object) -> None:
             self.depth -= 1
             if self.depth == 0 and self.collects:
                 gc.enable()

@@ -12,10 +12,10 @@ from numba.core.runtime import rtsys
 from tribodyn.compiled import announce
 
 
-def cached_njit(**options: Any) -> Callable[[Any], Any]:
+def cached_njit(**options: object) -> Callable[[Any], Any]:
     """Compile a function at its first call, and cache the code on disk if that is possible."""
 
-    def compile_kernel(function: Any) -> Any:
+    def compile_kernel(function: object) -> Any:
         try:
             kernel = nb.njit(cache=True, **options)(function)
             _ignore_outdated_index(kernel)
@@ -31,7 +31,7 @@ def cached_njit(**options: Any) -> Callable[[Any], Any]:
     return compile_kernel
 
 
-def _ignore_outdated_index(kernel: Any) -> None:
+def _ignore_outdated_index(kernel: object) -> None:
     """Treat an index of another version, whose classes have moved since, as an empty one."""
     cache_file = getattr(getattr(kernel, "_cache", None), "_cache_file", None)
     if cache_file is None:  # nothing is compiled, for example with NUMBA_DISABLE_JIT
@@ -48,14 +48,14 @@ def _ignore_outdated_index(kernel: Any) -> None:
     cache_file._load_index = load_index
 
 
-def _load_code_alone(kernel: Any) -> None:
+def _load_code_alone(kernel: object) -> None:
     """Load cached code without all that Numba can compile, which takes 0.7 s once in a process."""
     # Where code is not cached, the compiler loads it after all.
     cached: Any = getattr(kernel, "_cache", None)
     if not hasattr(cached, "_load_overload"):  # private: another version of Numba may lack it
         return
 
-    def load_overload(signature: Any, context: Any) -> Any:
+    def load_overload(signature: object, context: object) -> Any:
         """Code of a signature; None if it is not cached."""
         rtsys.initialize(context)
         with cached._guard_against_spurious_io_errors():

@@ -90,20 +90,20 @@ def use_lock(kernel: Any, announce: Callable[[], None]) -> None:
     load, save = cache.load_overload, cache.save_overload
     name = f"{kernel.py_func.__module__}.{kernel.py_func.__name__}"
 
-    def load_overload(signature: Any, context: Any) -> Any:
+    def load_overload(signature: object, context: object) -> Any:
         code = load(signature, context)
         while code is None and _active and _active[-1].retry_load(f"{name} {signature}", announce):
             code = load(signature, context)
         return code
 
-    def save_overload(signature: Any, data: Any) -> None:
+    def save_overload(signature: object, data: object) -> None:
         with _active[-1].writing() if _active else nullcontext():
             save(signature, data)
 
     cache.load_overload, cache.save_overload = load_overload, save_overload
 
 
-def has_disk_cache(kernel: Any) -> bool:
+def has_disk_cache(kernel: object) -> bool:
     """Whether a kernel is cached on disk."""
     return hasattr(getattr(kernel, "_cache", None), "_cache_file")
 

@@ -20,7 +20,7 @@ from tribodyn.types import Tree
 class _NoCodegen:
     """Code generator of functions without machine code of their own."""
 
-    def set_env(self, name: str, env: Any) -> None:
+    def set_env(self, name: str, env: object) -> None:
         pass
 
 
@@ -66,7 +66,7 @@ class _InnerLowering(NativeLowering):  # type: ignore[misc]
 
 
 class _InnerCompiler(CompilerBase):  # type: ignore[misc]
-    def __init__(self, *arguments: Any) -> None:
+    def __init__(self, *arguments: object) -> None:
         super().__init__(*arguments)
         self.state.flags = _Flags(self.state.flags)
 

@@ -1,7 +1,7 @@
 """Recipes: one question and one short script each, for people and for coding assistants.
 
 The scripts lie in folders by topic and use public names only. Each opens with its question, ends
-with the figure that it writes, and runs as it stands. The tests run all of them.
+with the figure that it writes, and runs unchanged. The tests run all of them.
 
 | module | what it answers |
 |---|---|

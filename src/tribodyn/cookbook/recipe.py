@@ -40,7 +40,7 @@ class Recipe:
     pages : tuple of str
         Pages of the documentation to read on, without their suffix.
     script : str
-        The whole file: runs as it stands and writes one figure.
+        The whole file: runs unchanged and writes one figure.
     """
 
     name: str
@@ -77,7 +77,7 @@ class Recipe:
         return f"{self.name.replace('-', '_')}.html"
 
 
-#: What a code cell has beside its text before it runs.
+#: What a code cell has in addition to its text before it runs.
 _NOT_RUN: Tree = {"execution_count": None, "outputs": []}
 
 

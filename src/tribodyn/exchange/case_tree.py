@@ -116,7 +116,7 @@ def _component(number: int, kind: str, name: str, attributes: Iterable[Attribute
     return {"id": number, "type": kind, "name": name, "attributes": listed}
 
 
-def _rounded(value: Any) -> Any:
+def _rounded(value: object) -> Any:
     if isinstance(value, tuple):
         return [_rounded(item) for item in value]
     return float(f"{value:.15g}") if isinstance(value, float) else value
@@ -344,7 +344,7 @@ class _CaseTree(ModelTree):
         self.add_forms(flanks, options.modification)
         return number
 
-    def add_forms(self, flanks: list[int], modification: Any) -> None:
+    def add_forms(self, flanks: list[int], modification: object) -> None:
         """Add reliefs and crownings to the flanks of a gear."""
         for key, kind, amounts, length in _FORMS:
             if amount := getattr(modification, key, 0.0):

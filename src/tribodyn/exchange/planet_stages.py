@@ -55,13 +55,13 @@ class PlanetStage:
         return gear.id if number is None else number
 
     def senses(self) -> Iterator[tuple[int, int, int]]:
-        """Shafts that the stage joins, and 1 or -1 for their senses while the third one stands."""
+        """Shafts that the stage joins, and 1 or -1 for their senses while the third is fixed."""
         yield self.central(self.sun), self.central(self.ring), -1
         for carrier in self.carriers:
             yield self.central(self.sun), carrier, 1
 
     def shaft_names(self, *, lone: bool) -> dict[int, str]:
-        """Names of the shafts of the members; a stage by itself has those of gears and carrier."""
+        """Names of the shafts of the members; a lone stage has those of gears and carrier."""
         carrier = part_name(self.model, self._carrier if lone else self.carriers[0])
         if lone and self._carrier == self.component.id:
             carrier = "carrier"

@@ -15,7 +15,6 @@ from dataclasses import dataclass, field
 from io import BytesIO
 from os import PathLike
 from pathlib import Path
-from typing import Any
 from xml.etree import ElementTree
 
 from tribodyn import units
@@ -114,7 +113,7 @@ class Component:
             return f"{content:.12g}"
         return content if isinstance(content, str) else ""
 
-    def _parsed(self, name: str, content: Any, unit: str, si_unit: str) -> float:
+    def _parsed(self, name: str, content: object, unit: str, si_unit: str) -> float:
         written = "".join(unit.split())
         written = _UNITS.get(written, written)
         try:
@@ -242,7 +241,7 @@ def _unzipped(content: bytes, place: str) -> bytes:
 class _NoDoctype(ElementTree.TreeBuilder):
     """Tree builder that refuses documents with a document type, which may declare entities."""
 
-    def doctype(self, *_: Any) -> None:
+    def doctype(self, *_: object) -> None:
         raise ValueError("It declares a document type, which REXS files do not have")
 
 
@@ -326,7 +325,7 @@ def _refuse_missing(
         raise InputError(what, place, "", _REMEDY)
 
 
-def _components(items: Any, place: str) -> dict[int, Component]:
+def _components(items: object, place: str) -> dict[int, Component]:
     components: dict[int, Component] = {}
     for item in _dicts({"components": items}, "components", place):
         number = _id(item, place)
@@ -344,7 +343,7 @@ def _components(items: Any, place: str) -> dict[int, Component]:
     return components
 
 
-def _dicts(parent: Any, name: str, place: str) -> list[Tree]:
+def _dicts(parent: object, name: str, place: str) -> list[Tree]:
     items = parent.get(name) if isinstance(parent, dict) else None
     if items is None:
         return []

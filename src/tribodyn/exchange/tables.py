@@ -133,7 +133,7 @@ def _as_json(table: Table) -> str:
     return json.dumps(dict(zip(heads, plain, strict=True)), allow_nan=False, ensure_ascii=False)
 
 
-def _plain(value: Any) -> Any:
+def _plain(value: object) -> Any:
     """Value for JSON: None for NaN and infinity, text for complex and other values."""
     if isinstance(value, float):
         return value if math.isfinite(value) else None

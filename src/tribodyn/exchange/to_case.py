@@ -305,7 +305,7 @@ def changed_values(model: GearboxModel, before: Tree, now: Tree) -> Tree:
     return changes
 
 
-def same_value(first: Any, second: Any) -> bool:
+def same_value(first: object, second: object) -> bool:
     """Whether two values differ by no more than the digits of a file."""
     if isinstance(first, list | tuple) and isinstance(second, list | tuple):
         return len(first) == len(second) and all(map(same_value, first, second))

@@ -76,7 +76,7 @@ def machine_from_rexs(
     data, assumed = file_tables(model, load, changes)
     shared, notes = shared_models(model, load, changes)
     for name, values in shared.pop("gears", {}).items():
-        if name in data["gears"]:  # of equal planets the first one stands for all
+        if name in data["gears"]:  # of equal planets the first one represents all
             data["gears"][name] |= values
     data |= shared
     assumed |= {k: v for k, v in notes.items() if _of_case(k, data["gears"])}

@@ -34,7 +34,7 @@ def write_rexs(case: AnyCase, path: str | PathLike[str], *, force: bool = False)
         Case of cylindrical gears.
     path : path
         File to write: ``.rexs`` is XML, ``.rexsj`` JSON, ``.rexsz`` XML in a zip. The files of a
-        housing are copied beside it.
+        housing are copied next to it.
     force : bool
         Replace a file.
 
@@ -94,7 +94,7 @@ def _omitted(case: AnyCase, tree: ModelTree) -> tuple[str, ...]:
     return tuple(dict.fromkeys(names))
 
 
-def _si(key: str, value: Any) -> Any:
+def _si(key: str, value: object) -> Any:
     """Value of a key in SI where it is a list of texts, or a percentage."""
     if isinstance(value, tuple | list):
         return [_si(key, item) for item in value]

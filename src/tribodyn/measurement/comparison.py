@@ -316,7 +316,7 @@ def _data(computed: object, mesh: str | None) -> Any:
     return computed.to_xarray() if hasattr(computed, "to_xarray") else computed
 
 
-def _gears(computed: Any, data: Any) -> tuple[int, ...]:
+def _gears(computed: object, data: Any) -> tuple[int, ...]:
     """Teeth of both gears of a result; empty where it is only a data set."""
     if "teeth" in getattr(data, "attrs", {}):
         return tuple(map(int, data.attrs["teeth"]))

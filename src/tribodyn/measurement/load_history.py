@@ -13,7 +13,7 @@ from tribodyn.rating import SpectrumLoad, load_classes
 from tribodyn.types import Array
 from tribodyn.units import UnitProblemError, convert
 
-#: Part of the greatest speed below which a shaft stands still and counts no load cycles.
+#: Part of the greatest speed below which a shaft is at rest and counts no load cycles.
 _STANDSTILL = 1e-3
 
 

@@ -38,7 +38,7 @@ from tribodyn.units import UnitProblemError, convert
 def write(
     recording: Recording, path: str | os.PathLike[str], truth: Mapping[str, object] | None = None
 ) -> Path:
-    """Write a recording in the format of a file name, and its truth beside it as JSON."""
+    """Write a recording in the format of a file name, and its truth next to it as JSON."""
     place = Path(path)
     writer = check_ending(place)
     if not place.parent.is_dir():
@@ -247,7 +247,7 @@ class Recording(Record):
             ``.h5``, ``.uff`` (dataset 58, needs ``pip install "tribodyn[io]"``), ``.csv``, or
             ``.nc`` with a checksum.
         truth : mapping, optional
-            Labels, written beside it as JSON with the same name; not with ``.nc``.
+            Labels, written next to it as JSON with the same name; not with ``.nc``.
 
         Returns
         -------

@@ -167,7 +167,7 @@ def _of_pair(result: Result) -> Iterator[_Place]:
 
 def _of_parts(result: MachineResult) -> Iterator[_Place]:
     """Figures of the whole, of each stage, of each mesh, and of the motion of all parts."""
-    if result.case.lone_stage is None:  # a stage by itself has its front view
+    if result.case.lone_stage is None:  # a lone stage has its front view
         yield _Place(plot.machine, result)
     yield _Place(plot.machine_space, result)
     yield _Place(plot.machine_power, result)

@@ -104,7 +104,7 @@ def assumptions_of(case: Any) -> Sequence[Assumption]:
     return stated
 
 
-def provenance(result: Any) -> list[tuple[str, str]]:
+def provenance(result: object) -> list[tuple[str, str]]:
     """Software versions and date of a report as (name, value) pairs."""
     from tribodyn.study.pipeline.stored_motion import describe_stored_cycles
 

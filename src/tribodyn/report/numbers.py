@@ -116,10 +116,10 @@ class NumberTable:
     title: str
     parts: tuple[str, ...]
     rows: tuple[NumberRow, ...]
-    load: str = ""  #: load case, beside the operating point
+    load: str = ""  #: load case, in addition to the operating point
 
     def cells(self) -> tuple[list[str], list[list[str]]]:
-        """Head and rows as text, with the unit beside the values."""
+        """Head and rows as text, with the unit after the values."""
         if not self.parts:
             head = ["Topic", "Quantity", "Value", "Meaning"]
             numbers = [row.figure for row in self.rows]
@@ -157,7 +157,7 @@ def _number_table(
 
 
 def _like(largest: Number, value: float) -> str:
-    """A figure in the unit of the largest of its row; 0 where it is rounding beside that."""
+    """A figure in the unit of the largest of its row; 0 where it is rounding against that."""
     if abs(value) <= _ROUNDING * abs(float(largest.si)):
         return "0"
     figure = figure_of(largest.name)

@@ -34,7 +34,7 @@ if TYPE_CHECKING:
     from tribodyn.signals.synchronous_average import SynchronousAverage
     from tribodyn.study import RecordingVerdict
 
-#: Keys of the truth beside the faults, in SI.
+#: Keys of the truth other than the faults, in SI.
 _OPERATION = tuple(f"operation.{key}" for key in ("torque", "speed", "speed_of", "input", "output"))
 HEAD = ("Figure", "Value", "Unit", "Meaning")
 _RPM = 30.0 / np.pi

@@ -317,7 +317,7 @@ def _torque(default: float | None, meaning: str) -> Any:
     return number(default, 0.0, 1e6, _GUARD, meaning=meaning, **format_options)
 
 
-#: Data of a measurement beside its table.
+#: Data of a measurement in addition to its table.
 MEASUREMENT: dict[str, Option] = {
     "gear_loss_factor": number(None, 1e-3, 2.0, "gears lie between 0.05 and 0.5", meaning="H_V"),
     "gear_loss_factor_uncertainty": number(0.0, 0.0, 1.0, _GUARD, meaning="of H_V"),

@@ -135,7 +135,7 @@ class Network:
             parts += [rows.reshape(-1), bias]
         return np.concatenate(parts)
 
-    def evaluate(self, weights: Any, inputs: Any) -> Any:
+    def evaluate(self, weights: object, inputs: Any) -> Any:
         """Output of the network.
 
         Parameters

@@ -406,7 +406,7 @@ def _factors(key: str, entry: Any) -> Axis:
     return Axis(key, tuple(values))
 
 
-def _rows(entry: Any) -> list[tuple[str, Tree]]:
+def _rows(entry: object) -> list[tuple[str, Tree]]:
     """Members listed in the study file itself."""
     if not isinstance(entry, list) or not entry or not all(isinstance(row, dict) for row in entry):
         what = f"cases = {written(entry)}"

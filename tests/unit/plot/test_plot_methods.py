@@ -24,7 +24,7 @@ from tribodyn.analysis import (
 )
 from tribodyn.analysis import Spectrum as HarmonicSpectrum
 from tribodyn.cases import PaperComparison
-from tribodyn.drawing import FIGURES, Drawing, draw, load_figures
+from tribodyn.drawing import FIGURES, Drawing, draw, drawing, load_figures
 from tribodyn.dynamics import AdaptiveSolution
 from tribodyn.ehl import AmplitudeReduction, MixedLineContact, amplitude_reduction
 from tribodyn.errors import InputError
@@ -327,3 +327,36 @@ def test_waves_stand_over_their_number_with_the_fit() -> None:
     assert "0.30 to 0.60 of their amplitude in a slide-to-roll ratio of 0.5" in (
         figure.layout.title.text
     )
+
+
+def test_the_caption_of_a_figure_is_the_second_paragraph_of_its_docstring() -> None:
+    def level(values: Any) -> str:
+        """Draw the level.
+
+        A line that rises
+        is louder.
+
+        Parameters
+        ----------
+        values : Level
+        """
+        return f"{values}"
+
+    def bare(values: Any) -> str:
+        """Draw the level.
+
+        Parameters
+        ----------
+        values : Level
+        """
+        return f"{values}"
+
+    before = FIGURES.names()
+    try:
+        drawn = drawing("level-with-docstring", heading="Level")(level)
+        assert drawn.caption_of(1.0) == "A line that rises is louder."
+        with pytest.raises(TypeError, match="bare has no caption"):
+            drawing("level-without-caption", heading="Level")(bare)
+    finally:
+        FIGURES._items.pop("level-with-docstring", None)
+    assert FIGURES.names() == before

@@ -8,7 +8,7 @@ import os
 from collections import Counter
 from collections.abc import Iterator, Sequence
 from pathlib import Path
-from typing import Any, ClassVar
+from typing import ClassVar
 
 from tribodyn.aliases import with_old_names
 from tribodyn.cases.papers.printed import (
@@ -129,7 +129,7 @@ class PaperComparison(Record):
         return f"PaperComparison({self.lead})"
 
 
-def _text(value: Any) -> str:
+def _text(value: object) -> str:
     if value is None:
         return "-"
     if isinstance(value, list):

@@ -414,7 +414,7 @@ def _percent(values: object, *, sign: bool = True) -> str:
     return f"{_span(100.0 * np.asarray(values), '+.2g' if sign else '.2g')} %"
 
 
-def _times(values: Any) -> str:
+def _times(values: object) -> str:
     return "x" + _span(values, ".3g").replace("to ", "to x")
 
 

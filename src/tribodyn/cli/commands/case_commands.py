@@ -176,7 +176,7 @@ def new(
     Parameters
     ----------
     path : Path
-        File to write; the matrices of a housing are copied beside it.
+        File to write; the matrices of a housing are copied next to it.
     from_ : str
         Built-in case or case file to take all values from; by default a short file of no
         particular gears is written, to be filled in.

@@ -203,11 +203,11 @@ def _driving_torque(value: float | None, speed: float) -> float:
     return torque
 
 
-def _speeds(ratio: float, held: str, input: str) -> dict[str, float]:
+def _speeds(ratio: float, fixed: str, input: str) -> dict[str, float]:
     """Speeds over that of the input, by ``n_s - i n_r - (1 - i) n_c = 0``."""
     weight = {"sun": 1.0, "ring": -ratio, "carrier": ratio - 1.0}
-    output = next(member for member in _MEMBERS if member not in (held, input))
-    return {held: 0.0, input: 1.0, output: -weight[input] / weight[output]}
+    output = next(member for member in _MEMBERS if member not in (fixed, input))
+    return {fixed: 0.0, input: 1.0, output: -weight[input] / weight[output]}
 
 
 def _planet_speeds(teeth: PlanetTeeth, speeds: Mapping[str, float]) -> dict[str, float]:

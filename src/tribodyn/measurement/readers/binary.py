@@ -231,7 +231,7 @@ def mat(path: Path) -> RecordingData:
         names = ", ".join([*list(twice)[:5], *(["..."] if len(twice) > 5 else [])])
         message = f"{path} holds {names} twice: the second of each is read; save each variable once"
         warn("duplicate-variables", message)
-    # Recording.save writes units and names of the channels beside them.
+    # Recording.save writes units and names of the channels with them.
     labels = {n: str(variables[f"{n}_name"]) for n in variables if f"{n}_name" in variables}
     named: Tree = {}
     for name, value in variables.items():

@@ -66,7 +66,7 @@ def is_time(name: str, unit: str = "") -> bool:
     return plain in _TIME or (unit.strip().lower() in _UNITS and starts)
 
 
-def in_seconds(values: Array, unit: str, path: Any) -> Array:
+def in_seconds(values: Array, unit: str, path: object) -> Array:
     """Times in seconds."""
     unit = unit.strip() or "s"
     if unit.lower() in _UNITS:

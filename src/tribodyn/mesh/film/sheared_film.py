@@ -65,7 +65,7 @@ class ShearedFilms:
 
     @property
     def key(self) -> object:
-        """What the friction depends on beside load and place: mesh, speed, film and law."""
+        """What the friction depends on besides load and place: mesh, speed, film and law."""
         settings, pairs = self.settings, self.pairs
         law = settings.friction_law, repr(sorted(settings.friction_options.items()))
         film = settings.film_model, repr(sorted(settings.film.items()))

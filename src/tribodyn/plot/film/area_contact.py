@@ -44,14 +44,16 @@ def _levels(heat: Trace, top: float) -> Trace:
 
 @drawing(
     heading="Pressure and film of a point contact",
-    caption="Pressure and film over the contact, and both along the entrainment through its "
-    "middle. The film narrows at the outlet and at the sides; the dashed ellipse and curve are the "
-    "dry contact of Hertz.",
     of="PointContactSolution",
     made_by="Call tribodyn.ehl.solve_point_contact and its plot method.",
 )
 def point_contact(solution: Any) -> Sketch:
-    """Draw maps of pressure and film, and a cut through the middle along the x axis."""
+    """Draw maps of pressure and film, and a cut through the middle along the x axis.
+
+    Pressure and film over the contact, and both along the entrainment through its middle. The film
+    narrows at the outlet and at the sides; the dashed ellipse and curve are the dry contact of
+    Hertz.
+    """
     x, y, pressure, film = _metric(solution)
     a, b = displayed("half_width", [solution.semi_axis_x, solution.semi_axis_y]).tolist()
     top = float(displayed("film_thickness", _FILMS * solution.central_film))
@@ -86,13 +88,15 @@ def point_contact(solution: Any) -> Sketch:
 
 @drawing(
     heading="Pressure and film along a roller",
-    caption="Greatest pressure and least film at each position along the roller, and the load per "
-    "length. The dashed lines are the infinite line under the load at mid length.",
     of="FiniteLineSolution",
     made_by="Call tribodyn.ehl.solve_finite_line_contact and its plot method.",
 )
 def finite_line_contact(solution: Any) -> Sketch:
-    """Draw pressure, film and load along a roller."""
+    """Draw pressure, film and load along a roller.
+
+    Greatest pressure and least film at each position along the roller, and the load per length. The
+    dashed lines are the infinite line under the load at mid length.
+    """
     y = displayed("face_width", solution.y)
     film = np.asarray(solution.ridge_film)
     film = np.where(film < _FILMS * solution.central_film, film, np.nan)
@@ -118,13 +122,15 @@ def _along(
 
 @drawing(
     heading="Friction over the width of a contact",
-    caption="Friction force per width and rise of the mean film temperature on each line along the "
-    "entrainment, over the position across it.",
     of="AreaFriction",
     made_by="Call the friction method of tribodyn.ehl.solve_point_contact(...).",
 )
 def area_friction(friction: Any) -> Sketch:
-    """Draw friction and film temperature over the position across the entrainment."""
+    """Draw friction and film temperature over the position across the entrainment.
+
+    Friction force per width and rise of the mean film temperature on each line along the
+    entrainment, over the position across it.
+    """
     position = displayed("face_width", friction.position)
     force, rise = 1e-3 * friction.force_per_width, friction.temperature_rise
     panels = [

@@ -110,7 +110,7 @@ def film_response(
     return stack(title, axis_label("frequency"), panels, layout).figure()
 
 
-def _films(transient: TransientLineContact, time: Any, steady: ArrayLike | None) -> Panel:
+def _films(transient: TransientLineContact, time: object, steady: ArrayLike | None) -> Panel:
     rows: list[tuple[Any, ...]] = [
         ("in the centre", transient.central_film, PAIR_COLORS[2]),
         ("at its thinnest", transient.minimum_film, TOTAL),
@@ -134,13 +134,14 @@ def usual_films(film: Array) -> Trace:
 
 @drawing(
     heading="Film over time",
-    caption="Load, film and maximum pressure of a contact over time. Where the load rises, the "
-    "squeeze effect delays the thinning of the film.",
     of="TransientLineContact",
     made_by="Call tribodyn.ehl.solve_transient_line_contact and its plot method.",
 )
 def film_transient(transient: TransientLineContact, *, steady: ArrayLike | None = None) -> Sketch:
     """Draw load, central and minimum film and the maximum pressure over time.
+
+    Load, film and maximum pressure of a contact over time. Where the load rises, the squeeze effect
+    delays the thinning of the film.
 
     Parameters
     ----------
@@ -194,7 +195,7 @@ def _in_film(solution: Any, inside: Array, position: Array, film_scale: float) -
     return heat(position, film_scale * height, values, "Inferno", hover, colorbar=bar)
 
 
-def _temperatures(label: str, x: Any, oil: Any, surfaces: Any, name: str) -> Panel:
+def _temperatures(label: str, x: object, oil: Any, surfaces: Any, name: str) -> Panel:
     """Panel with the temperatures of the oil and of both surfaces [K]."""
     names = ("surface 1", "surface 2")
     rows = ((name, oil, TOTAL), *zip(names, surfaces, PAIR_COLORS, strict=False))
@@ -204,13 +205,14 @@ def _temperatures(label: str, x: Any, oil: Any, surfaces: Any, name: str) -> Pan
 
 @drawing(
     heading="Temperature of the film",
-    caption="Temperature in the film over the position and the distance from surface 1, the inlet "
-    "on the left; below it that of both surfaces and of the oil halfway between them.",
     of="ThermalLineContactSolution",
     made_by="Call tribodyn.ehl.solve_line_contact with thermal=True, then this figure.",
 )
 def film_temperature(solution: Any) -> Sketch:
     """Draw the temperatures of a heated line contact, the inlet on the left.
+
+    Temperature in the film over the position and the distance from surface 1, the inlet on the
+    left; below it that of both surfaces and of the oil halfway between them.
 
     Parameters
     ----------
@@ -242,13 +244,13 @@ def film_temperature(solution: Any) -> Sketch:
 
 @drawing(
     heading="Temperature of the film over time",
-    caption="Film, highest temperature of the oil and of both surfaces, and friction of a contact "
-    "over time.",
     of="ThermalTransientLineContact",
     made_by="Call tribodyn.ehl.solve_transient_line_contact with thermal=True and its plot method.",
 )
 def film_temperature_over_time(transient: Any) -> Sketch:
     """Draw film, temperatures and friction of a heated line contact over time.
+
+    Film, highest temperature of the oil and of both surfaces, and friction of a contact over time.
 
     Parameters
     ----------
@@ -284,14 +286,16 @@ _TICKS = [0.1, 0.2, 0.5, 1, 2, 5, 10, 20, 50, 100]
 
 @drawing(
     heading="Waves in the contact",
-    caption="Amplitude of waves in the film over that of the free surface. Waves that are short "
-    "against the inlet pass the contact as they are; long ones are flattened by the pressure. The "
-    "curve is the fit of Venner, Couhier, Lubrecht and Greenwood to pure rolling.",
     of="AmplitudeReduction",
     made_by="Call tribodyn.ehl.solve_amplitude_reduction(...) and its plot method.",
 )
 def amplitude_reduction(waves: AmplitudeReduction) -> Sketch:
-    """Draw the amplitude that waves keep over their length, with the curve of pure rolling."""
+    """Draw the amplitude that waves keep over their length, with the curve of pure rolling.
+
+    Amplitude of waves in the film over that of the free surface. Waves that are short against the
+    inlet pass the contact as they are; long ones are flattened by the pressure. The curve is the
+    fit of Venner, Couhier, Lubrecht and Greenwood to pure rolling.
+    """
     from tribodyn.ehl import amplitude_reduction as fitted
 
     order = np.argsort(waves.wave_number, kind="stable")

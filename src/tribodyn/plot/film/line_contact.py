@@ -149,7 +149,7 @@ def point(
 
 
 def _profile(
-    solution: Any, quantity: str, scales: Scales, points: int, name: str, color: str, **more: Any
+    solution: Any, quantity: str, scales: Scales, points: int, name: str, color: str, **more: object
 ) -> Trace:
     """Curve of pressure or film over the position, thinned to ``points`` nodes."""
     nodes = thinned(solution, points)
@@ -189,13 +189,14 @@ def _film(solution: Any, scales: Scales) -> list[Trace]:
 
 @drawing(
     heading="Pressure and film of a line contact",
-    caption="Pressure and film over the position, the inlet on the left. The film narrows before "
-    "its outlet; the dashed curve is the pressure of the dry contact under the same load.",
     of="LineContactSolution",
     made_by="Call tribodyn.ehl.solve_line_contact and its plot method.",
 )
 def line_contact(solution: Any, *, dimensionless: bool = False) -> Sketch:
     """Draw pressure and film of a line contact over the position, the inlet on the left.
+
+    Pressure and film over the position, the inlet on the left. The film narrows before its outlet;
+    the dashed curve is the pressure of the dry contact under the same load.
 
     Parameters
     ----------

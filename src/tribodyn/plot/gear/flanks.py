@@ -118,17 +118,14 @@ def _straight(pair: CylindricalPair) -> str:
     return "The lines of contact of spur gears lie straight along the face."
 
 
-@drawing(
-    heading="Lines of contact",
-    caption="Teeth of the pinion with the lines along which the wheel touches them. On a helical "
-    "gear a line enters at a corner of the flank and leaves at the opposite one. The thin lines "
-    "are the ends of the path of contact; the slider turns the gears through a mesh cycle.",
-    of=PAIRS,
-    missing=_straight,
-    made_by=RUN,
-)
+@drawing(heading="Lines of contact", of=PAIRS, missing=_straight, made_by=RUN)
 def contact_lines(pair: CylindricalPair) -> Sketch:
-    """Draw the flanks of the pinion in space with the moving lines of contact."""
+    """Draw the flanks of the pinion in space with the moving lines of contact.
+
+    Teeth of the pinion with the lines along which the wheel touches them. On a helical gear a line
+    enters at a corner of the flank and leaves at the opposite one. The thin lines are the ends of
+    the path of contact; the slider turns the gears through a mesh cycle.
+    """
     teeth = range(-1, path_of_contact(pair).pairs + 1)
     phases = np.arange(_FRAMES) / _FRAMES
     moving = [

@@ -52,15 +52,13 @@ def _panel(blank: HypoidBlank, gear: str, color: str) -> Row:
     return Row(label, Panel("Radius [mm]", traces), {"scaleanchor": "y"})
 
 
-@drawing(
-    heading="Blanks",
-    caption="Sections of the teeth in the axial plane of each gear: tip, root and pitch cone from "
-    "toe to heel, to scale, with the clearance between the tip and the root of the mating gear.",
-    of="HypoidBlank",
-    made_by="Call tribodyn.gear.hypoid_blank.",
-)
+@drawing(heading="Blanks", of="HypoidBlank", made_by="Call tribodyn.gear.hypoid_blank.")
 def hypoid_blank(blank: HypoidBlank) -> Sketch:
-    """Draw the sections of both blanks."""
+    """Draw the sections of both blanks.
+
+    Sections of the teeth in the axial plane of each gear: tip, root and pitch cone from toe to
+    heel, to scale, with the clearance between the tip and the root of the mating gear.
+    """
     rows = [_panel(blank, "pinion", PINION), _panel(blank, "wheel", WHEEL)]
     rows[1].axis["scaleanchor"] = "y2"
     title = (
@@ -159,14 +157,16 @@ def _error(contact: ToothContact) -> Panel:
 
 @drawing(
     heading="Contact pattern",
-    caption="Flank of the wheel with the contact pattern of the marking compound, the path of "
-    "contact and the contact lines of the conjugate flanks. Below, the lead of the wheel for each "
-    "pair; the pair with the uppermost curve is in contact. Curves end at edge contact.",
     of=("ToothContact", "Result.hypoid_contact"),
     made_by="Call tribodyn.gear.tooth_contact.",
 )
 def hypoid_contact(contact: ToothContact) -> Sketch:
-    """Draw contact pattern, path of contact and transmission error."""
+    """Draw contact pattern, path of contact and transmission error.
+
+    Flank of the wheel with the contact pattern of the marking compound, the path of contact and the
+    contact lines of the conjugate flanks. Below, the lead of the wheel for each pair; the pair with
+    the uppermost curve is in contact. Curves end at edge contact.
+    """
     label = f"marked at {contact.marking_thickness * 1e6:.3g} µm"
     marking = pattern(contact, label, PINION)
     flank = [outline(contact), _lines(contact), marking, *_path(contact)]
@@ -274,14 +274,14 @@ def _scene(eye: tuple[float, float, float], **axes: str) -> Trace:
 
 
 @drawing(
-    heading="The pair in space",
-    caption="Both gears in mesh at the calculation point, to scale, on their root cones. Rotate "
-    "the view with the mouse.",
-    of=("HypoidFlanks", "Result.case.hypoid_flanks"),
-    made_by=_MADE_BY,
+    heading="The pair in space", of=("HypoidFlanks", "Result.case.hypoid_flanks"), made_by=_MADE_BY
 )
 def hypoid_pair(flanks: HypoidFlanks) -> Sketch:
-    """Draw both gears in mesh."""
+    """Draw both gears in mesh.
+
+    Both gears in mesh at the calculation point, to scale, on their root cones. Rotate the view with
+    the mouse.
+    """
     order = (flanks.side, "coast" if flanks.side == "drive" else "drive")
     with quiet():
         sides = [
@@ -302,16 +302,14 @@ def hypoid_pair(flanks: HypoidFlanks) -> Sketch:
     return figure(title, traces, layout)
 
 
-@drawing(
-    heading="Ease-off",
-    caption="Gap between the pinion flank and the conjugate flank, over the "
-    "flank of the wheel: along its pitch cone towards the heel, across it towards the tip. Dots "
-    "lie on both flanks; the flanks first touch where the gap is zero.",
-    of=("HypoidFlanks", "Result.case.hypoid_flanks"),
-    made_by=_MADE_BY,
-)
+@drawing(heading="Ease-off", of=("HypoidFlanks", "Result.case.hypoid_flanks"), made_by=_MADE_BY)
 def ease_off(flanks: HypoidFlanks) -> Sketch:
-    """Draw the ease-off over the flank."""
+    """Draw the ease-off over the flank.
+
+    Gap between the pinion flank and the conjugate flank, over the flank of the wheel: along its
+    pitch cone towards the heel, across it towards the tip. Dots lie on both flanks; the flanks
+    first touch where the gap is zero.
+    """
     x = np.broadcast_to(flanks.along[:, None], flanks.across.shape) * 1e3
     y, gap = flanks.across * 1e3, flanks.gap * 1e6
     colors = [[0.0, "#f2f6fa"], [1.0, PINION]]

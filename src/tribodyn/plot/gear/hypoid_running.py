@@ -41,14 +41,16 @@ def _over_line(place: Array, values: Array, name: str, color: str, unit: str) ->
 
 @drawing(
     heading="Kinematics of the flanks",
-    caption="Mean over the contact line with a band from minimum to maximum, over the rotation of "
-    "the wheel. The flanks of a hypoid pair also slide along the tooth, so that the sliding speed "
-    "never reaches zero.",
     of="HypoidKinematics",
     made_by="Call tribodyn.gear.hypoid_kinematics(contact, pinion_speed) and its plot method.",
 )
 def hypoid_kinematics(motion: HypoidKinematics) -> Sketch:
-    """Draw speeds, slide-to-roll ratio and radius of the gap over the rotation of the wheel."""
+    """Draw speeds, slide-to-roll ratio and radius of the gap over the rotation of the wheel.
+
+    Mean over the contact line with a band from minimum to maximum, over the rotation of the wheel.
+    The flanks of a hypoid pair also slide along the tooth, so that the sliding speed never reaches
+    zero.
+    """
     place = np.degrees(motion.rotation)
     speed = display_unit("sliding_speed")
     rolling = [
@@ -96,14 +98,16 @@ def _label(misalignment: Misalignment) -> str:
 
 @drawing(
     heading="Contact with displaced gears",
-    caption="Flank of the wheel with the marked pattern and the mean place of the contact for each "
-    "displacement: V of the offset, H of the pinion and J of the wheel along their axes, α of the "
-    "shaft angle. Below, the transmission error of the running pair without load.",
     of="MisalignmentStudy",
     made_by="Call tribodyn.gear.misalignment_study.",
 )
 def hypoid_misalignment(study: MisalignmentStudy) -> Sketch:
-    """Draw patterns on the flank and the transmission error of each case."""
+    """Draw patterns on the flank and the transmission error of each case.
+
+    Flank of the wheel with the marked pattern and the mean place of the contact for each
+    displacement: V of the offset, H of the pinion and J of the wheel along their axes, α of the
+    shaft angle. Below, the transmission error of the running pair without load.
+    """
     flank: list[Trace] = [outline(study.contacts[0])]
     errors: list[Trace] = []
     for number, contact in enumerate(study.contacts):
@@ -176,13 +180,15 @@ def _regimes(heat: Trace) -> Trace:
 
 @drawing(
     heading="Pressure on the flank",
-    caption="Flank of the wheel: maximum Hertzian pressure of every cell while its pair passes "
-    "through the mesh. Blank areas never carry load; the dashed line is the common flank.",
     of=("HypoidLoadedContact", "Result.hypoid_friction.loaded"),
     made_by=_MADE_BY,
 )
 def hypoid_pressure(loaded: HypoidLoadedContact) -> Sketch:
-    """Draw the pressure over the flank: the contact pattern under load."""
+    """Draw the pressure over the flank: the contact pattern under load.
+
+    Flank of the wheel: maximum Hertzian pressure of every cell while its pair passes through the
+    mesh. Blank areas never carry load; the dashed line is the common flank.
+    """
     traces = _flank(loaded, 1e-9 * loaded.hertz_pressure, "pressure", "GPa", (0.5, 1.0))
     title = (
         f"Up to {loaded.maximum_pressure * 1e-9:.3g} GPa on the {loaded.cells.flanks.side} flank "
@@ -195,13 +201,15 @@ def hypoid_pressure(loaded: HypoidLoadedContact) -> Sketch:
 
 @drawing(
     heading="Load sharing and transmission error",
-    caption="Over one mesh cycle: the share of the torque of each pair, the lag of the wheel "
-    "with and without load, and the mesh stiffness on the line of action.",
     of=("HypoidLoadedContact", "Result.hypoid_friction.loaded"),
     made_by=_MADE_BY,
 )
 def hypoid_load(loaded: HypoidLoadedContact) -> Sketch:
-    """Draw load shares, transmission error and stiffness over the mesh cycle."""
+    """Draw load shares, transmission error and stiffness over the mesh cycle.
+
+    Over one mesh cycle: the share of the torque of each pair, the lag of the wheel with and without
+    load, and the mesh stiffness on the line of action.
+    """
     phase, count = loaded.phase, loaded.load_share.shape[1]
     shares = [
         line(phase, 100.0 * loaded.load_share[:, i], f"pair {i + 1}", PAIR_COLORS[i % 4], unit="%")

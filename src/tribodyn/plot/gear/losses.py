@@ -133,13 +133,15 @@ _SINKS = (
 
 @drawing(
     heading="Power flow of the rig",
-    caption="Power of the motor from left to right: first to the two gearboxes, then to the loss "
-    "mechanisms. The power that circulates in the loop is many times larger and is not shown.",
     of="RigPowerFlow",
     made_by="Call tribodyn.rig_power_flow(case) and its plot method.",
 )
 def power_flow(rig: RigPowerFlow) -> Sketch:
-    """Draw the power of the motor as a Sankey diagram."""
+    """Draw the power of the motor as a Sankey diagram.
+
+    Power of the motor from left to right: first to the two gearboxes, then to the loss mechanisms.
+    The power that circulates in the loop is many times larger and is not shown.
+    """
     place = {part: number for number, part in enumerate(rig.part)}
     columns = ([place[part] for part in parts] for _, parts, _ in _SINKS)
     lost = np.array([rig.loss[:, chosen].sum(axis=1) for chosen in columns])
@@ -172,13 +174,15 @@ def power_flow(rig: RigPowerFlow) -> Sketch:
 
 @drawing(
     heading="Friction from measured losses",
-    caption="Friction coefficients with their 95 % confidence intervals. The small difference of "
-    "two losses makes them wide at low torque; open markers are points that are not sound.",
     of="FrictionFromLoss",
     made_by="Call tribodyn.losses.friction_from_power_loss(table) and its plot method.",
 )
 def friction_from_loss(measured: FrictionFromLoss) -> Sketch:
-    """Draw friction coefficients with error bars over the torque, one curve per speed."""
+    """Draw friction coefficients with error bars over the torque, one curve per speed.
+
+    Friction coefficients with their 95 % confidence intervals. The small difference of two losses
+    makes them wide at low torque; open markers are points that are not sound.
+    """
     turns = np.round(displayed("speed", measured.speed), 1)
     torque, traces = displayed("torque", measured.torque), []
     sound = np.array([verdict == "sound" for verdict in measured.verdict])

@@ -124,9 +124,6 @@ def _chosen(contact: LoadedContact, phase: float | None) -> list[int]:
 
 @drawing(
     heading="Deformation of the teeth",
-    caption="Teeth in mesh: grey without load, coloured with the deformation under load, "
-    "exaggerated. The arrows are the forces on the driven gear. The bores are fixed, and "
-    "the driving gear is rotated until the flanks touch.",
     of="LoadedContact",
     made_by="Call tribodyn.loaded_contact(case) and its plot method.",
 )
@@ -134,6 +131,10 @@ def mesh_deformation(
     contact: LoadedContact, *, phase: float | None = None, torque: int = -1
 ) -> Sketch:
     """Draw the teeth in mesh with exaggerated deformation, and their loads.
+
+    Teeth in mesh: grey without load, coloured with the deformation under load, exaggerated. The
+    arrows are the forces on the driven gear. The bores are fixed, and the driving gear is rotated
+    until the flanks touch.
 
     Parameters
     ----------

@@ -263,13 +263,14 @@ def _by_kind(keys: Iterable[str]) -> Iterator[tuple[str, str, list[str], list[st
 
 @drawing(
     heading="Spread of the levels",
-    caption="Levels of the parts at the median of all inputs; the bars over them hold 95 % of the "
-    "variants.",
     of="MachineEnsemble",
     made_by="Call tribodyn.ensemble(machine, {...}, seed=1) and its plot method.",
 )
 def machine_ensemble(study: MachineEnsemble) -> Sketch:
-    """Draw the levels of all parts with the interval of the variants."""
+    """Draw the levels of all parts with the interval of the variants.
+
+    Levels of the parts at the median of all inputs; the bars over them hold 95 % of the variants.
+    """
     columns, rows, widest = study.figures(), [], (0.0, "No level varies")
     for number, (quantity, label, names, parts) in enumerate(_by_kind(columns)):
         middle = np.array([columns[name][0] for name in names])

@@ -75,15 +75,17 @@ def _rigid(modes: MachineModes) -> str:
 
 @drawing(
     heading="Natural modes on the shafts",
-    caption="Choose a mode: its displacement along y, z and x is drawn as a distance from the axis "
-    "of each shaft, to one scale. The title lists where its strain energy is; meshes excite the "
-    "modes that strain them.",
     missing=_rigid,
     of=("MachineModes", "MachineResult.modes"),
     made_by="Run a case with shafts, or call tribodyn.machine.machine_modes.",
 )
 def machine_modes(modes: MachineModes) -> Sketch:
-    """Draw the natural modes of a machine on its shafts, one at a time."""
+    """Draw the natural modes of a machine on its shafts, one at a time.
+
+    Choose a mode: its displacement along y, z and x is drawn as a distance from the axis of each
+    shaft, to one scale. The title lists where its strain energy is; meshes excite the modes that
+    strain them.
+    """
     structure = modes.structure
     view = SideView.of(structure.machine)
     reach = modes_in_reach(modes)
@@ -161,15 +163,17 @@ def _crossings(met: Sequence[Meeting]) -> Trace:
 
 @drawing(
     heading="Campbell diagram of the machine",
-    caption="Natural frequencies and what excites them over the speed of the input: the harmonics "
-    "of each mesh in its colour, and the turning of the shafts (dotted). Dark, numbered modes are "
-    "met by a mesh that strains them, at the dots; the larger the dot, the larger the part of the "
-    "strain energy that lies in the mesh. Light modes are not met, or not strained.",
     of=("MachineCampbell", "MachineResult.campbell"),
     made_by="Run a case with shafts, or tribodyn modes.",
 )
 def machine_campbell(diagram: MachineCampbell) -> Sketch:
-    """Draw natural frequencies and labelled excitations over the speed of the input."""
+    """Draw natural frequencies and labelled excitations over the speed of the input.
+
+    Natural frequencies and what excites them over the speed of the input: the harmonics of each
+    mesh in its colour, and the turning of the shafts (dotted). Dark, numbered modes are met by a
+    mesh that strains them, at the dots; the larger the dot, the larger the part of the strain
+    energy that lies in the mesh. Light modes are not met, or not strained.
+    """
     speed = displayed("speed", diagram.speed)
     hertz = displayed("frequency", np.multiply.outer(diagram.order, diagram.speed) / (2.0 * np.pi))
     top, met = float(hertz.max()), diagram.meetings()

@@ -239,14 +239,16 @@ def machine_forces(motion: MachineMotion) -> Sketch:
 
 @drawing(
     heading="Frequencies of the parts",
-    caption="Each mark is a frequency at which a part repeats: turns of shafts (f), gear meshes "
-    "(GMF) with sidebands, hunting teeth (HTF), assembly phases (APF), defects of bearings (BPFO, "
-    "BPFI, BSF, FTF), passing planets (PPF) and damaged teeth of a stage (TF).",
     of="KinematicFrequencies",
     made_by="Take those of a case: tribodyn.kinematic_frequencies.",
 )
 def kinematic_frequencies(lines: KinematicFrequencies) -> Sketch:
-    """Draw the frequencies of the parts, one row for each."""
+    """Draw the frequencies of the parts, one row for each.
+
+    Each mark is a frequency at which a part repeats: turns of shafts (f), gear meshes (GMF) with
+    sidebands, hunting teeth (HTF), assembly phases (APF), defects of bearings (BPFO, BPFI, BSF,
+    FTF), passing planets (PPF) and damaged teeth of a stage (TF).
+    """
     rows = list(dict.fromkeys(lines.part))
     traces = []
     for number, part in enumerate(rows):
@@ -266,14 +268,14 @@ def kinematic_frequencies(lines: KinematicFrequencies) -> Sketch:
 
 
 @drawing(
-    heading="Flow of power",
-    caption="From the input through shafts and meshes to the output; the width is the power. What "
-    "the friction of computed teeth takes away leaves at each mesh.",
-    of="MachineResult",
-    made_by="Run a case with shafts: tribodyn.run.",
+    heading="Flow of power", of="MachineResult", made_by="Run a case with shafts: tribodyn.run."
 )
 def machine_power(result: MachineResult) -> Sketch:
-    """Draw the power that flows through shafts and meshes, and what is lost."""
+    """Draw the power that flows through shafts and meshes, and what is lost.
+
+    From the input through shafts and meshes to the output; the width is the power. What the
+    friction of computed teeth takes away leaves at each mesh.
+    """
     machine, lost = result.machine, result.operation.friction_power
     run, flow, figures = machine.operation, result.operation.power_flow, result.operation.figures
     names = [f"shaft {name}" for name in machine.shafts]

@@ -76,15 +76,17 @@ def _not_drawn(result: MachineResult | MachineCase) -> str:
 
 @drawing(
     heading="The stage in front view",
-    caption="Sun, planets and ring with their teeth in the transverse section, and the arms of the "
-    "carrier, to scale, seen against the axis. Press Play to turn the stage: one step of the "
-    "carrier from planet to planet, or the same time where the carrier is held.",
     missing=_not_drawn,
     of=("MachineResult", "MachineCase"),
     made_by="Load or run a case with planets: tribodyn.load_case, tribodyn.run.",
 )
 def planetary_stage(result: MachineResult | MachineCase) -> Sketch:
-    """Draw the first planetary stage of a machine with moving planets."""
+    """Draw the first planetary stage of a machine with moving planets.
+
+    Sun, planets and ring with their teeth in the transverse section, and the arms of the carrier,
+    to scale, seen against the axis. Press Play to turn the stage: one step of the carrier from
+    planet to planet, or the same time where the carrier is held.
+    """
     source: Any = result
     case: MachineCase = getattr(source, "case", source)
     parts = next(s for s in case.stages.values() if s.table.planet_type == "single")
@@ -138,13 +140,15 @@ def planetary_stage(result: MachineResult | MachineCase) -> Sketch:
 
 @drawing(
     heading="Mesh forces of all planets",
-    caption="Force of each sun mesh and of each ring mesh along its line of action over a mesh "
-    "cycle, and the motion of the sun about its mean place, which the axis names.",
     of=("PlanetaryMotion",),
     made_by="Run a case with planets: tribodyn.run(...).operation.stage().motion.",
 )
 def planetary_forces(motion: PlanetaryMotion) -> Sketch:
-    """Draw the mesh forces of all planets and the motion of the sun over a mesh cycle."""
+    """Draw the mesh forces of all planets and the motion of the sun over a mesh cycle.
+
+    Force of each sun mesh and of each ring mesh along its line of action over a mesh cycle, and the
+    motion of the sun about its mean place, which the axis names.
+    """
     panels = []
     for mesh, force in (("Sun mesh", motion.sun_mesh_force), ("Ring mesh", motion.ring_mesh_force)):
         rows = [
@@ -174,14 +178,16 @@ def planetary_forces(motion: PlanetaryMotion) -> Sketch:
 
 @drawing(
     heading="Sensor on the ring",
-    caption="Lines of a sensor on the ring about the first two harmonics of the mesh frequency, "
-    "over the order of the carrier: planets that pass modulate their mesh forces. Dotted: the "
-    "harmonics themselves.",
     of=("RingSensorSignal",),
     made_by="Call ring_sensor() of a result at one load, or tribodyn.machine.ring_sensor_signal.",
 )
 def ring_sensor(signal: RingSensorSignal) -> Sketch:
-    """Draw the sidebands of a sensor on the ring."""
+    """Draw the sidebands of a sensor on the ring.
+
+    Lines of a sensor on the ring about the first two harmonics of the mesh frequency, over the
+    order of the carrier: planets that pass modulate their mesh forces. Dotted: the harmonics
+    themselves.
+    """
     panels, teeth = [], signal.ring_teeth
     for harmonic in (1, 2):
         lines = signal.sidebands(harmonic, _SIDEBANDS)
@@ -220,14 +226,16 @@ def _without_factors(statistics: LoadShareStatistics | MachineEnsemble) -> str:
 
 @drawing(
     heading="Load sharing over tolerances",
-    caption="Part of the stages whose mesh load factor K_gamma does not exceed a value. The "
-    "steeper the curve, the less the tolerances matter.",
     missing=_without_factors,
     of=("LoadShareStatistics", "MachineEnsemble"),
     made_by="Call tribodyn.study.load_share_statistics(...) or tribodyn.ensemble(stage, seed=1).",
 )
 def load_share_statistics(statistics: LoadShareStatistics | MachineEnsemble) -> Sketch:
-    """Draw the distribution of the mesh load factor."""
+    """Draw the distribution of the mesh load factor.
+
+    Part of the stages whose mesh load factor K_gamma does not exceed a value. The steeper the
+    curve, the less the tolerances matter.
+    """
     factor = np.sort(_load_factors(statistics))
     part = 100.0 * (np.arange(factor.size) + 0.5) / factor.size
     curve = line(factor, part, "stages", PINION, unit="%")
@@ -282,14 +290,16 @@ def _mode_trace(angles: Array, motion: Array, color: str, width: float, visible:
 
 @drawing(
     heading="Natural modes of the planetary stage",
-    caption="Choose a mode: pitch circles of sun, ring and planets and the arms of the carrier, at "
-    "rest (grey) and displaced, in the colour of the type of the mode. A mark on each gear shows "
-    "its rotation. The displacements have one scale; the radii are schematic.",
     of=("PlanetaryModes",),
     made_by="Call tribodyn.machine.planetary_modes on a plane model.",
 )
 def planetary_modes(modes: PlanetaryModes) -> Sketch:
-    """Draw the natural modes of a planetary stage, one at a time."""
+    """Draw the natural modes of a planetary stage, one at a time.
+
+    Choose a mode: pitch circles of sun, ring and planets and the arms of the carrier, at rest
+    (grey) and displaced, in the colour of the type of the mode. A mark on each gear shows its
+    rotation. The displacements have one scale; the radii are schematic.
+    """
     angles = np.asarray(modes.angles)
     count = modes.frequency.size
     labels = [

@@ -362,16 +362,18 @@ def _levels(view: SideView) -> dict[str, int]:
 
 @drawing(
     heading="The machine",
-    caption="To scale, with the axes unfolded into one plane; axes that cross are seen along their "
-    "common perpendicular. Shafts with their sections, gears with their reference circles (blue: "
-    "driving, orange: driven, an idler counts as driving), bevel gears with their pitch cones, "
-    "bearings with crosses; lines on helical gears are inclined like their teeth. Point "
-    "at a part for its speed, torque or size.",
     of=("Machine", "MachineResult.machine"),
     made_by="Load a case with shafts, or build a tribodyn.machine.Machine.",
 )
 def machine(machine: Machine) -> Sketch:
-    """Draw the shafts of a machine with gears and bearings, to scale."""
+    """Draw the shafts of a machine with gears and bearings, to scale.
+
+    To scale, with the axes unfolded into one plane; axes that cross are seen along their common
+    perpendicular. Shafts with their sections, gears with their reference circles (blue: driving,
+    orange: driven, an idler counts as driving), bevel gears with their pitch cones, bearings with
+    crosses; lines on helical gears are inclined like their teeth. Point at a part for its speed,
+    torque or size.
+    """
     view = SideView.of(machine)
     traces = [*_shafts(view), *_bearings(view), *_gears(view)]
     run, shafts = machine.operation, machine.kinematics.shafts

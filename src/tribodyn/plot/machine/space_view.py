@@ -238,15 +238,17 @@ def _mode(space: _Space, modes: MachineModes, number: int) -> Iterator[Trace]:
 
 @drawing(
     heading="The machine in space",
-    caption="To scale; drag to turn it. Shafts, bearings and gears with their reference bodies and "
-    "the lines of their teeth (blue: driving, orange: driven). Choose the flow of power, drawn as "
-    "lines as wide as their part of the power at the input, or a natural mode: axes of shafts "
-    "(dark) and reference circles of gears, displaced from where they are at rest.",
     of=("MachineModes", "MachineResult.modes", "Machine"),
     made_by="Run a case with shafts, or build a tribodyn.machine.Machine.",
 )
 def machine_space(machine: Machine | MachineModes) -> Sketch:
-    """Draw the machine in space, with the flow of power and its natural modes to choose from."""
+    """Draw the machine in space, with the flow of power and its natural modes to choose from.
+
+    To scale; drag to turn it. Shafts, bearings and gears with their reference bodies and the lines
+    of their teeth (blue: driving, orange: driven). Choose the flow of power, drawn as lines as wide
+    as their part of the power at the input, or a natural mode: axes of shafts (dark) and reference
+    circles of gears, displaced from where they are at rest.
+    """
     structure = getattr(machine, "structure", None)
     modes = None if structure is None else cast("MachineModes", machine)
     space = _Space(cast("Machine", machine) if structure is None else structure.machine)

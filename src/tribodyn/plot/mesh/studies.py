@@ -317,15 +317,17 @@ _WORDS = {
 
 @drawing(
     heading="Coupling of load, film and friction",
-    caption="Above: change from one iteration to the next; a straight descent is a contracting "
-    "iteration, and its slope shows the strength of the coupling. Below: the force of all pairs "
-    "relative to the force of the torque alone, consistent with film, friction and stiffness.",
     missing=Need("iteration", "Set solver.coupling to iterate load, film and friction."),
     of=("Coupling", "Result.coupling"),
     made_by='Set solver.coupling = "static" or "dynamic".',
 )
 def coupling(coupled: Coupling) -> Sketch:
-    """Draw the change of each quantity per iteration, and the converged load."""
+    """Draw the change of each quantity per iteration, and the converged load.
+
+    Above: change from one iteration to the next; a straight descent is a contracting iteration, and
+    its slope shows the strength of the coupling. Below: the force of all pairs relative to the
+    force of the torque alone, consistent with film, friction and stiffness.
+    """
     curves, changed = [], list[str]()
     for (name, label), color in zip(_WORDS.items(), (TOTAL, *COLORS), strict=False):
         change = getattr(coupled, name)
@@ -354,14 +356,15 @@ def coupling(coupled: Coupling) -> Sketch:
 
 @drawing(
     heading="Load over the face",
-    caption="Load of each slice of the face over the mesh cycle, over the mean of all slices: 1 "
-    "everywhere is even. The greatest value is the face load factor. Dotted: the pair as it was "
-    "given.",
     of="LeadOptimum",
     made_by="Call tribodyn.stiffness.optimize_lead and the plot method of its result.",
 )
 def lead_optimum(study: LeadOptimum) -> Sketch:
-    """Draw the load over the face before and after the modification, a colour for each torque."""
+    """Draw the load over the face before and after the modification, a colour for each torque.
+
+    Load of each slice of the face over the mesh cycle, over the mean of all slices: 1 everywhere is
+    even. The greatest value is the face load factor. Dotted: the pair as it was given.
+    """
     place, traces = displayed("face_position", study.face_position), []
     colors, names = torque_colors(study.torque.size), torque_names(study.torque)
     for t, (color, name) in enumerate(zip(colors, names, strict=True)):

@@ -102,14 +102,13 @@ def _pairs(mesh: MeshTable, ends: tuple[float, float]) -> list[tuple[str, Array,
     return sorted(curves, key=lambda each: each[0] != _PAIR)
 
 
-@table_drawing(
-    heading="Stiffness over the roll angle",
-    caption="The secant stiffness is the load over the total deflection, the tangent stiffness "
-    "applies to small vibration about the load. The curve of a tooth pair is its part of the "
-    "secant stiffness.",
-)
+@table_drawing(heading="Stiffness over the roll angle")
 def static_stiffness(mesh: MeshTable) -> Sketch:
-    """Draw secant and tangent stiffness of the mesh and the parts of the tooth pairs."""
+    """Draw secant and tangent stiffness of the mesh and the parts of the tooth pairs.
+
+    The secant stiffness is the load over the total deflection, the tangent stiffness applies to
+    small vibration about the load. The curve of a tooth pair is its part of the secant stiffness.
+    """
     pair, ends = mesh.gear_pair, (-_MARGIN, mesh.transverse_contact_ratio + _MARGIN)
 
     def over_angle(age: Array, values: Array, name: str, color: str, **style: object) -> Trace:

@@ -89,16 +89,15 @@ def _no_harmonics(experiment: FrictionExperiment) -> str:
 
 
 @drawing(
-    heading="What friction changes",
-    caption="Every point is a steady state. The mean coefficient determines the size of the "
-    "effect for every friction law; the driving gear and the torque that is held constant "
-    "determine its sign. Friction alone excites vibration only across the line of action.",
-    missing=_no_effect,
-    of="FrictionExperiment",
-    made_by=_MADE,
+    heading="What friction changes", missing=_no_effect, of="FrictionExperiment", made_by=_MADE
 )
 def friction_effect(experiment: FrictionExperiment) -> Sketch:
-    """Draw the effect of friction on forces and transmission error over its mean coefficient."""
+    """Draw the effect of friction on forces and transmission error over its mean coefficient.
+
+    Every point is a steady state. The mean coefficient determines the size of the effect for every
+    friction law; the driving gear and the torque that is held constant determine its sign. Friction
+    alone excites vibration only across the line of action.
+    """
     panels = [
         Panel(label, [{**t, "showlegend": number == 0} for t in _curves(experiment, name)])
         for number, (name, label) in enumerate(_EFFECTS)
@@ -107,16 +106,13 @@ def friction_effect(experiment: FrictionExperiment) -> Sketch:
     return stack(_title(experiment), "Mean friction coefficient", panels, {"hovermode": "closest"})
 
 
-@drawing(
-    heading="Five published claims",
-    caption="Green: the claim holds under these assumptions. The table lists the printed "
-    "statement, the result for this pair, and the reason.",
-    missing=_no_claim,
-    of="FrictionExperiment",
-    made_by=_MADE,
-)
+@drawing(heading="Five published claims", missing=_no_claim, of="FrictionExperiment", made_by=_MADE)
 def friction_claims(experiment: FrictionExperiment) -> Sketch:
-    """Draw for each published claim the assumptions under which it holds."""
+    """Draw for each published claim the assumptions under which it holds.
+
+    Green: the claim holds under these assumptions. The table lists the printed statement, the
+    result for this pair, and the reason.
+    """
     judged = [
         (claim.statement, claim.holds.ravel())
         for claim in experiment.claims
@@ -141,14 +137,16 @@ def friction_claims(experiment: FrictionExperiment) -> Sketch:
 
 @drawing(
     heading="Harmonics of the transmission error",
-    caption="Change of the first harmonics by each law, at the roughness of the case or the "
-    "nearest one, with the torque held as in the case.",
     missing=_no_harmonics,
     of="FrictionExperiment",
     made_by=_MADE,
 )
 def friction_harmonics(experiment: FrictionExperiment) -> Sketch:
-    """Draw how friction changes the harmonics of the dynamic transmission error."""
+    """Draw how friction changes the harmonics of the dynamic transmission error.
+
+    Change of the first harmonics by each law, at the roughness of the case or the nearest one, with
+    the torque held as in the case.
+    """
     names = [f"{_HARMONIC}{k}" for k in range(1, _HARMONICS + 1)]
     change = 100.0 * np.array([experiment.change(name) for name in names])
     column = experiment.axes[1].values.index(experiment.case.operation.torque_balance)

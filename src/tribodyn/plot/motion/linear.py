@@ -57,14 +57,15 @@ def _strained(modes: NaturalModes) -> Trace:
 
 @drawing(
     heading="Natural modes",
-    caption="One bar per natural frequency. Top: kinetic energy of the bodies; bottom: strain "
-    "energy of the springs. Transmission errors excite the modes with a high share of strain in "
-    "the mesh.",
     of=("NaturalModes", "Result.natural_modes"),
     made_by="Call tribodyn.dynamics.natural_modes and its plot method.",
 )
 def mode_shapes(modes: NaturalModes) -> Sketch:
-    """Draw the energy shares of all elastic modes."""
+    """Draw the energy shares of all elastic modes.
+
+    One bar per natural frequency. Top: kinetic energy of the bodies; bottom: strain energy of the
+    springs. Transmission errors excite the modes with a high share of strain in the mesh.
+    """
     first, unit = modes.rigid, display_unit("frequency")
     hertz = displayed("frequency", modes.frequency[first:])
     # Modes can have the same frequency: the mode number makes the labels unique.
@@ -112,7 +113,7 @@ def natural_lines(
         color, width = (INK, 1.6) if column in strained else (_FAINT, 1.0)
         trace = line(speed, values, f"mode {first + column}", color, unit=unit, width=width)
         if column in strained:
-            # Numbers of close modes stand beside each other.
+            # Numbers of close modes are printed next to each other.
             row = row + 1 if values[0] - before < _CLOSE * top else 0
             before = values[0]
             trace |= {"mode": "lines+text", "textposition": "top right", "textfont": {"size": 11}}
@@ -122,7 +123,7 @@ def natural_lines(
     return traces
 
 
-def crossing_dots(speed: Any, hertz: object, share: Any, texts: Sequence[str]) -> Trace:
+def crossing_dots(speed: object, hertz: object, share: Any, texts: Sequence[str]) -> Trace:
     """Dots where excitations meet modes, by the share of the mesh in the strain energy."""
     dots = marked(speed, hertz, "resonance", INK, 6)
     dots["marker"]["size"] = 5.0 + 9.0 * np.sqrt(share)
@@ -160,15 +161,17 @@ def _met(diagram: Campbell) -> list[Trace]:
 
 @drawing(
     heading="Campbell diagram",
-    caption="Natural frequencies and the numbered mesh harmonics over the speed. Where a harmonic "
-    "crosses a dark, numbered mode, the mesh can excite a resonance: the larger the dot, the "
-    "higher the share of strain in the mesh. Light lines are modes that do not strain it. For a "
-    "case the operating speed is marked, and the stiffness is taken at this speed and load.",
     of=("Campbell", "Result.campbell"),
     made_by="Call tribodyn.dynamics.campbell and its plot method.",
 )
 def campbell(diagram: Campbell) -> Sketch:
-    """Draw natural frequencies and mesh harmonics over speed."""
+    """Draw natural frequencies and mesh harmonics over speed.
+
+    Natural frequencies and the numbered mesh harmonics over the speed. Where a harmonic crosses a
+    dark, numbered mode, the mesh can excite a resonance: the larger the dot, the higher the share
+    of strain in the mesh. Light lines are modes that do not strain it. For a case the operating
+    speed is marked, and the stiffness is taken at this speed and load.
+    """
     speed = displayed("speed", diagram.speed)
     modes = float(np.max(displayed("frequency", diagram.frequency), initial=0.0))
     lines = float(np.max(displayed("frequency", max(diagram.orders) * diagram.mesh_frequency)))
@@ -186,14 +189,16 @@ def campbell(diagram: Campbell) -> Sketch:
 
 @drawing(
     heading="Response to a harmonic error",
-    caption="Amplitudes over the frequency of the error. At low frequency the gears follow the "
-    "error with little force; at high frequency the inertias stay at rest and the teeth deflect. "
-    "In between lie the natural modes of the mesh.",
     of="ForcedResponse",
     made_by="Call tribodyn.dynamics.forced_response and its plot method.",
 )
 def forced_response(response: ForcedResponse) -> Sketch:
-    """Draw amplitudes of mesh force, deflection and transmission error over frequency."""
+    """Draw amplitudes of mesh force, deflection and transmission error over frequency.
+
+    Amplitudes over the frequency of the error. At low frequency the gears follow the error with
+    little force; at high frequency the inertias stay at rest and the teeth deflect. In between lie
+    the natural modes of the mesh.
+    """
     x = displayed("frequency", response.frequency)
     force = np.abs(response.mesh_force)
     contact = response.contact[0]

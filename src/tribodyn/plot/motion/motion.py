@@ -183,14 +183,16 @@ def _axis_mismatch(comparison: ResultComparison) -> str:
 
 @drawing(
     heading="Comparison of results",
-    caption="Transmission error and mesh force of each result; the table of the comparison lists "
-    "the differences of their cases.",
     missing=_axis_mismatch,
     of="ResultComparison",
     made_by="tribodyn.compare_results",
 )
 def result_comparison(comparison: ResultComparison) -> Sketch:
-    """Draw transmission error and mesh force of all results in the same axes."""
+    """Draw transmission error and mesh force of all results in the same axes.
+
+    Transmission error and mesh force of each result; the table of the comparison lists the
+    differences of their cases.
+    """
     motions = _motions(comparison)
     panels: list[Panel] = []
     names = {"dynamic_transmission_error": "transmission_error", "mesh_force": "mesh_force"}
@@ -241,13 +243,15 @@ def _milliseconds(time: Array) -> tuple[Array, str]:
 
 @drawing(
     heading="Response of the structure",
-    caption="Force and compression of every contact, and the accelerations of the coordinates. The "
-    "force is zero where the contact is lost: there the compression lies within the backlash.",
     of="Response",
     made_by="Call tribodyn.dynamics.simulate or steady_state and its plot method.",
 )
 def response(motion: Response) -> Sketch:
-    """Draw contact forces, compressions and accelerations over the time."""
+    """Draw contact forces, compressions and accelerations over the time.
+
+    Force and compression of every contact, and the accelerations of the coordinates. The force is
+    zero where the contact is lost: there the compression lies within the backlash.
+    """
     time, label = _milliseconds(motion.time)
     force = motion.contact_force
     contacts = [f"contact {number + 1}" for number in range(force.shape[1])]
@@ -274,13 +278,15 @@ def response(motion: Response) -> Sketch:
 
 @drawing(
     heading="Adaptive time integration",
-    caption="Positions at the ends of the accepted steps, and the length of every "
-    "step: steps are short where a contact changes its side and at mesh events.",
     of="AdaptiveSolution",
     made_by="Call tribodyn.dynamics.solve_adaptive and its plot method.",
 )
 def adaptive_solution(solution: AdaptiveSolution) -> Sketch:
-    """Draw positions and step lengths over the time."""
+    """Draw positions and step lengths over the time.
+
+    Positions at the ends of the accepted steps, and the length of every step: steps are short where
+    a contact changes its side and at mesh events.
+    """
     time, label = _milliseconds(solution.time)
     names = tuple(solution.names)
     steps = np.diff(solution.time, prepend=solution.time[0])
@@ -316,15 +322,17 @@ def _symbol(percent: float) -> str:
 
 @drawing(
     heading="Printed and computed values",
-    caption="Absolute deviation from every printed value, in the order of the tables; "
-    "triangles point up where the computed value is larger. Rows that print a word or a range "
-    "have no mark. The table of the report lists the numbers and the reasons.",
     of="PaperComparison",
     made_by="Call tribodyn.cases.compare_with_paper(name) and its plot method.",
     missing=_no_numbers,
 )
 def paper_comparison(comparison: PaperComparison) -> Sketch:
-    """Draw the deviation of every printed number on a logarithmic scale."""
+    """Draw the deviation of every printed number on a logarithmic scale.
+
+    Absolute deviation from every printed value, in the order of the tables; triangles point up
+    where the computed value is larger. Rows that print a word or a range have no mark. The table of
+    the report lists the numbers and the reasons.
+    """
     rows = [row for row in comparison.rows if row["deviation"] is not None]
     traces: list[Trace] = []
     for verdict, color in _VERDICT_COLORS.items():

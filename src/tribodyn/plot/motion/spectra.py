@@ -170,16 +170,15 @@ def _decades(panel: Panel) -> list[float]:
     return [exponent - _DECADES, exponent + 0.3]
 
 
-@run_drawing(
-    heading="Spectra",
-    caption="Amplitude of each mesh harmonic. Harmonic 1 is the mesh frequency, the number of "
-    "teeth that engage per second. Dotted lines are the natural frequencies that the mesh strains "
-    "most, numbered as in the table of results: they amplify the harmonics close to them. The "
-    "buttons switch to a logarithmic scale, which shows the small harmonics.",
-    missing=_no_harmonics,
-)
+@run_drawing(heading="Spectra", missing=_no_harmonics)
 def spectrum(result: Result) -> Sketch:
-    """Draw the mesh harmonics of the transmission error and of the accelerations."""
+    """Draw the mesh harmonics of the transmission error and of the accelerations.
+
+    Amplitude of each mesh harmonic. Harmonic 1 is the mesh frequency, the number of teeth that
+    engage per second. Dotted lines are the natural frequencies that the mesh strains most, numbered
+    as in the table of results: they amplify the harmonics close to them. The buttons switch to a
+    logarithmic scale, which shows the small harmonics.
+    """
     quantity, error = "dynamic_transmission_error", Motion(result).transmission_error
     rows = [("transmission error", TOTAL, error)]
     panels = [
@@ -194,15 +193,14 @@ def _no_bearing_harmonics(result: Result) -> str:
     return no_translation(result) or _no_harmonics(result)
 
 
-@run_drawing(
-    heading="Spectra of the bearing forces",
-    caption="Forces that the bearings transmit to the housing, by mesh harmonic. A harmonic close "
-    "to a natural frequency of the housing dominates the noise. Dotted lines are the natural "
-    "frequencies of the gears on their supports that the mesh strains most.",
-    missing=_no_bearing_harmonics,
-)
+@run_drawing(heading="Spectra of the bearing forces", missing=_no_bearing_harmonics)
 def bearing_spectrum(result: Result) -> Sketch:
-    """Draw the mesh harmonics of the bearing forces."""
+    """Draw the mesh harmonics of the bearing forces.
+
+    Forces that the bearings transmit to the housing, by mesh harmonic. A harmonic close to a
+    natural frequency of the housing dominates the noise. Dotted lines are the natural frequencies
+    of the gears on their supports that the mesh strains most.
+    """
     panels = _gear_panels(result, "bearing_force")
     title = f"Mesh harmonic {_strongest(panels)} is the strongest on the {GEARS[0][0]}'s bearing"
     return _harmonic_figure(title, result, panels)

@@ -188,7 +188,7 @@ def _case_title(study: Sweep, name: str, values: Any, unit: str) -> str:
     return f"The {in_a_sentence(name)} is largest at {where}: {greatest}{lost}"
 
 
-def _marked(x: Any, y: Any, failed: Any, name: str, color: str, unit: str) -> list[Trace]:
+def _marked(x: object, y: Any, failed: Any, name: str, color: str, unit: str) -> list[Trace]:
     """A curve with a cross at its minimum for every failed run."""
     curve = line(x, y, name, color, unit=unit, mode="lines+markers", marker={"size": 5})
     lost = np.array([bool(text) for text in failed])
@@ -225,15 +225,15 @@ def _map(study: Sweep, values: Any, label: str, unit: str, title: str) -> Sketch
 
 @drawing(
     heading="Sweep",
-    caption="A summary figure over the varied values. Peaks are resonances; a "
-    "step is a jump of the response. A cross or an empty cell is a run that failed; "
-    "the table lists the reason.",
     of="Sweep",
     made_by='Call tribodyn.sweep(case, {"operation.speed": ("400 rpm", "3500 rpm", '
     "60)}) and its plot method.",
 )
 def sweep(study: Sweep, figure: str = "rms_mesh_force") -> Sketch:
     """Draw a summary figure over the keys that vary.
+
+    A summary figure over the varied values. Peaks are resonances; a step is a jump of the response.
+    A cross or an empty cell is a run that failed; the table lists the reason.
 
     Parameters
     ----------

@@ -47,7 +47,7 @@ def _along(result: Result) -> str:
 
 
 def wrapped_label(quantity: str, direction: str) -> str:
-    """Label of a quantity with its direction below, in lines that fit beside a panel."""
+    """Label of a quantity with its direction below, in lines that fit next to a panel."""
     return "<br>".join([quantity_label(quantity), *wrap(direction, _LINE)])
 
 
@@ -268,14 +268,13 @@ def _in_a_plane(result: Result) -> str:
     return "The tooth forces of these gears lie in a plane, along one line of action."
 
 
-@run_drawing(
-    heading="Mesh force in space",
-    caption="Force of the teeth on the wheel, friction included, in the axes of the pinion: x "
-    "along the common perpendicular of the two axes, y along the pinion axis, z normal to x and y.",
-    missing=_in_a_plane,
-)
+@run_drawing(heading="Mesh force in space", missing=_in_a_plane)
 def tooth_force(result: Result) -> Sketch:
-    """Draw the three components of the tooth force."""
+    """Draw the three components of the tooth force.
+
+    Force of the teeth on the wheel, friction included, in the axes of the pinion: x along the
+    common perpendicular of the two axes, y along the pinion axis, z normal to x and y.
+    """
     motion, fine = Motion(result), result.response.fine
     components = response_series.tooth_force(
         result, response_series.one_sided_phase(fine), motion.mesh_force
@@ -362,16 +361,18 @@ def turning_motion(motion: TurningMotion) -> Sketch:
 
 @drawing(
     heading="Mesh over whole turns",
-    caption="Static transmission error and tangent stiffness under the mean load over all mesh "
-    "cycles after which the same teeth meet again. A deviation lifts the error of its tooth, a "
-    "crack lowers the stiffness where its tooth carries. Where the face has slices, the last panel "
-    "is the load along the face of the tooth pair that differs most, over its time in contact, and "
-    "the median of all pairs.",
     of="TurningMesh",
     made_by="Call tribodyn.faults.turning_mesh(...) and its plot method.",
 )
 def turning_mesh(mesh: TurningMesh) -> Sketch:
-    """Draw transmission error and stiffness over the mesh cycles, and the load along the face."""
+    """Draw transmission error and stiffness over the mesh cycles, and the load along the face.
+
+    Static transmission error and tangent stiffness under the mean load over all mesh cycles after
+    which the same teeth meet again. A deviation lifts the error of its tooth, a crack lowers the
+    stiffness where its tooth carries. Where the face has slices, the last panel is the load along
+    the face of the tooth pair that differs most, over its time in contact, and the median of all
+    pairs.
+    """
     parts = (
         ("static_transmission_error", mesh.transmission_error, "Error at rest", PINION),
         ("mesh_stiffness_tangent", mesh.mesh_stiffness_tangent, "Stiffness", WHEEL),

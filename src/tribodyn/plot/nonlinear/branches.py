@@ -92,7 +92,7 @@ def _section(diagram: Bifurcation, parameter: Any, factor: float, unit: str) -> 
     return traces
 
 
-def _curves(diagram: Bifurcation, parameter: Any, values: Any, unit: str) -> list[Trace]:
+def _curves(diagram: Bifurcation, parameter: object, values: Any, unit: str) -> list[Trace]:
     style: Trace = {"unit": unit, "width": 1.6, "showlegend": False}
     dashes = ["dot" if branch == "down" else "solid" for branch in diagram.branches]
     return [

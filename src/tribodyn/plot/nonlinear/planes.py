@@ -129,14 +129,15 @@ def _window(values: Any, motion: float) -> list[float]:
 
 @drawing(
     heading="Poincare section",
-    caption="The state once per mesh cycle, at mesh phase 0. A periodic response has as "
-    "many points as its period has mesh cycles, a quasi-periodic one a closed curve, a chaotic "
-    "one a cloud with inner structure.",
     of="PoincareSection",
     made_by="Call tribodyn.analysis.poincare(...) and its plot method.",
 )
 def poincare(section: PoincareSection, coordinate: int | str = 0) -> Sketch:
     """Draw the points of one coordinate in its phase plane.
+
+    The state once per mesh cycle, at mesh phase 0. A periodic response has as many points as its
+    period has mesh cycles, a quasi-periodic one a closed curve, a chaotic one a cloud with inner
+    structure.
 
     Parameters
     ----------
@@ -309,14 +310,16 @@ def _display_factor(displayed_values: Array, values: Any) -> float:
 
 @drawing(
     heading="Basins of attraction",
-    caption="The colour of an initial state is that of the attractor that it reaches; crosses "
-    "are the states of the attractors at mesh phase 0. Where colours mix finely, the attractor "
-    "cannot be predicted from the initial state.",
     of="Basins",
     made_by="Call tribodyn.analysis.basins(...) and its plot method.",
 )
 def basins(plane: Basins) -> Sketch:
-    """Draw the plane of initial states coloured by attractor."""
+    """Draw the plane of initial states coloured by attractor.
+
+    The colour of an initial state is that of the attractor that it reaches; crosses are the states
+    of the attractors at mesh phase 0. Where colours mix finely, the attractor cannot be predicted
+    from the initial state.
+    """
     first, second = plane.coordinates
     x, x_label = _plane_axis(first, plane.first, plane.units[0])
     y, y_label = _plane_axis(second, plane.second, plane.units[1])
@@ -409,14 +412,16 @@ def _map_title(survey: ParameterMap) -> str:
 
 @drawing(
     heading="Map over two parameters",
-    caption="Period of the response in mesh cycles, rms of the vibration and duration of the loss "
-    "of contact, over two parameters. The runs are independent: where several "
-    "responses coexist, another initial state may lead to another one.",
     of="ParameterMap",
     made_by="Call tribodyn.analysis.parameter_map(...) and its plot method.",
 )
 def parameter_map(survey: ParameterMap) -> Sketch:
-    """Draw period, rms and contact loss."""
+    """Draw period, rms and contact loss.
+
+    Period of the response in mesh cycles, rms of the vibration and duration of the loss of contact,
+    over two parameters. The runs are independent: where several responses coexist, another initial
+    state may lead to another one.
+    """
     x, x_label = parameter_axis(survey.names[0], survey.first, survey.units[0])
     y, y_label = parameter_axis(survey.names[1], survey.second, survey.units[1])
     factor, unit = scaled(survey.rms, unit_of(survey.signal))

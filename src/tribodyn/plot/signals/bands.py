@@ -56,14 +56,16 @@ def _lines(result: CaseEnsemble) -> tuple[list[Trace], str]:
 
 @drawing(
     heading="Spread of the response",
-    caption="Effect of uncertain inputs: the light band holds 95 % of the "
-    "variants, the dark band is the confidence band of their mean. Over the time of a mesh cycle, "
-    "over its phase, and by mesh harmonic.",
     of="CaseEnsemble",
     made_by="Call tribodyn.ensemble(case, {...}, seed=1) and its plot method.",
 )
 def ensemble(result: CaseEnsemble) -> Sketch:
-    """Draw force over time, transmission error over the phase, and the spectrum, with bands."""
+    """Draw force over time, transmission error over the phase, and the spectrum, with bands.
+
+    Effect of uncertain inputs: the light band holds 95 % of the variants, the dark band is the
+    confidence band of their mean. Over the time of a mesh cycle, over its phase, and by mesh
+    harmonic.
+    """
     time = 1e3 * result.phase / float(np.mean(result.mesh_frequency))
     force, newton = _curve(result, "mesh_force", time)
     error, metre = _curve(result, "dynamic_transmission_error", result.phase)
@@ -84,14 +86,15 @@ def ensemble(result: CaseEnsemble) -> Sketch:
 
 @drawing(
     heading="Surrogate against computation",
-    caption="Predictions over computed values for rows that were not used in training. "
-    "Points on the line are exact; a new prediction lies between the dotted lines with the stated "
-    "probability.",
     of="Surrogate",
     made_by="Call tribodyn.surrogate.train(data, ...) and its plot method.",
 )
 def surrogate(result: Surrogate) -> Sketch:
-    """Draw predictions over computed values of the held-out rows, one panel per target."""
+    """Draw predictions over computed values of the held-out rows, one panel per target.
+
+    Predictions over computed values for rows that were not used in training. Points on the line are
+    exact; a new prediction lies between the dotted lines with the stated probability.
+    """
     rows, qualities = [], []
     for number, name in enumerate(result.targets):
         true, predicted = result.true[number], result.predicted[number]
@@ -125,14 +128,15 @@ _CURVES = 12
 
 @drawing(
     heading="Spread of the variants",
-    caption="The curve belongs to the central values of all inputs; the band holds 95 % of the "
-    "variants, point by point. Bars have error bars instead. Curves that turn back along their "
-    "axis are plotted for single variants.",
     of="CaseEnsemble",
     made_by="Call tribodyn.ensemble(case, {...}, seed=1) and its plot method with a name.",
 )
 def bands(result: CaseEnsemble, name: str = "mesh_force") -> Any:
     """Draw a figure of a run with bands of the variants.
+
+    The curve belongs to the central values of all inputs; the band holds 95 % of the variants,
+    point by point. Bars have error bars instead. Curves that turn back along their axis are plotted
+    for single variants.
 
     Parameters
     ----------

@@ -51,16 +51,18 @@ def finer(values: Array) -> Array:
 
 @drawing(
     heading="Mean revolution",
-    caption="Vibration synchronous with the shaft, over its angle from the first pulse of the "
-    "tachometer, or from the first sample where there is none. Above, the mean revolution with a "
-    "band of two standard errors; below, the residual, without the mesh harmonics and the lowest "
-    "shaft orders, and the difference, without their first sidebands too. A local bump of the "
-    "difference indicates a faulty tooth.",
     of="SynchronousAverage",
     made_by="Call tribodyn.analysis.time_synchronous_average(...) and its plot method.",
 )
 def synchronous_average(average: SynchronousAverage) -> Sketch:
-    """Draw mean revolution, residual and difference over the angle of the shaft."""
+    """Draw mean revolution, residual and difference over the angle of the shaft.
+
+    Vibration synchronous with the shaft, over its angle from the first pulse of the tachometer, or
+    from the first sample where there is none. Above, the mean revolution with a band of two
+    standard errors; below, the residual, without the mesh harmonics and the lowest shaft orders,
+    and the difference, without their first sidebands too. A local bump of the difference indicates
+    a faulty tooth.
+    """
     unit = readable(average.unit)
     mean = finer(average.signal)
     angle = 360.0 * np.arange(mean.size) / mean.size
@@ -103,13 +105,15 @@ _MAP, _MOST = 1.8, 480
 
 @drawing(
     heading="Demodulated mesh harmonic",
-    caption="Amplitude and phase of a mesh harmonic over the angle of the shaft. A slow wave is "
-    "run-out; a short dip of the phase is a tooth that yields, such as one with a root crack.",
     of="NarrowbandDemodulation",
     made_by="Call tribodyn.analysis.narrowband_demodulation(average) and its plot method.",
 )
 def narrowband_demodulation(demodulation: NarrowbandDemodulation) -> Sketch:
-    """Draw amplitude and phase modulation over the angle of the shaft."""
+    """Draw amplitude and phase modulation over the angle of the shaft.
+
+    Amplitude and phase of a mesh harmonic over the angle of the shaft. A slow wave is run-out; a
+    short dip of the phase is a tooth that yields, such as one with a root crack.
+    """
     size = finer(100.0 * demodulation.amplitude_modulation)
     phase = finer(demodulation.phase_modulation)
     angle = 360.0 * np.arange(size.size) / size.size
@@ -128,14 +132,15 @@ def narrowband_demodulation(demodulation: NarrowbandDemodulation) -> Sketch:
 
 @drawing(
     heading="Cepstrum",
-    caption="Each peak gathers a family of evenly spaced lines; its quefrency is the inverse of "
-    "their spacing, such as the period of the shaft whose sidebands they are. Peaks at multiples "
-    "are rahmonics of the same family.",
     of="Cepstrum",
     made_by="Call tribodyn.analysis.cepstrum on a signal and its plot method.",
 )
 def cepstrum(result: Cepstrum, *, shortest: float = 0.0) -> Sketch:
     """Draw the cepstrum over the quefrency.
+
+    Each peak gathers a family of evenly spaced lines; its quefrency is the inverse of their
+    spacing, such as the period of the shaft whose sidebands they are. Peaks at multiples are
+    rahmonics of the same family.
 
     Parameters
     ----------
@@ -174,14 +179,16 @@ def _heatmap(x: Array, y: Array, values: Array, title: str, hover: str, top: flo
 
 @drawing(
     heading="Kurtogram",
-    caption="Spectral kurtosis of equal bands, more and narrower ones from top to bottom. The "
-    "darkest band contains the most impulsive vibration; its envelope shows how often the impacts "
-    "come. Bands below the limit of noise are white.",
     of="Kurtogram",
     made_by="Call tribodyn.analysis.kurtogram on a signal and its plot method.",
 )
 def kurtogram(result: Kurtogram) -> Sketch:
-    """Draw the spectral kurtosis over the frequency and the number of bands."""
+    """Draw the spectral kurtosis over the frequency and the number of bands.
+
+    Spectral kurtosis of equal bands, more and narrower ones from top to bottom. The darkest band
+    contains the most impulsive vibration; its envelope shows how often the impacts come. Bands
+    below the limit of noise are white.
+    """
     counts = np.unique(result.splits)
     half = float(result.width[0] * result.splits[0])
     columns = min(int(counts.max()) * 3, 3 * _MOST)
@@ -216,14 +223,16 @@ def kurtogram(result: Kurtogram) -> Sketch:
 
 @drawing(
     heading="Cyclic coherence",
-    caption="Squared coherence over the frequency of the carrier and of its modulation. Random "
-    "impacts that repeat show as vertical lines at multiples of their rate. Below, the mean over "
-    "the carriers; in 19 of 20 records, noise remains below the dotted line.",
     of="CyclicCoherence",
     made_by="Call tribodyn.analysis.cyclic_coherence on a signal and its plot method.",
 )
 def cyclic_coherence(result: CyclicCoherence) -> Sketch:
-    """Draw the coherence over carrier and modulation, and its mean over the carriers."""
+    """Draw the coherence over carrier and modulation, and its mean over the carriers.
+
+    Squared coherence over the frequency of the carrier and of its modulation. Random impacts that
+    repeat show as vertical lines at multiples of their rate. Below, the mean over the carriers; in
+    19 of 20 records, noise remains below the dotted line.
+    """
     alpha = result.cyclic_frequency
     groups = np.arange(0, alpha.size, -(-alpha.size // _MOST))
     most = np.maximum.reduceat(result.coherence, groups, axis=1)
@@ -248,15 +257,17 @@ def cyclic_coherence(result: CyclicCoherence) -> Sketch:
 
 @drawing(
     heading="Sidebands in the orders",
-    caption="Orders around a carrier with cursors at even distances, on a logarithmic scale; the "
-    "dashed line is the median of the lines between the cursors. Full circles stand out of it: "
-    "the shaft whose order is the distance modulates the carrier.",
     of="SidebandCursors",
     made_by="Call tribodyn.measurement.sideband_cursors(orders, carrier, spacing) and its plot "
     "method.",
 )
 def sideband_cursors(cursors: SidebandCursors) -> Sketch:
-    """Draw the orders around a carrier with the cursors of its sidebands."""
+    """Draw the orders around a carrier with the cursors of its sidebands.
+
+    Orders around a carrier with cursors at even distances, on a logarithmic scale; the dashed line
+    is the median of the lines between the cursors. Full circles stand out of it: the shaft whose
+    order is the distance modulates the carrier.
+    """
     low, high = (cursors.order[k] + s * cursors.spacing for k, s in ((0, -0.7), (-1, 0.7)))
     spectrum, unit = cursors.orders, readable(cursors.unit)
     in_range = (spectrum.orders >= low) & (spectrum.orders <= high)
@@ -287,14 +298,16 @@ def sideband_cursors(cursors: SidebandCursors) -> Sketch:
 
 @drawing(
     heading="Verdict on the recordings",
-    caption="Over the recordings, the oldest first: the velocity from 10 to 1000 Hz with the ends "
-    "of the zones A, B and C, where limits were named and the velocity is known, the kurtosis, and "
-    "the lines of the suspected parts over their first amplitude. What rises is worth a look.",
     of="RecordingVerdict",
     made_by="Call tribodyn.study.judge_recordings(...).",
 )
 def recording_verdict(verdict: RecordingVerdict) -> Sketch:
-    """Draw severity, kurtosis and the lines of suspected parts over the recordings."""
+    """Draw severity, kurtosis and the lines of suspected parts over the recordings.
+
+    Over the recordings, the oldest first: the velocity from 10 to 1000 Hz with the ends of the
+    zones A, B and C, where limits were named and the velocity is known, the kurtosis, and the lines
+    of the suspected parts over their first amplitude. What rises is worth a look.
+    """
     number = np.arange(1, verdict.kurtosis.size + 1)
     panels = [from_zero("Kurtosis [-]", [marked(number, verdict.kurtosis, "kurtosis", MUTED, 8)])]
     if np.isfinite(verdict.velocity).any():

@@ -31,13 +31,15 @@ _DASHES = ("solid", "dash", "dot", "dashdot")
 
 @drawing(
     heading="Recording",
-    caption="The channels as they were recorded. Where there are more samples than the screen has "
-    "pixels, the largest and the smallest sample of each interval are drawn.",
     of="Recording",
     made_by="Call tribodyn.measurement.read(path) and its plot method.",
 )
 def recording(recording: Recording) -> Sketch:
-    """Draw the channels over time, one panel each, at most eight."""
+    """Draw the channels over time, one panel each, at most eight.
+
+    The channels as they were recorded. Where there are more samples than the screen has pixels, the
+    largest and the smallest sample of each interval are drawn.
+    """
     names = list(recording.channels)
     panels = []
     for name in names[:_PANELS]:
@@ -61,13 +63,14 @@ def outline(time: Array, values: Array) -> tuple[Array, Array]:
 
 @drawing(
     heading="Orders",
-    caption="Amplitude over multiples of the shaft speed, as a mean over the angle of the shaft. "
-    "Vibration synchronous with the shaft is a line; other vibration is spread.",
     of="OrderSpectrum",
     made_by="Call tribodyn.measurement.order_spectrum(...) and its plot method.",
 )
 def order_spectrum(spectrum: OrderSpectrum, *, marks: Iterable[tuple[str, float]] = ()) -> Sketch:
     """Draw the amplitudes over the orders of a shaft.
+
+    Amplitude over multiples of the shaft speed, as a mean over the angle of the shaft. Vibration
+    synchronous with the shaft is a line; other vibration is spread.
 
     Parameters
     ----------
@@ -93,12 +96,14 @@ def order_spectrum(spectrum: OrderSpectrum, *, marks: Iterable[tuple[str, float]
 
 @drawing(
     heading="Orders over time",
-    caption="Amplitude of every tracked order while the speed changes, and the speed.",
     of="TrackedOrders",
     made_by="Call tribodyn.measurement.track_orders(...) and its plot method.",
 )
 def tracked_orders(tracked: TrackedOrders) -> Sketch:
-    """Draw the amplitudes of the tracked orders and the shaft speed over time."""
+    """Draw the amplitudes of the tracked orders and the shaft speed over time.
+
+    Amplitude of every tracked order while the speed changes, and the speed.
+    """
     curves: list[Trace] = []
     for number, (order, size) in enumerate(zip(tracked.order, tracked.amplitude, strict=True)):
         time, values = outline(tracked.time, size)
@@ -119,15 +124,17 @@ def tracked_orders(tracked: TrackedOrders) -> Sketch:
 
 @drawing(
     heading="Computed and measured",
-    caption="Spectra of the measured channels over the mesh order, with the computed "
-    "mesh harmonics multiplied by the gain of the channel. Lines between the harmonics have "
-    "other sources than the mesh. If the speed of the recording was not found, its spectrum is "
-    "scaled with the computed speed.",
     of="Comparison",
     made_by="Call tribodyn.measurement.compare(result, recording, channels) and its plot method.",
 )
 def comparison(comparison: Comparison) -> Sketch:
-    """Draw the measured spectra with the computed mesh harmonics."""
+    """Draw the measured spectra with the computed mesh harmonics.
+
+    Spectra of the measured channels over the mesh order, with the computed mesh harmonics
+    multiplied by the gain of the channel. Lines between the harmonics have other sources than the
+    mesh. If the speed of the recording was not found, its spectrum is scaled with the computed
+    speed.
+    """
     panels, ends = [], []
     ratio = comparison.speed_ratio if np.isfinite(comparison.speed_ratio) else 1.0
     for name, lines in comparison.lines.items():
@@ -206,15 +213,13 @@ def order_panel(lines: OrderSpectrum) -> Panel:
     return from_zero(amplitude_label(lines.unit), [curve], 1.4)
 
 
-@drawing(
-    heading="Signal at a glance",
-    caption="The channel over the time with its envelope, its spectrum, the spectrum of its "
-    "envelope, and its orders where the speed of the shaft is known.",
-    of="SignalAnalysis",
-    made_by=_MADE_BY,
-)
+@drawing(heading="Signal at a glance", of="SignalAnalysis", made_by=_MADE_BY)
 def signal_analysis(analysis: SignalAnalysis) -> Sketch:
-    """Draw signal, spectrum, envelope spectrum and orders in stacked panels."""
+    """Draw signal, spectrum, envelope spectrum and orders in stacked panels.
+
+    The channel over the time with its envelope, its spectrum, the spectrum of its envelope, and its
+    orders where the speed of the shaft is known.
+    """
     hertz = axis_label("frequency")
     reach = visible_frequency(analysis)
     envelope = spectrum_panel(analysis.envelope_spectrum, reach)
@@ -238,16 +243,14 @@ def signal_analysis(analysis: SignalAnalysis) -> Sketch:
     return stack_rows(title, rows, {"hovermode": "closest"})
 
 
-@drawing(
-    heading="Signal",
-    caption="The channel as it was recorded, the envelope of its band, and the speed of the "
-    "shaft. Where there are more samples than the screen has pixels, the largest and the smallest "
-    "of each interval are drawn.",
-    of="SignalAnalysis",
-    made_by=_MADE_BY,
-)
+@drawing(heading="Signal", of="SignalAnalysis", made_by=_MADE_BY)
 def signal_history(analysis: SignalAnalysis) -> Sketch:
-    """Draw signal, envelope and speed of the shaft over the time."""
+    """Draw signal, envelope and speed of the shaft over the time.
+
+    The channel as it was recorded, the envelope of its band, and the speed of the shaft. Where
+    there are more samples than the screen has pixels, the largest and the smallest of each interval
+    are drawn.
+    """
     panels = [_signal_panel(analysis)]
     speed = _speed(analysis)
     if speed is not None:

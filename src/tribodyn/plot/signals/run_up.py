@@ -97,9 +97,6 @@ def _title(levels: list[Any], peaks: Sequence[Any], unit: str, factor: float) ->
 
 @drawing(
     heading="Run-up",
-    caption="Overall level and mesh orders over the speed: solid for rising, dotted for falling "
-    "speed. Where the two differ, the response jumps or the speed changes too quickly for a "
-    "resonance to build up. Circles mark peaks of an order and the natural mode that it excites.",
     of="RunUp",
     made_by="Call tribodyn.dynamics.run_up(...) or tribodyn.run_up(case) and its plot method.",
 )
@@ -107,6 +104,10 @@ def run_up(
     run: RunUp, *, signal: str = "contact_force", orders: Sequence[float] | None = None
 ) -> Sketch:
     """Draw overall level and order cuts over the speed.
+
+    Overall level and mesh orders over the speed: solid for rising, dotted for falling speed. Where
+    the two differ, the response jumps or the speed changes too quickly for a resonance to build up.
+    Circles mark peaks of an order and the natural mode that it excites.
 
     Parameters
     ----------
@@ -224,9 +225,6 @@ def _on_one_scale(surfaces: list[tuple[float, Trace]]) -> None:
 
 @drawing(
     heading="Run-up over frequency",
-    caption="Amplitudes over speed and frequency. Rising lines are mesh orders, "
-    "horizontal lines natural modes that strain the mesh; an order resonates where they cross. "
-    "Amplitudes between the orders are transients after a jump or non-periodic motion.",
     of="RunUp",
     made_by="Call tribodyn.dynamics.run_up(...) or tribodyn.run_up(case) and its plot_map method.",
 )
@@ -234,6 +232,10 @@ def run_up_map(
     run: RunUp, *, signal: str = "contact_force", highest_frequency: float | None = None
 ) -> Sketch:
     """Draw amplitudes over speed and frequency, one panel for each direction.
+
+    Amplitudes over speed and frequency. Rising lines are mesh orders, horizontal lines natural
+    modes that strain the mesh; an order resonates where they cross. Amplitudes between the orders
+    are transients after a jump or non-periodic motion.
 
     Parameters
     ----------

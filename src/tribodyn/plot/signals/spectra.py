@@ -80,9 +80,6 @@ def _peaks(spectrum: SignalSpectrum, unit: str) -> list[Trace]:
 
 @drawing(
     heading="Spectrum",
-    caption="Amplitude over the frequency; circles mark the largest peaks, interpolated between "
-    "the lines. The mean of the signal, the line at zero, is left out. Mean square and "
-    "density have a logarithmic scale.",
     of="SignalSpectrum",
     made_by="Call tribodyn.analysis.spectrum on a signal and its plot method.",
 )
@@ -90,6 +87,10 @@ def signal_spectrum(
     spectrum: SignalSpectrum, *, marks: Iterable[tuple[str, float]] = (), to: float | None = None
 ) -> Sketch:
     """Draw the lines of a spectrum over the frequency.
+
+    Amplitude over the frequency; circles mark the largest peaks, interpolated between the lines.
+    The mean of the signal, the line at zero, is left out. Mean square and density have a
+    logarithmic scale.
 
     Parameters
     ----------
@@ -126,13 +127,15 @@ def spectrum_title(spectrum: SignalSpectrum) -> str:
 
 @drawing(
     heading="Harmonics",
-    caption="Peak amplitude over multiples of the mesh frequency. Lines between "
-    "integer harmonics belong to a response with a period of several mesh cycles.",
     of="Spectrum",
     made_by="Call tribodyn.analysis.amplitude_spectrum(response, signal) and its plot method.",
 )
 def harmonic_spectrum(spectrum: Spectrum) -> Sketch:
-    """Draw the amplitudes over the mesh harmonics as bars."""
+    """Draw the amplitudes over the mesh harmonics as bars.
+
+    Peak amplitude over multiples of the mesh frequency. Lines between integer harmonics belong to a
+    response with a period of several mesh cycles.
+    """
     top = int(np.argmax(spectrum.amplitude))
     unit = readable(spectrum.unit)
     hover = f"%{{y:.4g}} {unit} at %{{customdata:.5g}} Hz<extra></extra>"
@@ -148,15 +151,16 @@ def harmonic_spectrum(spectrum: Spectrum) -> Sketch:
 
 @drawing(
     heading="Sidebands",
-    caption="The carrier and its sidebands. Symmetric sidebands indicate a load that "
-    "varies with the shaft (amplitude modulation), asymmetric sidebands additional uneven "
-    "rotation (phase modulation).",
     of="Sidebands",
     made_by="Call tribodyn.analysis.sidebands(signal, rate, carrier, modulation) and its plot "
     "method.",
 )
 def sidebands(lines: Sidebands) -> Sketch:
-    """Draw the amplitudes of the carrier and of its sidebands over the frequency."""
+    """Draw the amplitudes of the carrier and of its sidebands over the frequency.
+
+    The carrier and its sidebands. Symmetric sidebands indicate a load that varies with the shaft
+    (amplitude modulation), asymmetric sidebands additional uneven rotation (phase modulation).
+    """
     unit = readable(lines.unit)
     width = 0.25 * lines.modulation
     traces: list[Trace] = []
@@ -184,14 +188,16 @@ def _over_speed(speed: Array, values: Array, name: str, unit: str) -> Trace:
 
 @drawing(
     heading="Order cut",
-    caption="Amplitude of an order over the speed. A peak is a speed at which "
-    "the order excites a natural frequency.",
     of="OrderCut",
     made_by="Call .cut(order) of an order map, or tribodyn.analysis.order_cut, and its plot "
     "method.",
 )
 def order_cut(cut: OrderCut) -> Sketch:
-    """Draw the amplitude of an order over the speed."""
+    """Draw the amplitude of an order over the speed.
+
+    Amplitude of an order over the speed. A peak is a speed at which the order excites a natural
+    frequency.
+    """
     top = int(np.argmax(cut.amplitude))
     title = (
         f"Order {cut.order:.4g} reaches {with_unit(cut.amplitude[top], cut.unit)} at "
@@ -203,12 +209,14 @@ def order_cut(cut: OrderCut) -> Sketch:
 
 @drawing(
     heading="Overall level",
-    caption="Alternating rms of the signal over the speed; the circle marks the largest value.",
     of="OverallLevel",
     made_by="Call tribodyn.analysis.overall_level(run_up) and its plot method.",
 )
 def overall_level(level: OverallLevel) -> Sketch:
-    """Draw the alternating rms over the speed."""
+    """Draw the alternating rms over the speed.
+
+    Alternating rms of the signal over the speed; the circle marks the largest value.
+    """
     top = int(np.argmax(level.rms))
     unit = readable(level.unit)
     curve = _over_speed(level.speed, level.rms, "level", level.unit)
@@ -269,13 +277,15 @@ def amplitude_heatmap(x: Array, y: Array, amplitude: Array, unit: str, hover: st
 
 @drawing(
     heading="Spectrogram",
-    caption="Amplitudes over time and frequency. Lines that rise with the speed are orders "
-    "of a shaft; horizontal lines are natural frequencies. Below, the rms over time.",
     of="Spectrogram",
     made_by="Call tribodyn.analysis.spectrogram on a signal and its plot method.",
 )
 def spectrogram(result: Spectrogram) -> Sketch:
-    """Draw amplitudes over time and frequency, and the rms over time."""
+    """Draw amplitudes over time and frequency, and the rms over time.
+
+    Amplitudes over time and frequency. Lines that rise with the speed are orders of a shaft;
+    horizontal lines are natural frequencies. Below, the rms over time.
+    """
     number, block = result.strongest()
     frequency, moment = float(result.frequency[number]), float(result.time[block])
     place, hover = (result.time, result.frequency[1:]), "%{y:.5g} Hz at %{x:.4g} s"
@@ -318,14 +328,16 @@ def _axis(result: OrderMap) -> tuple[Array, str, str]:
 
 @drawing(
     heading="Order map",
-    caption="Vibration synchronous with the shaft is a horizontal line; its order is the number "
-    "of cycles per revolution. Where the line darkens, the order excites a natural frequency. "
-    "Below, the strongest orders over the speed.",
     of="OrderMap",
     made_by="Call tribodyn.analysis.order_map on the record of a run-up and its plot method.",
 )
 def order_map(result: OrderMap) -> Sketch:
-    """Draw amplitudes over orders and speed, and cuts at the strongest orders."""
+    """Draw amplitudes over orders and speed, and cuts at the strongest orders.
+
+    Vibration synchronous with the shaft is a horizontal line; its order is the number of cycles per
+    revolution. Where the line darkens, the order excites a natural frequency. Below, the strongest
+    orders over the speed.
+    """
     place, label, unit = _axis(result)
     orders = strongest_orders(result)
     surface = amplitude_heatmap(
@@ -354,13 +366,15 @@ def order_map(result: OrderMap) -> Sketch:
 
 @drawing(
     heading="Waterfall",
-    caption="Stacked spectra, from the first at the bottom to the last at the top, "
-    "with a common scale. The spectrum with the highest peak is coloured.",
     of=("OrderMap", "Spectrogram"),
     made_by="Call tribodyn.analysis.order_map or spectrogram on a signal and draw what it returns.",
 )
 def waterfall(result: OrderMap | Spectrogram) -> Sketch:
-    """Draw the spectra of an order map or a spectrogram as a waterfall."""
+    """Draw the spectra of an order map or a spectrogram as a waterfall.
+
+    Stacked spectra, from the first at the bottom to the last at the top, with a common scale. The
+    spectrum with the highest peak is coloured.
+    """
     by_order = isinstance(result, OrderMap)
     place = result.order if isinstance(result, OrderMap) else result.frequency
     x_label = "Order" if by_order else axis_label("frequency")

@@ -27,16 +27,18 @@ _PANELS, _POINTS = 8, 3000
 
 @drawing(
     heading="Contribution of each input to the variance",
-    caption="Shares of the variance of the output. The first-order index is the share of an input "
-    "alone, the total-order index the share that would vanish if the input were fixed, with all "
-    "its interactions. Where the total exceeds the first order, the input interacts with others. "
-    "Shares slightly below zero or above 100 % are the sampling error of the estimate.",
     of="SobolIndices",
     made_by="Call tribodyn.uncertainty.sobol_indices(function, distributions, seed=1) and its "
     "plot method.",
 )
 def sobol_indices(indices: SobolIndices) -> Sketch:
-    """Draw first-order and total shares of every input as bars, the largest on top."""
+    """Draw first-order and total shares of every input as bars, the largest on top.
+
+    Shares of the variance of the output. The first-order index is the share of an input alone, the
+    total-order index the share that would vanish if the input were fixed, with all its
+    interactions. Where the total exceeds the first order, the input interacts with others. Shares
+    slightly below zero or above 100 % are the sampling error of the estimate.
+    """
     top = int(np.argsort(indices.total_order)[-1])
     title = (
         f"{significant(100.0 * float(indices.first_order[top]))} % of the variance comes from "
@@ -65,14 +67,16 @@ def _paired_bars(
 
 @drawing(
     heading="Probability of failure",
-    caption="Share of the variants in which a safety or a life falls below what is required, and "
-    "the probability of this by the lognormal distribution through all variants.",
     of="FailureProbability",
     made_by="Call tribodyn.study.failure_probability(case, distributions, seed=1) and its plot "
     "method.",
 )
 def failure_probability(result: FailureProbability) -> Sketch:
-    """Draw share and probability of every safety and life as bars, the largest on top."""
+    """Draw share and probability of every safety and life as bars, the largest on top.
+
+    Share of the variants in which a safety or a life falls below what is required, and the
+    probability of this by the lognormal distribution through all variants.
+    """
     top = int(np.argmax(result.probability))
     title = (
         f"{result.figure[top]} falls below what is required with "
@@ -85,13 +89,14 @@ def failure_probability(result: FailureProbability) -> Sketch:
 
 @drawing(
     heading="Mean and its band",
-    caption="The mean over the repeats, and the band that holds the true mean with the stated "
-    "probability, for the entire curve at once or for each point separately.",
     of="Band",
     made_by="Call tribodyn.uncertainty.bootstrap_band(samples, seed=1) and its plot method.",
 )
 def band(result: Band, x: object = None, label: str = "") -> Sketch:
     """Draw the mean curve with its band.
+
+    The mean over the repeats, and the band that holds the true mean with the stated probability,
+    for the entire curve at once or for each point separately.
 
     Parameters
     ----------
@@ -142,14 +147,15 @@ def band(result: Band, x: object = None, label: str = "") -> Sketch:
 
 @drawing(
     heading="Columns of the table",
-    caption="The columns over one of them, each row a point. Name another column for the "
-    "horizontal axis with x.",
     of="DataSet",
     made_by="Call tribodyn.operating_data(case) or tribodyn.vibration_data(case) and its plot "
     "method.",
 )
 def data_set(data: DataSet, x: str = "") -> Sketch:
     """Draw the columns of a table over one of them, at most eight panels.
+
+    The columns over one of them, each row a point. Name another column for the horizontal axis with
+    x.
 
     Parameters
     ----------
@@ -202,15 +208,17 @@ _KINDS = (("alone", PINION), ("with interactions", PAIR_COLORS[0]))
 
 @drawing(
     heading="Contribution of each tolerance",
-    caption="Share of the variance due to each input: alone, and with interactions, "
-    "which is the share that would vanish if the input were known exactly. Thin lines are "
-    "bootstrap intervals: use a larger sample where they are long.",
     of="CaseSensitivity",
     made_by='Call tribodyn.sobol_indices(case, "peak_mesh_force", {"operation.torque": '
     '"90 N*m +- 5 %"}, seed=1) and its plot method.',
 )
 def sensitivity(shares: CaseSensitivity) -> Sketch:
-    """Draw the shares of the inputs as bars, one group per summary figure."""
+    """Draw the shares of the inputs as bars, one group per summary figure.
+
+    Share of the variance due to each input: alone, and with interactions, which is the share that
+    would vanish if the input were known exactly. Thin lines are bootstrap intervals: use a larger
+    sample where they are long.
+    """
     figures, inputs = [str(name) for name in shares.figure], [str(key) for key in shares.input]
     orders = (shares.first_order, shares.total_order)
     bands = (shares.first_order_band, shares.total_order_band)

@@ -209,11 +209,11 @@ def curve(quantity: str, x: Any, values: Any, name: str, color: str, **style: An
 def curves(
     quantity: str,
     label: str | None,
-    x: Any,
+    x: object,
     rows: Iterable[tuple[Any, ...]],
     axis: Trace | None = None,
     height: float = 1.0,
-    **style: Any,
+    **style: object,
 ) -> Panel:
     """Panel with curves of a quantity over one axis; each row has name, values, colour, dash."""
     traces = [

@@ -71,7 +71,9 @@ def axis(label: str, **more: object) -> Trace:
     return {"title": {"text": label}, **more}
 
 
-def note(x: Any, y: Any, text: str, *, size: int = 12, color: str = INK, **more: Any) -> Trace:
+def note(
+    x: object, y: object, text: str, *, size: int = 12, color: str = INK, **more: object
+) -> Trace:
     """Text at a point; ``more`` are properties of plotly."""
     font = {"size": size, "color": color}
     return {"x": x, "y": y, "text": text, "showarrow": False, "font": font, **more}
@@ -121,14 +123,14 @@ _MOST_POINTS = 20_000
 
 def line(
     x: Any,
-    y: Any,
+    y: object,
     name: str,
     color: str,
     *,
     unit: str = "",
     dash: str = "solid",
     width: float = 2.0,
-    **more: Any,
+    **more: object,
 ) -> Trace:
     """Describe one curve whose hover text carries its unit; ``more`` are properties of plotly."""
     # plotly leaves points out by default, which draws smooth curves as polygons.
@@ -207,7 +209,7 @@ def sankey(
 
 
 def color_bar(title: str) -> Trace:
-    """Colour bar beside the map at the top of a figure."""
+    """Colour bar to the right of the map at the top of a figure."""
     place = {"len": 0.62, "y": 1.0, "yanchor": "top", "thickness": 14, "x": 1.01, "xanchor": "left"}
     return {**place, "title": {"text": title, "side": "top", "font": {"size": 13, "color": MUTED}}}
 

@@ -42,13 +42,14 @@ from tribodyn.study.case.user_input import (
 )
 from tribodyn.study.case.values import KeyedProblems, correct_keys
 from tribodyn.study.case.write import case_rows, case_table, case_text
+from tribodyn.types import ByName, Tree
 
 if TYPE_CHECKING:
     from tribodyn.model import Option
 
 
 class Taken(NamedTuple):
-    """What was read beside the tables of a case."""
+    """What was read in addition to the tables of a case."""
 
     stated: Stated  #: values that reasons and origin were stated for
     problems: KeyedProblems
@@ -94,21 +95,21 @@ class Case(CaseTables):
     __signature__: ClassVar[Signature]
     title: str
     origin: str | None
-    data: dict[str, Any]  #: tables of the case file as typed, without spreads and records
+    data: Tree  #: tables of the case file as typed, without spreads and records
     _source: Source
     _spread: dict[str, str]
     _assumed: dict[str, str]
     _stated: Stated
-    _effective: dict[str, Any]
+    _effective: Tree
     _changed: tuple[str, ...] | None = None
 
-    def __new__(cls, source: Source | None = None, /, **data: Any) -> Self:
+    def __new__(cls, source: Source | None = None, /, **data: object) -> Self:
         """Return an unread case of the kind that the tables describe."""
         return object.__new__(cls._kind_of(data) if cls is Case else cls)  # type: ignore[return-value]
 
     if TYPE_CHECKING:
 
-        def __init__(self, source: Source | None = None, /, **data: Any) -> None: ...
+        def __init__(self, source: Source | None = None, /, **data: object) -> None: ...
 
     def __init_subclass__(cls) -> None:
         """Register a kind of case, whose members show on this class too."""
@@ -120,12 +121,12 @@ class Case(CaseTables):
         Case.__annotations__ = {**members, **Case.__annotations__}
 
     @staticmethod
-    def _kind_of(data: Mapping[str, Any]) -> type[Case]:
+    def _kind_of(data: ByName) -> type[Case]:
         """Class of the case that tables describe."""
         kinds = (kind for kind in Case.kinds if any(group in data for group in kind.groups))
         return next(kinds, Case.kinds[-1])
 
-    def __setattr__(self, name: str, value: Any) -> None:
+    def __setattr__(self, name: str, value: object) -> None:
         """Raise for a case that is complete: it is immutable."""
         if "_stated" in vars(self):
             super().__setattr__(name, value)
@@ -151,7 +152,7 @@ class Case(CaseTables):
     def kind(self) -> str:
         """What the case describes, in words."""
 
-    def _take(self, source: Source | None, typed: dict[str, Any]) -> Taken:
+    def _take(self, source: Source | None, typed: Tree) -> Taken:
         """Set the tables as the user typed them, those from Python in SI; return what is stated."""
         origin = source or Source()
         if problems := list(unsound(typed)):
@@ -166,7 +167,7 @@ class Case(CaseTables):
         return Taken(stated, problems, misspelt, faults, typed_keys)
 
     @staticmethod
-    def _completed(data: dict[str, Any]) -> dict[str, Any]:
+    def _completed(data: Tree) -> Tree:
         """Tables with what other tables imply."""
         return data
 
@@ -181,11 +182,11 @@ class Case(CaseTables):
     @classmethod
     def _changed_tables(
         cls,
-        data: Mapping[str, Any],
-        changes: Mapping[str, Any],
+        data: ByName,
+        changes: ByName,
         spread: Mapping[str, str] = NO_OPTIONS,
         by: str = "",
-    ) -> dict[str, Any]:
+    ) -> Tree:
         """Tables with values changed, without what the changes leave without effect."""
         return changed_tables(cls.root, data, changes, spread, by)
 
@@ -204,7 +205,7 @@ class Case(CaseTables):
         """
 
     @abstractmethod
-    def _all_values(self) -> dict[str, Any]:
+    def _all_values(self) -> Tree:
         """Values by dotted key in SI; None where a default is derived, of files their names."""
 
     def values(self) -> Iterator[tuple[str, Any]]:
@@ -217,11 +218,11 @@ class Case(CaseTables):
         """
         return iter(self._all_values().items())
 
-    def _with_numbers(self, changes: Mapping[str, Any]) -> Self | None:
+    def _with_numbers(self, changes: ByName) -> Self | None:
         """Copy with changed numbers by a fast path; None where that does not apply."""
         return None
 
-    def replace(self, changes: Mapping[str, Any], *, by: str = "") -> Self:
+    def replace(self, changes: ByName, *, by: str = "") -> Self:
         """Return a new case with some values changed; it is checked as a whole.
 
         Parameters
@@ -273,7 +274,7 @@ class Case(CaseTables):
         return {key: Path(table[name]) for table, name, key in self._files if name != "value"}
 
     @cached_property
-    def _files(self) -> tuple[tuple[dict[str, Any], str, str], ...]:
+    def _files(self) -> tuple[tuple[Tree, str, str], ...]:
         return tuple(file_entries(self.root, self.data))
 
     @property
@@ -299,7 +300,7 @@ class Case(CaseTables):
     def _unknown_key(self, key: str) -> Problem:
         """Problem of a key that the case does not have."""
 
-    def _every_value(self) -> dict[str, Any]:
+    def _every_value(self) -> Tree:
         """Tables that are written with the meanings of their keys; None where there is no value."""
         return with_values(self.data, self._spread)
 
@@ -308,7 +309,7 @@ class Case(CaseTables):
         return self._text(comments=False)
 
     def _text(self, *, comments: bool) -> str:
-        """Text of the case file, if asked with the meanings of its keys as comments."""
+        """Text of the case file, on request with the meanings of its keys as comments."""
         return case_text(self, comments=comments)
 
     def _spread_faults(self, faulty: Container[str] = ()) -> list[tuple[str, Problem]]:
@@ -359,7 +360,7 @@ class Case(CaseTables):
         return {name: str(path) for (before, _, name), path in files.items() if name and not before}
 
     def with_files(self, prefix: str) -> Self:
-        """Copy whose housing files lie beside its case file, with a prefix before their names.
+        """Copy whose housing files lie next to its case file, with a prefix before their names.
 
         Parameters
         ----------
@@ -390,7 +391,7 @@ class Case(CaseTables):
         file = self._named_files().get(key)
         return self._default_of(key) if file is None else str(file)
 
-    def get(self, key: str, default: Any = None) -> Any:
+    def get(self, key: str, default: object = None) -> Any:
         """Value of a dotted key in SI; the default where the case has no such key or value.
 
         Parameters

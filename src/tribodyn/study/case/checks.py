@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import difflib
 from collections.abc import Callable, Iterator, Mapping
-from typing import TYPE_CHECKING, Any, cast
+from typing import TYPE_CHECKING, cast
 
 from tribodyn.errors import Problem
 from tribodyn.model import REQUIRED, Model, Option
@@ -113,7 +113,7 @@ def _unused_key(inputs: UserInput, key: str, kind: str) -> Problem:
     return Problem(inputs.show(key), "", why, "Remove it, or change the kind")
 
 
-def _structure_of(inputs: UserInput, kind: Any) -> KeyedProblems:
+def _structure_of(inputs: UserInput, kind: object) -> KeyedProblems:
     """Check that the structure supports the kind of the gear pair."""
     from tribodyn.dynamics import STRUCTURES
 

@@ -15,6 +15,7 @@ from tribodyn.study.case.rating_tables import CutterTable
 from tribodyn.study.case.section import Section, Table
 from tribodyn.study.case.section import table as inner_table
 from tribodyn.study.case.user_input import UserInput, conflicting_keys, with_values
+from tribodyn.types import Tree
 
 _GUARD = "guards against a wrong unit"
 _RACK = "ISO 53 profiles lie between 0.2 and 1.4"
@@ -258,7 +259,7 @@ def _of_blank(name: str) -> Option:
     default = inspect.signature(hypoid_blank).parameters[name].default
     (low, high, unit), inputs = RANGES[name], default is not inspect.Parameter.empty
     display_unit, example = _SHOWN[unit]
-    units: dict[str, Any] = {"unit": unit, "display_unit": display_unit, "example": example}
+    units: Tree = {"unit": unit, "display_unit": display_unit, "example": example}
     basis, start = _TAPER if default is None else "", default if inputs else REQUIRED
     why = "designs in use lie well within"
     option: Option = number(start, low, high, why, meaning=MEANINGS[name], basis=basis, **units)

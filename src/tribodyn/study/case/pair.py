@@ -3,11 +3,10 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
 from copy import copy
 from dataclasses import replace
 from functools import cached_property, partial
-from typing import TYPE_CHECKING, Any, ClassVar, Literal, Self
+from typing import TYPE_CHECKING, ClassVar, Literal, Self
 
 from tribodyn.errors import InputError, Problem
 from tribodyn.model import text
@@ -50,6 +49,7 @@ from tribodyn.study.case.values import (
 )
 from tribodyn.study.case.write import every_value
 from tribodyn.study.faults.section import Faults
+from tribodyn.types import ByName, Tree
 
 if TYPE_CHECKING:
     from tribodyn.gear import HypoidFlanks, Material, SpurPair
@@ -233,13 +233,13 @@ class PairCase(Case):
         """Speed [rad/s] and nominal torque [N*m] of the pinion."""
         return self.pinion_speed, self.pinion_torque
 
-    def _all_values(self) -> dict[str, Any]:
+    def _all_values(self) -> Tree:
         return flat(self)
 
     kind = "Pair of gears"  #: what the case describes, in words
     lumped: ClassVar[Literal[True]] = True  #: whether ``[dynamics]`` names a lumped structure
 
-    def __init__(self, source: Source | None = None, /, **data: Any) -> None:
+    def __init__(self, source: Source | None = None, /, **data: object) -> None:
         stated, problems, misspelt, spread_faults, typed_keys = self._take(source, data)
         records = {name: data[name] for name in ("assumed",) if name in data}
         inputs = UserInput({**self.data, **records})
@@ -270,11 +270,11 @@ class PairCase(Case):
         self._effective = effective_values(self)
         self._settle(stated)
 
-    def __getstate__(self) -> dict[str, Any]:
+    def __getstate__(self) -> Tree:
         """Return the state without derived attributes."""
         return {key: value for key, value in vars(self).items() if key not in _DERIVED}
 
-    def _with_numbers(self, changes: Mapping[str, Any]) -> Self | None:
+    def _with_numbers(self, changes: ByName) -> Self | None:
         """Return a copy with changed numbers, checked by a fast path; None if that does not apply.
 
         It applies where numbers replace numbers outside ``[gears]`` without other effects: which

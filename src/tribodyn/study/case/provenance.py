@@ -28,6 +28,7 @@ from tribodyn.study.case.sections import PROPERTIES, SHEET
 from tribodyn.study.case.to_models import USUAL_GEARS, has_usual_backlash, mesh_law_of
 from tribodyn.study.case.user_input import Stated, UserInput, si_value
 from tribodyn.study.case.values import FaultError, Plain, unmarked, written
+from tribodyn.types import ByName, Tree
 
 if TYPE_CHECKING:
     from tribodyn.study.case.case import Case
@@ -44,7 +45,7 @@ KeyedProblems = list[tuple[str, Problem]]
 OptionOf = Callable[[str], Option | None]
 
 
-def differing(before: Mapping[str, Any], now: Mapping[str, Any]) -> set[str]:
+def differing(before: ByName, now: ByName) -> set[str]:
     """Return the keys whose values differ by more than rounding."""
     return {key for key, value in before.items() if not same(value, now.get(key))}
 
@@ -57,7 +58,7 @@ def same(first: Any, second: Any) -> bool:
     return math.isclose(first, second, rel_tol=_ROUNDING) if numbers else bool(first == second)
 
 
-def reasons(data: Mapping[str, Any]) -> Any:
+def reasons(data: ByName) -> Any:
     """Return the reasons in ``[assumed]``; invalid entries are left for the check."""
     marks = data["assumed"]
     if not isinstance(marks, Mapping):
@@ -68,7 +69,7 @@ def reasons(data: Mapping[str, Any]) -> Any:
     }
 
 
-def reason_faults(marks: Any) -> KeyedProblems:
+def reason_faults(marks: object) -> KeyedProblems:
     """Report reasons in ``[assumed]`` that are not text."""
     if not isinstance(marks, Mapping):
         what = f"assumed = {written(marks)}"
@@ -78,20 +79,20 @@ def reason_faults(marks: Any) -> KeyedProblems:
     return [(f"assumed.{key}", Problem(what, "", *rule)) for key, what in wrong.items()]
 
 
-def without_records(data: Mapping[str, Any]) -> dict[str, Any]:
+def without_records(data: ByName) -> Tree:
     """Return the tables of a case file without recorded values."""
     body = {key: value for key, value in data.items() if key != "based_on"}
     return {**body, "assumed": reasons(data)} if "assumed" in data else body
 
 
-def _is_record(mark: Any) -> bool:
+def _is_record(mark: object) -> bool:
     return isinstance(mark, Mapping) and set(mark) <= _RECORD_KEYS
 
 
 def _read(
-    option_of: OptionOf, table: str, typed: Mapping[str, Any], free: Container[str]
-) -> tuple[dict[str, Any], KeyedProblems]:
-    values: dict[str, Any] = {}
+    option_of: OptionOf, table: str, typed: ByName, free: Container[str]
+) -> tuple[Tree, KeyedProblems]:
+    values: Tree = {}
     problems: KeyedProblems = []
     for key, value in typed.items():
         if len(problems) > _MAX_PROBLEMS:
@@ -111,7 +112,7 @@ def _read(
     return values, problems
 
 
-def read_stated(case: Case, data: Mapping[str, Any]) -> tuple[Stated, KeyedProblems]:
+def read_stated(case: Case, data: ByName) -> tuple[Stated, KeyedProblems]:
     """Read recorded values and their problems; those of parts that are gone stay as typed."""
     table, base = data.get("assumed", {}), data.get("based_on", {})
     if not isinstance(base, Mapping):
@@ -132,9 +133,9 @@ def _is_free(kind: type[Section]) -> bool:
     return named or any(option.kind in RAW_KINDS for _, option in kind.specs())
 
 
-def _flat(table: Mapping[str, Any], prefix: str = "") -> dict[str, Any]:
+def _flat(table: ByName, prefix: str = "") -> Tree:
     """Flatten a table with quoted or nested keys to dotted keys."""
-    flat: dict[str, Any] = {}
+    flat: Tree = {}
     for name, value in table.items():
         deeper = isinstance(value, Mapping)
         flat |= _flat(value, f"{prefix}{name}.") if deeper else {f"{prefix}{name}": value}
@@ -162,7 +163,7 @@ def settled(
     return Stated(current, base if stated.base else base | author_marks), stale
 
 
-def tables(stated: Stated, marks: Mapping[str, str]) -> dict[str, Any]:
+def tables(stated: Stated, marks: Mapping[str, str]) -> Tree:
     """Return ``[assumed]`` and ``[based_on]``, from which an equal case can be read."""
     return {
         "assumed": {
@@ -283,7 +284,7 @@ def _model_of(case: PairCase, path: list[str]) -> Model | None:
     return section.chosen if isinstance(section, Section) else None
 
 
-def _bored(case: PairCase, default: Any) -> Any:
+def _bored(case: PairCase, default: object) -> Any:
     """Return the reference of deflection: the rim where a gear has no bore and is no ring."""
     if case.gears.kind != "spur":
         return default
@@ -292,7 +293,7 @@ def _bored(case: PairCase, default: Any) -> Any:
     return "rim" if default == "bore" and not all(supported) else default
 
 
-def effective_values(case: PairCase) -> dict[str, Any]:
+def effective_values(case: PairCase) -> Tree:
     """Return all effective values by dotted key, with defaults filled in."""
     values, kind = in_force(case), case.gears.kind
     values |= {key: None for key in values if is_idle(key, kind)}
@@ -308,7 +309,7 @@ def effective_values(case: PairCase) -> dict[str, Any]:
     return values
 
 
-def effective(case: Case) -> dict[str, Any]:
+def effective(case: Case) -> Tree:
     """Return all effective values by dotted key."""
     return dict(case._effective)
 
@@ -347,7 +348,7 @@ def _keys_that_changed(case: Case) -> tuple[str, ...]:
     return _in_order(case, differing(before, values) - set(_TEXT_KEYS))
 
 
-def _defaults_before(case: Case, keys: Iterable[str]) -> dict[str, Any]:
+def _defaults_before(case: Case, keys: Iterable[str]) -> Tree:
     """Return the initial defaults of keys that were given later."""
     inputs, base = case.user_input, case.stated.base
     return {
@@ -362,7 +363,7 @@ def _in_order(case: Case, changed: Set[str]) -> tuple[str, ...]:
     return tuple(key for key in keys if key in changed)
 
 
-def changed_after(before: Case, case: Case, numbers: Mapping[str, Any]) -> None:
+def changed_after(before: Case, case: Case, numbers: ByName) -> None:
     """Set the changed keys of a case that differs from another only in some numbers."""
     base = case.stated.base
     if any(case._effective.get(key) is None for key in base):
@@ -372,7 +373,7 @@ def changed_after(before: Case, case: Case, numbers: Mapping[str, Any]) -> None:
     case._changed = _in_order(case, changed)
 
 
-def _marked(case: Case, key: str, value: Any, changed: tuple[str, ...]) -> str:
+def _marked(case: Case, key: str, value: object, changed: tuple[str, ...]) -> str:
     """Return the provenance of a value marked in ``[assumed]``."""
     reason = case.assumed[key]
     if reason != DEFAULT_MARK:

@@ -176,7 +176,7 @@ def _load(meaning: str, example: str) -> Any:
     )  # fmt: skip
 
 
-def _length(default: Any, meaning: str, basis: str = "", unit: str = "mm") -> Any:
+def _length(default: object, meaning: str, basis: str = "", unit: str = "mm") -> Any:
     return number(
         default, 0.0, 100.0, "guards against a wrong unit", unit="m", display_unit=unit,
         meaning=meaning, basis=basis, example=f'"40 {unit}"',

@@ -9,12 +9,13 @@ from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Self
+from typing import TYPE_CHECKING, Self
 
 from tribodyn import units
 from tribodyn.errors import InputError, Problem
 from tribodyn.study.case.section import named_rows
 from tribodyn.study.case.user_input import Note, Source
+from tribodyn.types import Tree
 from tribodyn.validated_files import read_bytes
 
 if TYPE_CHECKING:
@@ -242,7 +243,7 @@ def _state(path: Path) -> tuple[int, int, int] | None:
     return None
 
 
-def parse_toml(text: str, name: str) -> dict[str, Any]:
+def parse_toml(text: str, name: str) -> Tree:
     """Parse TOML; raise InputError with line and remedy if it is invalid."""
     if chain := _CHAIN.search(text):
         line = text.count("\n", 0, chain.start()) + 1

@@ -16,6 +16,7 @@ from tribodyn.aliases import with_old_names
 from tribodyn.arguments.reading import one_line
 from tribodyn.errors import InputError
 from tribodyn.model import Model, Models, Option
+from tribodyn.types import ByName, Tree
 
 Value = TypeVar("Value")
 #: Kinds of values that are checked where a part is made of them.
@@ -44,7 +45,7 @@ class SectionKeys(NamedTuple):
     owners: Mapping[str, list[str]]
 
 
-def _section_keys(fields: Mapping[str, Option | Table], models: Mapping[str, Any]) -> SectionKeys:
+def _section_keys(fields: Mapping[str, Option | Table], models: ByName) -> SectionKeys:
     keys = dict(fields)
     owners: dict[str, list[str]] = {}
     for name, model in models.items():
@@ -79,7 +80,7 @@ class Section:
             return None
         raise AttributeError(f"{type(self).__name__} has no {name}")
 
-    def __setattr__(self, name: str, value: Any) -> None:
+    def __setattr__(self, name: str, value: object) -> None:
         """Raise: a checked case is immutable."""
         if name.startswith("_"):
             object.__setattr__(self, name, value)
@@ -119,7 +120,7 @@ class Section:
         return cls._available[1]
 
     @classmethod
-    def model_named(cls, name: Any) -> Model | None:
+    def model_named(cls, name: object) -> Model | None:
         """Return the model of a name, or None if there is no such model."""
         return cls.section_keys().models.get(name) if isinstance(name, str) else None
 
@@ -133,7 +134,7 @@ class Section:
         return type(self).section_keys().keys
 
     @classmethod
-    def keys_for(cls, data: Mapping[str, Any]) -> Mapping[str, Option | Table]:
+    def keys_for(cls, data: ByName) -> Mapping[str, Option | Table]:
         """Keys of a table with these values, without those of the model that it names."""
         return cls.fields
 
@@ -149,7 +150,7 @@ class Section:
         yield from ((k, o) for k, o in cls.section_keys().keys.items() if isinstance(o, Option))
 
 
-class _AnyName(dict[str, Any]):
+class _AnyName(Tree):
     """Fields of a table whose inner tables the user names; reference pages show it as NAME."""
 
     def __init__(self, inner: Table) -> None:
@@ -159,7 +160,7 @@ class _AnyName(dict[str, Any]):
     def __contains__(self, name: object) -> bool:
         return isinstance(name, str)
 
-    def get(self, name: str, default: Any = None) -> Any:
+    def get(self, name: str, default: object = None) -> Any:
         """Return the same inner table for any name."""
         return self.inner
 
@@ -177,20 +178,20 @@ class NamedTables(Section):
         return vars(self)
 
     @classmethod
-    def keys_for(cls, data: Mapping[str, Any]) -> Mapping[str, Option | Table]:
+    def keys_for(cls, data: ByName) -> Mapping[str, Option | Table]:
         """One inner table for each name in the data."""
         inner: Table = cls.fields["NAME"]  # type: ignore[assignment]
         return dict.fromkeys(data, inner)
 
 
-def named_rows(value: Any) -> list[tuple[str, Mapping[str, Any]]]:
+def named_rows(value: object) -> list[tuple[str, ByName]]:
     """Tables of a list of tables, such as ``[[load_cases]]``, with their names or numbers."""
     if not isinstance(value, list | tuple) or not all(isinstance(row, Mapping) for row in value):
         return []
     return [(str(row.get("name", number)), row) for number, row in enumerate(value, 1)]
 
 
-def flat_keys(table: Mapping[str, Any], prefix: str = "") -> Iterator[tuple[str, Any]]:
+def flat_keys(table: ByName, prefix: str = "") -> Iterator[tuple[str, Any]]:
     """Dotted keys of nested tables with their values."""
     for name, value in table.items():
         if isinstance(value, Mapping):
@@ -202,15 +203,13 @@ def flat_keys(table: Mapping[str, Any], prefix: str = "") -> Iterator[tuple[str,
             yield f"{prefix}{name}", value
 
 
-def table_in(data: Mapping[str, Any], name: str) -> Mapping[str, Any]:
+def table_in(data: ByName, name: str) -> ByName:
     """Table of a name in a table, the rows of a list by their names; empty where it is none."""
     value = data.get(name)
     return value if isinstance(value, Mapping) else dict(named_rows(value))
 
 
-def option_at(
-    root: type[Section], data: Mapping[str, Any], key: str | tuple[str, ...]
-) -> Option | None:
+def option_at(root: type[Section], data: ByName, key: str | tuple[str, ...]) -> Option | None:
     """Option of a key of these tables; of a value of a list its number ends the key."""
     *path, name = key.split(".") if isinstance(key, str) else key
     section, inner = root, data
@@ -252,8 +251,8 @@ def options_of(section: type[Section], prefix: str) -> list[tuple[str, Option]]:
 
 
 def entries(
-    table: dict[str, Any], place: tuple[str, ...] = ()
-) -> Iterator[tuple[dict[str, Any], str, tuple[str, ...]]]:
+    table: Tree, place: tuple[str, ...] = ()
+) -> Iterator[tuple[Tree, str, tuple[str, ...]]]:
     """Iterate over the values of nested tables: the table, the name in it, and the place."""
     for name, value in table.items():
         if isinstance(value, dict):
@@ -265,9 +264,7 @@ def entries(
             yield table, name, (*place, name)
 
 
-def file_entries(
-    root: type[Section], data: dict[str, Any]
-) -> Iterator[tuple[dict[str, Any], str, str]]:
+def file_entries(root: type[Section], data: Tree) -> Iterator[tuple[Tree, str, str]]:
     """Iterate over the values of tables, and of reasons, that name files, with their keys."""
     for table, name, place in entries(data):
         if place[0] == "assumed" and place[-1] == "value":
@@ -277,7 +274,7 @@ def file_entries(
             yield table, name, ".".join(place)
 
 
-def place_files(root: type[Section], data: dict[str, Any], folder: Path) -> None:
+def place_files(root: type[Section], data: Tree, folder: Path) -> None:
     """Resolve the paths of tables against a folder."""
     for table, name, _ in file_entries(root, data):
         table[name] = str((folder / table[name]).absolute())
@@ -314,7 +311,7 @@ class Choice(NamedTuple):
     keys: SectionKeys
 
 
-def choices(inputs: Mapping[str, Any], root: type[Section] | None = None) -> dict[str, Choice]:
+def choices(inputs: ByName, root: type[Section] | None = None) -> dict[str, Choice]:
     """Return the models that the tables name, by table; ``inputs`` has dotted keys."""
     chosen = {}
     for name, field in (root or Section.case_class).fields.items():
@@ -326,10 +323,10 @@ def choices(inputs: Mapping[str, Any], root: type[Section] | None = None) -> dic
     return chosen
 
 
-def flat(section: Section, prefix: str = "") -> dict[str, Any]:
+def flat(section: Section, prefix: str = "") -> Tree:
     """Return all values of a table and its inner tables by dotted key."""
     entries = vars(section)
-    values: dict[str, Any] = {}
+    values: Tree = {}
     for name in section._names():
         value = entries.get(name)
         if isinstance(value, Section):
@@ -339,7 +336,7 @@ def flat(section: Section, prefix: str = "") -> dict[str, Any]:
     return values
 
 
-def in_force(case: Section) -> dict[str, Any]:
+def in_force(case: Section) -> Tree:
     """Return all values by dotted key, with defaults of the chosen models filled in."""
     values = flat(case)
     for table, section in vars(case).items():

@@ -30,6 +30,7 @@ from tribodyn.study.case.section import (
     table_in,
 )
 from tribodyn.study.case.values import FaultError, Plain, read_value, unmarked, written
+from tribodyn.types import ByName, Tree
 from tribodyn.uncertainty import distribution
 from tribodyn.units import UnitProblemError, convert, split
 
@@ -46,7 +47,7 @@ _TAIL = 1e-6
 _NESTED = (Mapping, list, tuple, str, Plain)
 
 
-def unsound(data: Mapping[str, Any]) -> Iterator[tuple[str, Problem]]:
+def unsound(data: ByName) -> Iterator[tuple[str, Problem]]:
     """Report values that no key accepts, such as control characters, before reading the case."""
     pending: list[tuple[str, Any, int]] = [("", data, 0)]
     for number, (key, value, depth) in enumerate(pending):
@@ -66,7 +67,7 @@ def unsound(data: Mapping[str, Any]) -> Iterator[tuple[str, Problem]]:
             pending += [(key, item, depth + 1) for item in islice(inner, _MAX_KEYS)]
 
 
-def _unsound(key: str, value: Any, depth: int) -> Problem | None:
+def _unsound(key: str, value: object, depth: int) -> Problem | None:
     name = key.rpartition(".")[2]
     control = _CONTROL.search(f"{name}{value}" if isinstance(value, str) else name)
     if control is not None:
@@ -82,7 +83,7 @@ def _unsound(key: str, value: Any, depth: int) -> Problem | None:
     return None
 
 
-def plain(data: Any) -> Any:
+def plain(data: object) -> Any:
     """Mark numbers of tables from Python, where a bare one is SI; lists of numbers as a whole."""
     if isinstance(data, Mapping):
         return {str(key): plain(value) for key, value in data.items()}
@@ -91,7 +92,7 @@ def plain(data: Any) -> Any:
     return data if isinstance(data, str | bool | Plain) else Plain(data)
 
 
-def si_value(option: Option, name: str, value: Any) -> Any:
+def si_value(option: Option, name: str, value: object) -> Any:
     """Value in SI as it is read, the numbers of a list of parts too."""
     if option.kind != "list" or not option.unit:
         return unmarked(read_value(option, name, value))
@@ -101,7 +102,7 @@ def si_value(option: Option, name: str, value: Any) -> Any:
     return read_value(replace(option, kind="number"), name, Plain(value))
 
 
-def values_in_si(root: type[Section], data: dict[str, Any]) -> dict[str, Any]:
+def values_in_si(root: type[Section], data: Tree) -> Tree:
     """Values of tables in SI by dotted key, without files; a wrong one as typed."""
     values = {}
     for table, name, place in entries(data):
@@ -115,10 +116,10 @@ def values_in_si(root: type[Section], data: dict[str, Any]) -> dict[str, Any]:
     return values
 
 
-class UserInput(dict[str, Any]):
+class UserInput(Tree):
     """User input by dotted keys: values as typed, and tables; ``data`` is the nested form."""
 
-    def __init__(self, data: Mapping[str, Any]) -> None:
+    def __init__(self, data: ByName) -> None:
         super().__init__()
         self.data = data
         self.typed: tuple[str, ...] = ()  #: keys of values, without those of tables
@@ -234,10 +235,10 @@ class Source:
 
 
 def without_spread(
-    data: Mapping[str, Any], prefix: str = ""
-) -> tuple[dict[str, Any], dict[str, str], list[tuple[str, Problem]]]:
+    data: ByName, prefix: str = ""
+) -> tuple[Tree, dict[str, str], list[tuple[str, Problem]]]:
     """Return tables with central values, the spreads by key (of lists by number), and problems."""
-    middles: dict[str, Any] = {}
+    middles: Tree = {}
     spreads: dict[str, str] = {}
     faults: list[tuple[str, Problem]] = []
     for name, value in data.items():
@@ -263,7 +264,7 @@ def without_spread(
     return middles, spreads, faults
 
 
-def _has_spread(text: Any) -> bool:
+def _has_spread(text: object) -> bool:
     """Whether a value is a text with a spread."""
     return isinstance(text, str) and bool(_SPREAD.search(text) or _RANGE.search(text))
 
@@ -282,7 +283,7 @@ def _middle(key: str, text: str) -> str | float:
     return middle if unit else float(middle)
 
 
-def spread_problem(spec: Option, key: str, text: Any) -> Problem | None:
+def spread_problem(spec: Option, key: str, text: object) -> Problem | None:
     """Check the values of a spread quantity against the range of its key; None if all fit."""
     if spec.kind not in ("number", "integer"):
         return None
@@ -356,9 +357,9 @@ class Stated(NamedTuple):
     """Values in SI by dotted key that reasons and the origin of the case refer to."""
 
     #: Values that the reasons in ``[assumed]`` refer to.
-    marks: dict[str, Any]
+    marks: Tree
     #: Initial values of the case, and the origin that documents them.
-    base: dict[str, Any]
+    base: Tree
 
 
 #: Keys other than model names whose choice decides which keys of their table are allowed.
@@ -367,11 +368,11 @@ _DECIDES = ("solver.method",)
 
 def changed_tables(
     root: type[Section],
-    data: Mapping[str, Any],
-    changes: Mapping[str, Any],
+    data: ByName,
+    changes: ByName,
     spread: Mapping[str, str] = NO_OPTIONS,
     by: str = "",
-) -> dict[str, Any]:
+) -> Tree:
     """Tables with values changed by dotted key; without ``by`` the values are those of Python."""
     changes = changes if by else plain(changes)
     if problems := list(_missing_parts(root, data, changes)):
@@ -386,9 +387,9 @@ def changed_tables(
     return tables
 
 
-def with_values(data: Mapping[str, Any], values: Mapping[str, Any]) -> dict[str, Any]:
+def with_values(data: ByName, values: ByName) -> Tree:
     """Return a copy of tables with dotted keys set, of lists and their rows too; None removes."""
-    result: dict[str, Any] = _copy(data)
+    result: Tree = _copy(data)
     for key, value in values.items():
         *tables, name = key.split(".")
         table: Any = result
@@ -415,13 +416,13 @@ def _copy(data: Any) -> Any:
     return [_copy(row) for row in data] if named_rows(data) else data
 
 
-def _is_list(value: Any, table: Mapping[str, Any]) -> bool:
+def _is_list(value: object, table: ByName) -> bool:
     """Whether a value is a list of values, or the list of the planets that is not given."""
     value = value.value if isinstance(value, Plain) else value
     return isinstance(value, list | tuple) or (value == {} and "count" in table)
 
 
-def _with_element(value: Any, table: dict[str, Any], key: str, item: Any) -> list[Any]:
+def _with_element(value: Any, table: Tree, key: str, item: Any) -> list[Any]:
     """List with a value changed; of planets one that is missing has zeros."""
     *_, name, number = key.split(".")
     if value == {}:
@@ -434,9 +435,7 @@ def _with_element(value: Any, table: dict[str, Any], key: str, item: Any) -> lis
     return [*value[: int(number) - 1], item, *value[int(number) :]]
 
 
-def _missing_parts(
-    root: type[Section], data: Mapping[str, Any], changes: Mapping[str, Any]
-) -> Iterator[Problem]:
+def _missing_parts(root: type[Section], data: ByName, changes: ByName) -> Iterator[Problem]:
     """Report keys of parts that do not exist, and that the changes do not give as a whole."""
     for key in changes:
         group, name, inner = (*key.split(".", 2), "", "")[:3]
@@ -455,9 +454,7 @@ def _missing_parts(
             yield Problem(what, key, why, did_you_mean(name, list(parts), remedy))
 
 
-def _dropped_options(
-    root: type[Section], inputs: UserInput, changes: Mapping[str, Any]
-) -> list[str]:
+def _dropped_options(root: type[Section], inputs: UserInput, changes: ByName) -> list[str]:
     """Return the options that newly chosen models, laws and methods do not have."""
     dropped = []
     for key, value in changes.items():

@@ -25,6 +25,7 @@ from tribodyn.model import REQUIRED, Option
 from tribodyn.nomenclature import GEARS
 from tribodyn.scope import not_modelled
 from tribodyn.study.case.section import RAW_KINDS, Choice, Section, Table, named_rows, section_at
+from tribodyn.types import ByName, Tree
 
 
 class Term(NamedTuple):
@@ -77,7 +78,7 @@ class Plain:
     value: Any
 
 
-def unmarked(value: Any) -> Any:
+def unmarked(value: object) -> Any:
     """A value as text or number, lists as tuples."""
     value = value.value if isinstance(value, Plain) else value
     return tuple(map(unmarked, value)) if isinstance(value, list | tuple) else value
@@ -91,7 +92,7 @@ class FaultError(Exception):
         self.problem = Problem(what, "", why, remedy)
 
 
-def written(value: Any, depth: int = 5) -> str:
+def written(value: object, depth: int = 5) -> str:
     """Format a value as TOML, shortened to fit a message."""
     if isinstance(value, Plain):
         value = value.value
@@ -145,7 +146,7 @@ def _misread(spec: Option, name: str, value: str, message: str) -> FaultError:
     return FaultError(f"{name} = {written(value)}", reason, remedy)
 
 
-def in_unit(value: Any, unit: str | None) -> Any:
+def in_unit(value: object, unit: str | None) -> Any:
     """Number of a quantity in ``unit``, by exact factors where it is one float."""
     number, written_float = magnitude(value, unit), getattr(quantity_in(value), "magnitude", None)
     if unit and isinstance(written_float, float | int):
@@ -154,7 +155,7 @@ def in_unit(value: Any, unit: str | None) -> Any:
     return number
 
 
-def _in_si(spec: Option, name: str, value: Any) -> Any:
+def _in_si(spec: Option, name: str, value: object) -> Any:
     """SI number, or list of numbers, of an object with a unit."""
     try:
         return np.asarray(in_unit(value, spec.unit)).tolist()
@@ -163,7 +164,7 @@ def _in_si(spec: Option, name: str, value: Any) -> Any:
         raise FaultError(f"{name} = {written(str(value))}", str(refused), remedy) from None
 
 
-def _real(spec: Option, name: str, value: Any, as_text: bool) -> float:
+def _real(spec: Option, name: str, value: object, as_text: bool) -> float:
     """Convert text, a quantity with a unit or a number to an SI float."""
     entry = f"{name} = {written(value)}"
     if quantity_in(value) is not None:
@@ -193,7 +194,7 @@ def _real(spec: Option, name: str, value: Any, as_text: bool) -> float:
         raise FaultError(entry, f"{name} is too large", "Correct the value") from None
 
 
-def _in_range(spec: Option, name: str, value: float, typed: Any) -> None:
+def _in_range(spec: Option, name: str, value: float, typed: object) -> None:
     """Raise if a value is not finite or outside the limits of the field."""
     size = abs(value) if spec.signed else value
     outside = not (spec.low <= size <= spec.high) or (spec.positive and value == spec.low)
@@ -226,7 +227,7 @@ def _integer(spec: Option, name: str, value: Any) -> int:
     return number
 
 
-def _name(spec: Option, name: str, value: Any) -> str:
+def _name(spec: Option, name: str, value: object) -> str:
     names = spec.names() if spec.names else []
     if isinstance(value, str) and value in names:
         return value
@@ -240,7 +241,7 @@ def _name(spec: Option, name: str, value: Any) -> str:
     )
 
 
-def read_value(spec: Option, name: str, value: Any) -> Any:
+def read_value(spec: Option, name: str, value: object) -> Any:
     """Check one value and return it in SI; lists of parts, which have own checks, as they are."""
     if spec.kind in RAW_KINDS:
         return value
@@ -268,7 +269,7 @@ def read_value(spec: Option, name: str, value: Any) -> Any:
     return str(Path(str(value)).absolute()) if spec.kind == "file" else value
 
 
-def _list(spec: Option, name: str, value: Any, as_text: bool) -> tuple[float, ...]:
+def _list(spec: Option, name: str, value: object, as_text: bool) -> tuple[float, ...]:
     if isinstance(value, str) or not hasattr(value, "__iter__"):
         example = spec.example if spec.example.startswith("[") else f"[{spec.example}]"
         remedy = f"Write for example {name} = {example}"
@@ -295,7 +296,7 @@ def _both_gears(spec: Option, name: str, value: Any, as_text: bool) -> tuple[flo
 
 
 def read_table(
-    cls: type[Kind], data: Mapping[str, Any], path: str, chosen: Chosen, problems: KeyedProblems
+    cls: type[Kind], data: ByName, path: str, chosen: Chosen, problems: KeyedProblems
 ) -> Kind:
     """Read a table with the options of its model; append errors to ``problems``."""
     section = cls.__new__(cls)
@@ -304,10 +305,10 @@ def read_table(
 
 
 def read_fields(
-    cls: type[Section], data: Mapping[str, Any], path: str, chosen: Chosen, problems: KeyedProblems
-) -> dict[str, Any]:
+    cls: type[Section], data: ByName, path: str, chosen: Chosen, problems: KeyedProblems
+) -> Tree:
     """Read the values of a table in the order of declaration; append errors to ``problems``."""
-    values: dict[str, Any] = {}
+    values: Tree = {}
     model = chosen[path].model if path in chosen else None
     # The options of a model take precedence over keys of the same name.
     fields = cls.keys_for(data)
@@ -336,7 +337,7 @@ def read_fields(
 
 
 def _read_inner(
-    table: Table, value: Any, key: str, chosen: Chosen, problems: KeyedProblems
+    table: Table, value: object, key: str, chosen: Chosen, problems: KeyedProblems
 ) -> Section | None:
     if value is None:
         if table.default == "none":
@@ -354,7 +355,7 @@ def _read_inner(
 
 
 def _unexpected_keys(
-    cls: type[Section], data: Mapping[str, Any], options: Mapping[str, Any], path: str
+    cls: type[Section], data: ByName, options: ByName, path: str
 ) -> Iterator[tuple[str, Problem]]:
     """Report keys that neither this table nor its model has."""
     unexpected = list(islice((name for name in data if name not in options), _MAX_UNKNOWN))
@@ -401,7 +402,7 @@ def _tables_with(name: str, path: tuple[str, ...] = ()) -> list[str]:
     return tables
 
 
-def _intended_key(name: str, keys: Mapping[str, Any]) -> str:
+def _intended_key(name: str, keys: ByName) -> str:
     """Guess the key intended by a misspelt one; empty if there is no close match."""
     if term := find_term(name):
         return term.key if term.key in keys else ""
@@ -413,12 +414,12 @@ def _intended_key(name: str, keys: Mapping[str, Any]) -> str:
 
 
 def correct_keys(
-    data: Mapping[str, Any], root: type[Section], path: tuple[str, ...] = ()
-) -> tuple[dict[str, Any], KeyedProblems, dict[str, str]]:
+    data: ByName, root: type[Section], path: tuple[str, ...] = ()
+) -> tuple[Tree, KeyedProblems, dict[str, str]]:
     """Tables without misspelt keys, the problems, and the typed key of each corrected key."""
     section = section_at(path, root)
     keys = {**section.keys_for(data), **section.section_keys().keys} if section else {}
-    result: dict[str, Any] = {}
+    result: Tree = {}
     problems: KeyedProblems = []
     typed_keys: dict[str, str] = {}
     # Keys of a case from Python may be of any type.
@@ -457,7 +458,7 @@ def with_typed_keys(
 
 def unknown_key(
     path: tuple[str, ...],
-    value: Any,
+    value: object,
     section: type[Section] | None = None,
     keys: Sequence[str] = (),
 ) -> Problem:

@@ -27,6 +27,7 @@ from tribodyn.study.case.section import (
 )
 from tribodyn.study.case.user_input import Note, with_values
 from tribodyn.study.case.values import Plain, in_unit, unmarked, written
+from tribodyn.types import ByName, Tree
 
 if TYPE_CHECKING:
     from tribodyn.study.case.case import Case
@@ -36,7 +37,7 @@ Place = tuple[str, ...]
 Rows = list[tuple[Place, Any]]
 
 _NUMBERS = ("number", "numbers")
-#: Line above ``[based_on]``, and what stands above ``[assumed]``.
+#: Line above ``[based_on]``, and the one above ``[assumed]``.
 _BASE_NOTE = "# Initial values of this case, which reports use to name changed values: do not edit"
 _MARKS_NOTE = """
 # Values above that the source of this case does not print, and defaults. A reason is
@@ -45,17 +46,17 @@ _MARKS_NOTE = """
 
 
 def case_text(case: Case, *, comments: bool = False) -> str:
-    """Text of the file as it was read; with the meanings of all keys if asked, or from Python."""
+    """Text of the file as it was read; with the meanings of all keys on request, or from Python."""
     is_read = bool(case.source.comments) and not comments
     return (_Writer if is_read else _Commentator)(case).text()
 
 
-def every_value(case: PairCase) -> dict[str, Any]:
+def every_value(case: PairCase) -> Tree:
     """Tables with all values of a pair; of keys without a value None."""
     values, kind = effective(case), case.gears.kind
 
-    def inside(section: Section, prefix: str) -> dict[str, Any]:
-        table: dict[str, Any] = {}
+    def inside(section: Section, prefix: str) -> Tree:
+        table: Tree = {}
         for name in section._names():
             key, inner = f"{prefix}{name}", vars(section).get(name)
             if isinstance(inner, Section):
@@ -82,7 +83,7 @@ class _Writer:
         text = "".join((*self._inside(self._tables, (), ()), self._note(("",)).above, above))
         return (text if text.endswith("\n") else f"{text}\n") + "".join(self._base())
 
-    def _inside(self, table: Mapping[str, Any], place: Place, key: Place) -> Iterator[str]:
+    def _inside(self, table: ByName, place: Place, key: Place) -> Iterator[str]:
         """Values of a table, then tables in it; in ``key`` tables of a list have their numbers."""
         values, tables = self._split(table, place, key)
         for names, value in values:
@@ -101,7 +102,7 @@ class _Writer:
                 head = f"[[{_dotted(at)}]]"
                 yield from self._table(head, body, (*at, row), (*its_key, str(number)))
 
-    def _split(self, table: Mapping[str, Any], place: Place, key: Place) -> tuple[Rows, Rows]:
+    def _split(self, table: ByName, place: Place, key: Place) -> tuple[Rows, Rows]:
         """Values of a table, also tables that are written in one line, and other tables."""
         values: Rows = []
         tables: Rows = []
@@ -118,7 +119,7 @@ class _Writer:
                 rows.append(((name,), value))
         return values, tables
 
-    def _table(self, head: str, body: Mapping[str, Any], place: Place, key: Place) -> Iterator[str]:
+    def _table(self, head: str, body: ByName, place: Place, key: Place) -> Iterator[str]:
         """Head of a table, unless only other tables are in it, and what is inside."""
         note = self._notes.get(".".join(key))
         if note is not None:
@@ -131,7 +132,7 @@ class _Writer:
         """What the file has for a key."""
         return self._notes.get(".".join(key)) or Note("")
 
-    def _entry(self, place: Place, note: Note, value: Any, names: int) -> str:
+    def _entry(self, place: Place, note: Note, value: object, names: int) -> str:
         """Line of a value, whose last ``names`` names are written."""
         if unmarked(value) is None:
             return ""
@@ -139,7 +140,7 @@ class _Writer:
         behind = "" if ".".join(place) in self._changed else note.behind
         return f"{note.above}{_dotted(place[-names:])}{text}{behind}\n"
 
-    def _value(self, place: Place, value: Any) -> str:
+    def _value(self, place: Place, value: object) -> str:
         """Text of a value, or of a table in one line."""
         if isinstance(value, Mapping):
             pairs = (f"{_quoted(k)} = {self._value((*place, k), v)}" for k, v in value.items())
@@ -166,13 +167,13 @@ class _Writer:
                 text = f" = {self._with_value(key, reason, value)}"
             yield f"{note.above}{_quoted(key)}{text}{note.behind}\n"
 
-    def _with_value(self, key: str, reason: str, value: Any) -> str:
+    def _with_value(self, key: str, reason: str, value: object) -> str:
         why = json.dumps(reason, ensure_ascii=False)
         if value is None:
             return why
         return f"{{ value = {self._recorded(key, value)}, reason = {why} }}"
 
-    def _recorded(self, key: str, value: Any) -> str:
+    def _recorded(self, key: str, value: object) -> str:
         option = self._case.option_of(key)
         is_raw = option is None or (option.kind in RAW_KINDS and not option.unit)
         return written_value(value if is_raw else Plain(value), None if is_raw else option)
@@ -208,7 +209,7 @@ class _Commentator(_Writer):
         field = parent.fields.get(place[-1]) if parent else None
         return f"  # {field.meaning}" if isinstance(field, Table) else ""
 
-    def _entry(self, place: Place, note: Note, value: Any, names: int) -> str:
+    def _entry(self, place: Place, note: Note, value: object, names: int) -> str:
         option = option_at(self._case.root, self._tables, place)
         if option is None:
             return super()._entry(place, note, value, names)
@@ -279,7 +280,7 @@ def _typed(text: str) -> Any:
     return None
 
 
-def _denotes(text: str, value: Any) -> bool:
+def _denotes(text: str, value: object) -> bool:
     """Whether the text of a file denotes a value that was read."""
     return not isinstance(value, Plain) and bool(text) and bool(_typed(text) == value)
 
@@ -291,7 +292,7 @@ def written_number(spec: Option, value: float) -> str:
     return f'"{units.shortest_quantity(value, spec.unit, spec.display_unit)}"'
 
 
-def written_value(value: Any, option: Option | None) -> str:
+def written_value(value: object, option: Option | None) -> str:
     """Text of a value; a number or a quantity from Python with the unit of its key."""
     if isinstance(value, Plain) and isinstance(value.value, list | tuple | np.ndarray):
         value = [Plain(item) for item in value.value]
@@ -322,7 +323,7 @@ def case_rows(case: Case) -> list[tuple[str, str, str]]:
     ]
 
 
-def _value_text(spec: Option | None, value: Any) -> str:
+def _value_text(spec: Option | None, value: object) -> str:
     if spec is None or (spec.kind in RAW_KINDS and not spec.unit):
         return written(value).strip('"')
     return spec.show(value)
