@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from tribodyn.dynamics import Contact, System, harmonic_balance
 from tribodyn.dynamics.harmonic.phase_contacts import Cut, Pieces
 from tribodyn.dynamics.harmonic.phase_grid import PhaseGrid
 
@@ -41,3 +42,27 @@ def test_a_motion_is_the_same_at_the_points_and_back():
     at = pieces.sample(values)
     assert at[:, 0] == pytest.approx(wave(*(pieces.points.T * 2.0 * np.pi)), abs=1e-7)
     assert pieces.gather(pieces.weight[:, None] * at) == pytest.approx(values, abs=1e-7)
+
+
+@pytest.mark.parametrize("teeth", [5, 7])
+def test_teeth_that_are_alike_have_no_sidebands(teeth):
+    """Whatever bends and jumps in their forces, and whatever their shaft's points are."""
+
+    def law(x):
+        return 3e8 * (1.0 + 0.05 * (teeth * np.asarray(x) % 1.0 < 0.6))
+
+    events = tuple((np.arange(teeth)[:, None] + [0.0, 0.6]).ravel() / teeth)
+    contact = Contact(
+        [1.0, -1.0], law, 3e3, lambda x: 1e-6 * np.cos(2 * np.pi * teeth * x), 2e-5,
+        ramp_stiffness=lambda x: np.tile([3e7, 2e8], (np.size(x), 1)),
+        ramp_gap=lambda x: 1e-6 * np.tile([29.0, 31.0], (np.size(x), 1)), events=events,
+        cycles=(1, 0), period=teeth, turning_error=lambda x: 1e-6 * np.cos(2 * np.pi * x),
+        turning_cycles=(0, 1),
+    )  # fmt: skip
+    system = System(np.diag([1.0, 2.0]), 20.0 * np.eye(2), np.zeros((2, 2)), [3e3, -3e3], [contact])
+    motion = harmonic_balance(system, (40.0, 91.0), steps=(32 * teeth, 8))
+    assert motion.converged
+    lines = motion.lines()
+    alike = lines.numbers[:, 0] % teeth == 0
+    size = np.abs(lines.amplitude[:, 0])
+    assert size[~alike].max(initial=0.0) < 1e-9 * size[1:].max()

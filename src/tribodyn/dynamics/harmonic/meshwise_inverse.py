@@ -8,7 +8,6 @@ through the structure, so that a few Krylov vectors remain.
 
 from __future__ import annotations
 
-import math
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
@@ -108,7 +107,8 @@ class _OnePhase:
     ) -> None:  # fmt: skip
         grid = residual.grid
         self.shape, self.axis = grid.shape, axis
-        self.teeth = _teeth(residual, axis)
+        teeth: int = residual.structure.rows.teeth(axis)
+        self.teeth = teeth if self.shape[axis] % teeth == 0 else 1
         self.half = (axis - 1) % len(grid.shape) if len(grid.shape) > 1 else None
         numbers = self._numbers()
         omega = 2.0 * np.pi * (numbers @ grid.frequency)
@@ -188,13 +188,6 @@ class _OnePhase:
         else:
             values = fft.irfftn(table, [self.shape[axis] for axis in axes], axes)
         return np.asarray(values.reshape(-1, lines.shape[-1]))
-
-
-def _teeth(residual: OnGrid, axis: int) -> int:
-    """Mesh cycles of all contacts in a phase; one where its points do not divide into them."""
-    cycles = [int(mesh.period * abs(mesh.cycles[axis])) for mesh in residual.structure.rows.meshes]
-    teeth = math.gcd(*cycles) or 1
-    return teeth if residual.grid.shape[axis] % teeth == 0 else 1
 
 
 def _bases(varying: list[Array]) -> tuple[Array, Array]:

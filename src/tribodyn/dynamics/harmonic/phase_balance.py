@@ -62,8 +62,8 @@ _AGAIN = 1e-3
 _ADDED, _TRIES = (0.3, 0.1, 0.03, 0.01, 0.003), 12
 #: Growth in a cycle of the fastest phase that is warned of; logarithm of the largest stated one.
 _GROWS, _HIGH = 1.001, 50.0
-#: Newton steps in which the error halves if the points suffice.
-_PATIENCE = 5
+#: Accuracy of the linear motion, and Newton steps in which the error halves if points suffice.
+_ROUGH, _PATIENCE = 0.1, 5
 
 
 class Follower(NamedTuple):
@@ -155,7 +155,7 @@ class _Search:
     def linear(self, residual: PhaseResidual) -> Array:
         """Motion with the contacts that are closed at rest."""
         static = self.still(residual)
-        return static + residual.correction(residual.at(static, closed=True))[0]
+        return static + residual.correction(residual.at(static, closed=True), _ROUGH)[0]
 
     def damped(self, residual: PhaseResidual, y: Array, tolerance: float) -> Solution:
         """Newton's method with damping at the contacts that is removed in steps."""

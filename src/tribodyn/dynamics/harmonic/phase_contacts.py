@@ -65,11 +65,13 @@ class Pieces:
     width: Array
     at: Cut  #: points (q,)
     weight: Array  #: of the points; their sum over a line is 1
+    uncut: Pieces | None = None  #: without some cuts, whose points are the first ones
 
     @classmethod
-    def of(cls, grid: PhaseGrid, axis: int, cut: Cut, fewest: int = _FEWEST) -> Pieces:
-        """Pieces between even places on all lines and those of a cut."""
-        count, lines = -(-grid.shape[axis] // _STEPS), grid.size // grid.shape[axis]
+    def of(cls, grid: PhaseGrid, axis: int, cut: Cut, teeth: int = 1) -> Pieces:
+        """Pieces between even places on all lines, alike for all teeth, and those of a cut."""
+        lines = grid.size // grid.shape[axis]
+        count = -(-grid.shape[axis] // (_STEPS * teeth)) * teeth
         even = Cut(np.repeat(np.arange(lines), count), np.tile(np.arange(count) / count, lines))
         line, place = Cut.joined((even, cut))
         order = np.lexsort((place, line))
@@ -78,32 +80,44 @@ class Pieces:
         end = np.roll(begin.place, -1)
         end[last] = 1.0 + begin.place[np.roll(last, 1)]
         width = end - begin.place
-        points = np.ceil(fewest + (_GAUSS - fewest) * np.minimum(width * count, 1.0))
-        parts, weights = [], []
-        for number in np.unique(points).astype(int):
-            chosen = np.flatnonzero(points == number)
-            node, share = legendre.leggauss(number)
-            half = 0.5 * width[chosen, None]
-            place = (begin.place[chosen, None] + half * (1.0 + node)) % 1.0
-            parts.append(Cut(np.repeat(begin.line[chosen], number), place.reshape(-1)))
-            weights.append((half * share).reshape(-1))
-        return cls(grid, axis, begin, width, Cut.joined(parts), np.concatenate(weights))
+        return cls(grid, axis, begin, width, *_gauss(begin, width, np.full(width.size, _GAUSS)))
 
-    def also(self, at: Cut) -> Pieces:
-        """The same with further points, without weight."""
-        weight = np.append(self.weight, np.zeros(at.line.size))
-        return replace(self, at=Cut.joined((self.at, at)), weight=weight)
+    def cut(self, piece: Index, inside: Array) -> Pieces:
+        """The same with pieces cut at distances from their begins: its last points, no weight."""
+        chosen, cuts = np.unique(piece, return_counts=True)
+        owner, last = np.repeat(chosen, cuts + 1), np.cumsum(cuts + 1) - 1
+        begin, end = np.zeros(owner.size), np.zeros(owner.size)
+        middle = np.ones(owner.size, dtype=bool)
+        middle[last] = False
+        end[last], end[middle] = self.width[chosen], inside[np.lexsort((inside, piece))]
+        begin[np.flatnonzero(middle) + 1] = end[middle]
+        width = end - begin
+        part = np.minimum(width * -(-self.grid.shape[self.axis] // _STEPS), 1.0)
+        starts = Cut(self.begin.line[owner], self.begin.place[owner] + begin)
+        at, weight = _gauss(starts, width, np.ceil(_FEWEST + (_GAUSS - _FEWEST) * part))
+        ends = Cut(self.begin.line[piece], (self.begin.place[piece] + inside) % 1.0)
+        uncut = self.weight.copy()
+        uncut.reshape(-1, _GAUSS)[chosen] = 0.0
+        weight = np.concatenate((uncut, weight, np.zeros(piece.size)))
+        return replace(self, at=Cut.joined((at, ends)), weight=weight, uncut=self)
 
     @property
     def points(self) -> Array:
-        """Phases of the points (q, phases)."""
+        """Phases of the points (q, phases), but for those of the uncut pieces."""
         points = self.grid.points[self.grid.lines(self.axis)[self.at.line]]
         points[:, self.axis] = self.at.place
         return points
 
     @cached_property
-    def _between(self) -> csr_matrix:
+    def between(self) -> csr_matrix:
         """Weights of the points of the refined lines in a motion at each point."""
+        from scipy.sparse import vstack
+
+        return self.own if self.uncut is None else vstack((self.uncut.between, self.own), "csr")
+
+    @cached_property
+    def own(self) -> csr_matrix:
+        """The same at the points that are none of the uncut pieces."""
         from scipy.sparse import csr_matrix
         from scipy.special import binom
 
@@ -121,23 +135,40 @@ class Pieces:
 
     def sample(self, values: Array) -> Array:
         """Values at the points (q, c) of a motion on the grid (p, c)."""
+        return np.asarray(self.between @ self.refined(values))
+
+    def refined(self, values: Array) -> Array:
+        """Values on the refined lines of a motion on the grid (p, c)."""
         from scipy import fft
 
         count = self.grid.shape[self.axis]
         table = np.moveaxis(values.reshape(*self.grid.shape, -1), self.axis, -2)
         lines = fft.rfft(table, axis=-2)[..., : (count + 1) // 2, :]
         fine = fft.irfft(lines, _REFINED * count, axis=-2) * _REFINED
-        return np.asarray(self._between @ fine.reshape(-1, values.shape[1]))
+        return np.asarray(fine.reshape(-1, values.shape[1]))
 
     def gather(self, values: Array) -> Array:
         """Motion on the grid (p, c) with the lines of values with their weights (q, c)."""
         from scipy import fft
 
         count, others = self.grid.shape[self.axis], np.delete(self.grid.shape, self.axis)
-        table = (self._between.T @ values).reshape(*others, _REFINED * count, -1)
+        table = (self.between.T @ values).reshape(*others, _REFINED * count, -1)
         lines = fft.rfft(table, axis=-2)[..., : (count + 1) // 2, :]
         coarse = np.moveaxis(fft.irfft(lines, count, axis=-2) * count, -2, self.axis)
         return np.asarray(coarse.reshape(self.grid.size, -1))
+
+
+def _gauss(begin: Cut, width: Array, points: Array) -> tuple[Cut, Array]:
+    """Gauss's points of pieces, and their weights."""
+    parts, weights = [], []
+    for number in np.unique(points).astype(int):
+        chosen = np.flatnonzero(points == number)
+        node, share = legendre.leggauss(number)
+        half = 0.5 * width[chosen, None]
+        place = (begin.place[chosen, None] + half * (1.0 + node)) % 1.0
+        parts.append(Cut(np.repeat(begin.line[chosen], number), place.reshape(-1)))
+        weights.append((half * share).reshape(-1))
+    return Cut.joined(parts), np.concatenate(weights)
 
 
 class Cell(NamedTuple):
@@ -149,11 +180,11 @@ class Cell(NamedTuple):
 
 
 class _Crossings(NamedTuple):
-    """Places where the clearance of a spring changes its sign."""
+    """Places where a flank opens or closes."""
 
-    at: Cut
+    piece: Index
+    inside: Array  #: distances from the begins of the pieces
     contact: Index
-    spring: Index
     edge: Array  #: 1 or -1, the side of the dead zone
     slope: Array  #: derivative of the clearance by the phase
 
@@ -187,7 +218,7 @@ class PhaseContacts(ContactLaw):
     @cached_property
     def _base(self) -> tuple[Pieces, Rows]:
         """Pieces between the jumps of the entries, and the entries at their points."""
-        pieces = Pieces.of(self.grid, self.axis, self.jumps, _GAUSS)
+        pieces = Pieces.of(self.grid, self.axis, self.jumps, self.part.teeth(self.axis))
         return pieces, self.part.projected(pieces.points, *self.bases)
 
     def law(
@@ -219,23 +250,27 @@ class PhaseContacts(ContactLaw):
             if closed is not None or not self._opens(law):
                 return law, NO_BREAKS, None
         pieces, rows = self._base
-        moved = pieces.sample(y), pieces.sample(rate)
+        fine = [pieces.refined(part) for part in (y, rate)]
+        moved = pieces.between @ fine[0], pieces.between @ fine[1]
         law = self.law(rows, 1.0, *moved, excess, closed)
-        crossings = None if closed is not None else self._crossings(pieces, rows, law)
-        if crossings is not None and crossings.contact.size:
-            cut = Cut.joined((self.jumps, crossings.at))
-            pieces = Pieces.of(self.grid, self.axis, cut).also(crossings.at)
+        jumped = np.zeros((0, *law.stiffness.shape[1:]))
+        if closed is None and (crossings := self._crossings(pieces, rows, law)).piece.size:
+            pieces = pieces.cut(crossings.piece, crossings.inside)
             rows = self.part.projected(pieces.points, *self.bases)
-            moved = pieces.sample(y), pieces.sample(rate)
-            law = self.law(rows, 1.0, *moved, excess, closed)
+            moved = pieces.own @ fine[0], pieces.own @ fine[1]
+            further = self.law(rows, 1.0, *moved, excess, closed)
+            ends = slice(-crossings.piece.size, None)
+            jumped = self._jumped(crossings, rows.at(ends), further.push[ends], moved)
+            law = Law(*(
+                both[0] if len(both[0]) == 1 else np.concatenate(both)
+                for both in zip(law, further, strict=True)
+            ))  # fmt: skip
         weight = pieces.weight[:, None, None]
         stiffness, damping = (
             weight * (mean - part)
             for mean, part in zip(means, (law.stiffness, law.damping), strict=True)
         )
-        if crossings is not None and crossings.contact.size:
-            number = len(weight) - crossings.contact.size
-            stiffness[number:] = self._jumped(crossings, rows.at(slice(number, None)), law, moved)
+        stiffness[len(weight) - len(jumped) :] = jumped
         return law, NO_BREAKS, Cell(pieces, stiffness, damping)
 
     def _opens(self, law: Law) -> bool:
@@ -246,8 +281,9 @@ class PhaseContacts(ContactLaw):
 
     def _crossings(self, pieces: Pieces, rows: Rows, law: Law) -> _Crossings:
         """Ends of the dead zones, from the polynomials of the clearances over the pieces."""
-        contact, spring = np.nonzero(self.dead)
-        gap, distance = rows.gap[:, contact, spring], law.compression[:, contact]
+        # Ramps bend the force without a jump, which Gauss's rule bears.
+        contact = np.flatnonzero(self.dead[:, 0])
+        gap, distance = rows.gap[:, contact, 0], law.compression[:, contact]
         clearance = np.concatenate((distance - gap, -distance - gap), axis=1)
         node, share = legendre.leggauss(_GAUSS)
         degrees = np.arange(_GAUSS)
@@ -263,14 +299,13 @@ class PhaseContacts(ContactLaw):
             step = legendre.legval(x, chosen, False) / legendre.legval(x, slopes, False)
             x = np.clip(x - step, places[interval], places[interval + 1])
         half = 0.5 * pieces.width[piece]
-        at = Cut(pieces.begin.line[piece], (pieces.begin.place[piece] + half * (1.0 + x)) % 1.0)
         edge = np.where(column < contact.size, 1.0, -1.0)
-        column = column % max(1, contact.size)
         slope = legendre.legval(x, slopes, False) / half
-        return _Crossings(at, contact[column], spring[column], edge, slope)
+        contact = contact[column % max(1, contact.size)]
+        return _Crossings(piece, half * (1.0 + x), contact, edge, slope)
 
     def _jumped(
-        self, crossings: _Crossings, rows: Rows, law: Law, moved: tuple[Array, Array]
+        self, crossings: _Crossings, rows: Rows, push: Array, moved: tuple[Array, Array]
     ) -> Array:
         """Derivative of the force by the motion where a damper begins or ceases to act."""
         each, contact = np.arange(crossings.contact.size), crossings.contact
@@ -282,11 +317,9 @@ class PhaseContacts(ContactLaw):
         along = of_contact(rows.along)
         speed = np.einsum("br,br->b", along, rate) - of_contact(rows.nodes.error_slope)
         speed += np.einsum("br,br->b", of_contact(rows.along_slope), y)
-        steady = self.damped_in_gap[contact] | (crossings.spring > 0)
-        force = np.where(steady, 0.0, of_contact(rows.nodes.damping)) * speed
+        force = speed * ~self.damped_in_gap[contact] * of_contact(rows.nodes.damping)
         factor = crossings.edge * force / np.abs(crossings.slope)
-        push = of_contact(law.push[-each.size :])
-        return np.asarray(-factor[:, None, None] * push[:, :, None] * along[:, None, :])
+        return np.asarray(-factor[:, None, None] * of_contact(push)[:, :, None] * along[:, None])
 
 
 def axis_of(cycles: Array) -> int:

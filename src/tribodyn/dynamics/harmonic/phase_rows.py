@@ -6,6 +6,7 @@ alone, so that they are evaluated once at each different mesh phase and distribu
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
@@ -86,16 +87,14 @@ class Mesh:
         }
         return nodes._replace(**slopes)
 
-    def at(self, turned: tuple[Array, Any], before: bool = False) -> tuple[Nodes, Index | slice]:
+    def at(self, turned: tuple[Array, Any]) -> tuple[Nodes, Index | slice]:
         """Entries at the different mesh phases of points, and the row of each."""
         phase, rate = turned
-        # Phases of different rates are all different, and mostly those along a line.
-        repeated = len(phase) <= _CACHED or len(_different(phase[:_CACHED])[0]) < _CACHED
-        if np.ndim(rate) or not repeated:
-            return self.nodes(_rounded(phase), rate, before), slice(None)
+        if np.ndim(rate):  # phases of different rates are all different
+            return self.nodes(_rounded(phase), rate), slice(None)
         different, rows = _different(phase)
-        key = different.tobytes(), rate, before
-        nodes = self._nodes.get(key) or self.nodes(different, rate, before)
+        key = different.tobytes(), rate
+        nodes = self._nodes.get(key) or self.nodes(different, rate)
         if different.size <= _CACHED:
             self._nodes[key] = nodes
         return nodes, rows
@@ -175,6 +174,11 @@ class PhaseRows:
         """Frequency of so many cycles over each phase [Hz]."""
         return float(np.asarray(cycles, dtype=float) @ self.frequency)
 
+    def teeth(self, axis: int) -> int:
+        """Mesh cycles of all contacts over a phase, or one."""
+        cycles = [int(mesh.period * abs(mesh.cycles[axis])) for mesh in self.meshes]
+        return math.gcd(*cycles) or 1
+
     def turned(self, points: Array, cycles: Any, offset: float = 0.0) -> tuple[Array, Any]:
         """Phase at points (p, phases) of what turns so often over each, and its rate [Hz]."""
         rate = self.rate(cycles)
@@ -209,14 +213,11 @@ class PhaseRows:
         motion.contact[:, 0, first:] = bearing_force
         return motion
 
-    def projected(
-        self, points: Array, along: Array, push: Array, before: Mesh | None = None
-    ) -> Rows:
-        """Rows at points along two bases; those of the mesh ``before`` just before its phase."""
+    def projected(self, points: Array, along: Array, push: Array) -> Rows:
+        """Rows at points along two bases."""
         parts = []
         for mesh in self.meshes:
-            turned = self.turned(points, mesh.cycles, mesh.offset)
-            nodes, rows = mesh.at(turned, before is mesh)
+            nodes, rows = mesh.at(self.turned(points, mesh.cycles, mesh.offset))
             part = project_rows(nodes, along, push)
             columns = vars_of(part.nodes) | {
                 "along": part.along, "along_slope": part.along_slope, "push": part.push,
