@@ -115,6 +115,7 @@ __all__ = ["ANY", "FILES", "LINES", "import_circles", "lines_of_code", "measures
 #: dynamics: motions over phases that are unstable are named
 #: study: check names keys of hypoid flanks, heat and bodies that do nothing
 #: arguments, plot: options keep their units; captions from docstrings
+#: dynamics: cracks and eccentric gears at once, ten times as fast
 LINES: dict[str, int] = {
     "__init__": 105,
     "__main__": 3,
@@ -130,7 +131,7 @@ LINES: dict[str, int] = {
     "contact": 417,
     "cookbook": 102,
     "drawing": 205,
-    "dynamics": 15775,
+    "dynamics": 15795,
     "ehl": 9590,
     "errors": 224,
     "exchange": 2164,
