@@ -19,6 +19,7 @@ from tribodyn.dynamics import (
     harmonic_balance,
     simulate,
 )
+from tribodyn.dynamics.harmonic.phase_balance import _Search
 from tribodyn.errors import InputError, ModelWarning
 
 
@@ -356,3 +357,19 @@ def test_many_phases_have_the_mean_forces_of_equilibrium(count):
     assert motion.fine.mean(motion.fine.contact_force) == pytest.approx(means, rel=1e-8)
     lines = motion.lines()
     assert lines.frequency == pytest.approx(lines.numbers @ frequencies, rel=1e-12, abs=1e-9)
+
+
+def test_the_residual_of_a_search_has_no_step_where_a_motion_begins_to_reach_a_ramp():
+    """Otherwise Newton's method may go to and fro between two solutions of coarse grids."""
+    system = two_meshes(((1, 0), (0, 1)), amplitude=0.0)
+    first = replace(
+        system.contacts[0], ramp_stiffness=[0.3], ramp_gap=[0.7],
+        stiffness=lambda x: 3.0 + np.tanh(6.0 * np.sin(2 * pi * x)),
+    )  # fmt: skip
+    search = _Search.of(replace(system, contacts=[first, system.contacts[1]]), np.array([0.3, 0.5]))
+    residual = search.residual(((12, 12), (12, 12)))
+    y = search.linear(residual)
+    along = residual.parts[0].contacts.rows.along[:, 0]
+    reaches = np.einsum("pr,pr->p", residual.split(y)[0], along).max()
+    states = [residual.at(y * 0.7 / reaches * (1.0 + part)) for part in (1e-6, -1e-6)]
+    assert states[1].residual == pytest.approx(states[0].residual, abs=1e-5 * states[0].size)

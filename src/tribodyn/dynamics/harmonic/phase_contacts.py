@@ -8,7 +8,7 @@ Gauss's rule over the pieces, which gives its lines without the error of equal s
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, NamedTuple
 
@@ -198,6 +198,7 @@ class PhaseContacts(ContactLaw):
     grid: PhaseGrid
     axis: int  #: phase of the meshes
     jumps: Cut  #: places where an entry jumps
+    _opened: list[bool] = field(default_factory=list)  #: not empty once a motion opened a flank
 
     @classmethod
     def of(cls, rows: PhaseRows, structure: Any, grid: PhaseGrid, axis: int) -> PhaseContacts:
@@ -245,10 +246,11 @@ class PhaseContacts(ContactLaw):
     ) -> tuple[Law, Breaks, Cell | None]:
         """Law of a motion (p, r) at the points of the grid, or of pieces where it breaks."""
         # means: stiffness and damping of the closed contacts
-        if not self.jumps.line.size:
+        if not (self.jumps.line.size or self._opened):
             law = self.law(self.rows, 1.0, y, rate, excess, closed)
             if closed is not None or not self._opens(law):
                 return law, NO_BREAKS, None
+            self._opened.append(True)
         pieces, rows = self._base
         fine = [pieces.refined(part) for part in (y, rate)]
         moved = pieces.between @ fine[0], pieces.between @ fine[1]
