@@ -7,11 +7,9 @@ Python calls.
 
 from __future__ import annotations
 
-from typing import Any
-
 from numba.core.codegen import JITCodeLibrary
-from numba.core.compiler import CompilerBase, DefaultPassBuilder, Flags
-from numba.core.compiler_machinery import register_pass
+from numba.core.compiler import CompilerBase, DefaultPassBuilder, Flags, StateDict
+from numba.core.compiler_machinery import PassManager, register_pass
 from numba.core.typed_passes import NativeLowering
 
 from tribodyn.types import Tree
@@ -58,7 +56,7 @@ class _Flags(Flags):  # type: ignore[misc]
 class _InnerLowering(NativeLowering):  # type: ignore[misc]
     _name = "inner_lowering"
 
-    def run_pass(self, state: Any) -> bool:
+    def run_pass(self, state: StateDict) -> bool:
         codegen = state.targetctx.codegen()
         state.library = _InnerLibrary(codegen, state.func_id.func_qualname)
         changed: bool = super().run_pass(state)
@@ -70,7 +68,7 @@ class _InnerCompiler(CompilerBase):  # type: ignore[misc]
         super().__init__(*arguments)
         self.state.flags = _Flags(self.state.flags)
 
-    def define_pipelines(self) -> list[Any]:
+    def define_pipelines(self) -> list[PassManager]:
         pipeline = DefaultPassBuilder.define_nopython_pipeline(self.state)
         pipeline.passes = [
             (_InnerLowering if step is NativeLowering else step, text)

@@ -10,7 +10,8 @@ so that it is the same in any ensemble and on any number of threads.
 from __future__ import annotations
 
 import math
-from typing import Any, NamedTuple
+from collections.abc import Callable
+from typing import NamedTuple
 
 import numba as nb
 import numpy as np
@@ -43,7 +44,6 @@ from tribodyn.dynamics._engine.dormand_prince import (
     SINGLE,
     Course,
     Courses,
-    Lanes,
     Rows,
     adaptive_slots,
     between,
@@ -52,7 +52,7 @@ from tribodyn.dynamics._engine.dormand_prince import (
     set_scale,
     try_step,
 )
-from tribodyn.dynamics._engine.lanes import address, ahead, keep_apart, on_line, store
+from tribodyn.dynamics._engine.lanes import Lanes, address, ahead, keep_apart, on_line, store
 from tribodyn.dynamics._engine.marching import has_dead_zones, put_lane, set_up, take_lane
 from tribodyn.dynamics._engine.method import INNER, JIT, ONCE, kernel_digest
 from tribodyn.dynamics._engine.row_table import POINTS
@@ -398,7 +398,7 @@ def _end_segment(block: Block, course: Course, lane: int, cycles: int) -> None:
         _put(block, lane)
 
 
-def _build(digest: str) -> Any:
+def _build(digest: str) -> Callable[..., int]:
     @cached_njit(**JIT)
     def march_adaptive(
         lanes: Lanes,
@@ -407,7 +407,7 @@ def _build(digest: str) -> Any:
         load: Array,
         states: tuple[Array, Array],
         tolerance: Array,
-        queue: Any,
+        queue: np.recarray,
         cycles: int,
         output: Output,
         stop: Index,

@@ -5,7 +5,6 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from functools import cache, partial
-from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -138,7 +137,7 @@ class AdaptiveLane:
         load = lane_load(table.program, system, extra_force, factors[5])
         self.load = np.concatenate((load, factors))
 
-    def failure(self, course: Any, state: Array, elapsed: int) -> ComputationError:
+    def failure(self, course: np.recarray, state: Array, elapsed: int) -> ComputationError:
         """Reason of a failure; ``state`` is that at the failed step."""
         phase = elapsed + course.cycle + course.phase
         if course.reason == CHATTERS:
@@ -179,15 +178,15 @@ class LaneGroup:
         elapsed: int,
         record: Array | None = None,
         trail: Array | None = None,
-    ) -> Any:
+    ) -> np.recarray:
         """Integrate states (c, 2 n) in place; fills record (c, rows, 2 n), trail (c, steps, m)."""
         from tribodyn.dynamics._engine.adaptive import Output, march_adaptive
         from tribodyn.dynamics._engine.dormand_prince import COURSE
 
-        courses: Any = np.zeros(len(self.lanes), COURSE).view(np.recarray)
+        courses: np.recarray = np.zeros(len(self.lanes), COURSE).view(np.recarray)
         begin, size = np.split(self._parts, 2, axis=1)
         courses.row, courses.first, _, courses.varying, courses.origin = begin.T
-        courses.segment, courses.last = courses.first, courses.first + size[:, 1] - 1
+        courses.segment, courses.last = begin[:, 1], begin[:, 1] + size[:, 1] - 1
         courses.columns, courses.period = size[:, 3], [lane.period for lane in self.lanes]
         memory = np.stack([lane.memory for lane in self.lanes])
         courses.plan, courses.error, largest = memory[:, 0], memory[:, 1], memory[:, 2:].copy()

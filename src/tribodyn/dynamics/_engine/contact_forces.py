@@ -13,12 +13,14 @@ share the rows or each has its own follows from the type of ``law.rows``, see
 
 from __future__ import annotations
 
-from typing import Any, NamedTuple
+from collections.abc import Callable
+from typing import NamedTuple
 
 import numba as nb
 import numpy as np
 
 from tribodyn.dynamics._engine.lanes import (
+    Lanes,
     above,
     below,
     entry,
@@ -33,15 +35,15 @@ from tribodyn.dynamics.equations.program import Slots, lay_out
 from tribodyn.types import Array, Index
 
 #: Converts literal integer arguments, for each of which the compiler would recompile the callee.
-I64: Any = np.int64
+I64: Callable[..., int] = np.int64  # type: ignore[assignment]
 
 
 class Law(NamedTuple):
     """Addresses of the arrays that the compiled law reads."""
 
-    code: Any
-    reads: Any
-    rows: Any
+    code: Index
+    reads: Index
+    rows: Array | tuple[Array]  #: a tuple where every lane has its own
 
 
 _lay_out = nb.njit(forceinline=True, **INNER)(lay_out)
@@ -83,7 +85,9 @@ def is_dead_zone(law: Law, cursor: Cursor) -> bool:
 
 
 @nb.njit(**INNER)
-def sum_terms(lanes: Any, law: Law, first: Any, count: int, read: int, row: int, w: Array) -> Any:
+def sum_terms(
+    lanes: Lanes, law: Law, first: float, count: int, read: int, row: int, w: Array
+) -> float:
     """``first`` plus the sum of factor times slot."""
     total = first
     for item in range(count):
@@ -92,7 +96,7 @@ def sum_terms(lanes: Any, law: Law, first: Any, count: int, read: int, row: int,
 
 
 @nb.njit(**INNER)
-def compression(lanes: Any, law: Law, cursor: Cursor, error: int, w: Array) -> Any:
+def compression(lanes: Lanes, law: Law, cursor: Cursor, error: int, w: Array) -> float:
     """Compression of a contact; ``error`` is the slot of its factor."""
     first = entry(lanes, law.rows, cursor.row + 2) * (load(lanes, w, error) - 1.0)
     return sum_terms(lanes, law, first, law.code[cursor.at], cursor.read, cursor.row + 5, w)
@@ -100,8 +104,8 @@ def compression(lanes: Any, law: Law, cursor: Cursor, error: int, w: Array) -> A
 
 @nb.njit(forceinline=True, **INNER)
 def compression_and_rate(
-    lanes: Any, law: Law, s: Slots, cursor: Cursor, w: Array
-) -> tuple[Any, Any]:
+    lanes: Lanes, law: Law, s: Slots, cursor: Cursor, w: Array
+) -> tuple[float, float]:
     """Compression of a contact and its rate, in one loop."""
     code, rows = law.code, law.rows
     beat, error = load(lanes, w, s.beat), load(lanes, w, s.error) - 1.0
@@ -121,15 +125,15 @@ def compression_and_rate(
 
 
 @nb.njit(**INNER)
-def dead_zone(lanes: Any, law: Law, cursor: Cursor, gap: int, w: Array) -> Any:
+def dead_zone(lanes: Lanes, law: Law, cursor: Cursor, gap: int, w: Array) -> float:
     """Half of the dead zone of a contact; ``gap`` is the slot of its factor."""
     return entry(lanes, law.rows, cursor.row + 4) * (1.0 + load(lanes, w, gap))
 
 
 @nb.njit(forceinline=True, **INNER)
 def contact_law(
-    lanes: Any, law: Law, s: Slots, cursor: Cursor, j: int, d: Any, rate: Any, w: Array
-) -> tuple[Any, Any, Any]:
+    lanes: Lanes, law: Law, s: Slots, cursor: Cursor, j: int, d: float, rate: float, w: Array
+) -> tuple[float, float, float]:
     """Force of a contact on its current side, and its derivatives by compression and rate.
 
     Stiffness, damping and dead zone may differ between lanes.
@@ -149,8 +153,8 @@ def contact_law(
 
 @nb.njit(forceinline=True, **INNER)
 def friction_law(
-    lanes: Any, law: Law, rub: int, cursor: Cursor, w: Array
-) -> tuple[Any, Any, Cursor]:
+    lanes: Lanes, law: Law, rub: int, cursor: Cursor, w: Array
+) -> tuple[float, float, Cursor]:
     """Force of a friction, its derivative by the load, and the position of the next friction."""
     code, rows = law.code, law.rows
     contacts, terms = code[cursor.at], code[cursor.at + 1]
@@ -174,7 +178,7 @@ def friction_law(
 
 
 @nb.njit(**INNER)
-def friction_forces(lanes: Any, law: Law, cursor: Cursor, w: Array) -> Cursor:
+def friction_forces(lanes: Lanes, law: Law, cursor: Cursor, w: Array) -> Cursor:
     """Compute every load-dependent friction; returns the position of the coordinates' terms."""
     s = slots_of(law.code)
     friction, rub, count = s.friction, s.rub, law.code[cursor.at]
@@ -187,7 +191,7 @@ def friction_forces(lanes: Any, law: Law, cursor: Cursor, w: Array) -> Cursor:
 
 
 @nb.njit(forceinline=True, **INNER)
-def all_forces(lanes: Any, law: Law, base: int, buffer: int, w: Array) -> Cursor:
+def all_forces(lanes: Lanes, law: Law, base: int, buffer: int, w: Array) -> Cursor:
     """Compute contact forces and frictions; returns the position of the coordinates' terms."""
     s, code, rows = slots_of(law.code), law.code, law.rows
     cursor = first_contact(law, base, buffer)
@@ -220,7 +224,7 @@ def next_coordinate(law: Law, cursor: Cursor) -> Cursor:
 
 
 @nb.njit(**INNER)
-def acceleration(lanes: Any, law: Law, base: int, buffer: int, out: int, w: Array) -> None:
+def acceleration(lanes: Lanes, law: Law, base: int, buffer: int, out: int, w: Array) -> None:
     """Compute all forces, and write the acceleration of every coordinate from slot ``out`` on."""
     n, steady = law.code[0], slots_of(law.code).load
     cursor = all_forces(lanes, law, base, buffer, w)
@@ -232,7 +236,7 @@ def acceleration(lanes: Any, law: Law, base: int, buffer: int, out: int, w: Arra
 
 
 @nb.njit(**INNER)
-def set_sides(lanes: Any, law: Law, base: int, buffer: int, w: Array) -> None:
+def set_sides(lanes: Lanes, law: Law, base: int, buffer: int, w: Array) -> None:
     """Set the side of every dead zone from the compression of its contact."""
     s, cursor = slots_of(law.code), first_contact(law, base, buffer)
     for j in range(s.contacts):
@@ -244,7 +248,9 @@ def set_sides(lanes: Any, law: Law, base: int, buffer: int, w: Array) -> None:
 
 
 @nb.njit(forceinline=True, **INNER)
-def clearances(lanes: Any, law: Law, s: Slots, cursor: Cursor, j: int, w: Array) -> tuple[Any, Any]:
+def clearances(
+    lanes: Lanes, law: Law, s: Slots, cursor: Cursor, j: int, w: Array
+) -> tuple[float, float]:
     """Distances of a contact to the upper and lower boundary of its side; equal in contact."""
     d = compression(lanes, law, cursor, s.error, w)
     gap = dead_zone(lanes, law, cursor, s.gap, w)
@@ -255,7 +261,7 @@ def clearances(lanes: Any, law: Law, s: Slots, cursor: Cursor, j: int, w: Array)
 
 
 @nb.njit(**INNER)
-def left_side(lanes: Any, law: Law, base: int, w: Array) -> Any:
+def left_side(lanes: Lanes, law: Law, base: int, w: Array) -> int:
     """Bits of the lanes in which a contact has left its side in the new state (buffer 2)."""
     s, cursor = slots_of(law.code), first_contact(law, base, I64(2))
     crossed = I64(0)

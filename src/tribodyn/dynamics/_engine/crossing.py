@@ -15,7 +15,6 @@ and eight of the search.
 from __future__ import annotations
 
 import math
-from typing import Any
 
 import numba as nb
 
@@ -30,7 +29,7 @@ from tribodyn.dynamics._engine.contact_forces import (
     slots_of,
 )
 from tribodyn.dynamics._engine.lanes import first_lane
-from tribodyn.dynamics._engine.method import INNER, ONCE, prepare, restart, step
+from tribodyn.dynamics._engine.method import INNER, ONCE, Method, prepare, restart, step
 from tribodyn.dynamics.equations import divergence, motion
 from tribodyn.types import Array
 
@@ -84,11 +83,11 @@ def _save_trial(scratch: Array, contacts: int, place: int) -> None:
 
 
 @nb.njit(**INNER)
-def _leader(scratch: Array, contacts: int, start: float, sides: int, w: Array) -> tuple[Any, float]:
+def _leader(scratch: Array, contacts: int, start: float, sides: int, w: Array) -> tuple[int, float]:
     """Estimate which contact crosses first, and where; -1 if one starts on its boundary."""
     search = WIDTH * contacts
     low, high = scratch[search + _LOW], scratch[search + _HIGH]
-    first: Any = I64(-1)
+    first = I64(-1)
     place = high
     for j in range(contacts):
         after = _distance(scratch, j, I64(FAR), sides, w)
@@ -108,7 +107,7 @@ def _leader(scratch: Array, contacts: int, start: float, sides: int, w: Array) -
 
 
 @nb.njit(**INNER)
-def _propose(scratch: Array, contacts: int, start: float, sides: int, w: Array) -> Any:
+def _propose(scratch: Array, contacts: int, start: float, sides: int, w: Array) -> float:
     """Next fraction to try; a return of ``start`` ends the search at the start."""
     search = WIDTH * contacts
     low, high = scratch[search + _LOW], scratch[search + _HIGH]
@@ -128,7 +127,7 @@ def _propose(scratch: Array, contacts: int, start: float, sides: int, w: Array) 
 @nb.njit(**INNER)
 def begin_search(
     scratch: Array, contacts: int, start: float, end: float, sides: int, w: Array
-) -> Any:
+) -> float:
     """First fraction to try between ``start`` and ``end``; -1 if no contact changes its side."""
     search = WIDTH * contacts
     any_beyond = False
@@ -196,11 +195,11 @@ def continue_search(
 @nb.njit(**INNER)
 def change_sides(
     scratch: Array, contacts: int, start: float, target: float, sides: int, w: Array
-) -> Any:
+) -> int:
     """Change the sides of all contacts that cross at ``target``; returns the first of them."""
     search = WIDTH * contacts
     narrow = scratch[search + _HIGH] - scratch[search + _LOW] < _NARROW
-    first: Any = I64(-1)
+    first = I64(-1)
     for j in range(contacts):
         at = WIDTH * j
         if scratch[at + KIND] < 0.0:
@@ -263,7 +262,7 @@ def _append_part(law: Law, start: float, end: float, w: Array, parts: Array) -> 
 
 @nb.njit(**ONCE)
 def _try_part(
-    method: Any,
+    method: Method,
     law: Law,
     base: int,
     width: float,
@@ -286,7 +285,7 @@ def _try_part(
 
 @nb.njit(**ONCE)
 def split_step(
-    method: Any,
+    method: Method,
     law: Law,
     base: int,
     width: float,

@@ -18,6 +18,7 @@ import numpy as np
 
 from tribodyn.dynamics._engine.contact_forces import I64, Law, acceleration, slots_of
 from tribodyn.dynamics._engine.lanes import (
+    Lanes,
     ahead,
     greatest,
     keep_apart,
@@ -131,8 +132,7 @@ COURSE = np.dtype(
 )
 
 
-#: A tuple as long as a block has lanes, and the courses of its trajectories.
-Lanes = tuple[float, ...]
+#: The courses of the trajectories of a block.
 Courses = Sequence[Course]
 
 

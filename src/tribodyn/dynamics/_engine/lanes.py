@@ -10,16 +10,35 @@ it cannot prove that the slots written differ from the slots read.
 from __future__ import annotations
 
 import operator
+from collections.abc import Callable, Sequence
 from itertools import product
-from typing import Any
 
 from llvmlite import ir
+from llvmlite.ir import IRBuilder, Value
 from numba import types
 from numba.core import cgutils
+from numba.core.base import BaseContext
+from numba.core.datamodel import DataModelManager
+from numba.core.typing import Context, Signature
 from numba.core.typing.templates import AbstractTemplate, infer_global, signature
 from numba.extending import intrinsic, lower_builtin, models, register_model
+from numba.types import Type
+
+#: As many zeros as there are lanes.
+Lanes = tuple[float, ...]
+
+Values = Sequence[Value]
+#: What Numba calls to generate the code of a call from its types and operands.
+Generator = Callable[[BaseContext, IRBuilder, Signature, Values], Value]
+#: What the definition of an intrinsic function returns.
+Typed = tuple[Signature, Generator]
 
 _FLAGS = ("contract", "nsz")
+
+
+def of_operands(build: Callable[..., Value]) -> Generator:
+    """Generator from a function that builds the instructions from the operands alone."""
+    return lambda context, builder, called, operands: build(builder, *operands)
 
 
 class LaneType(types.Type):
@@ -32,94 +51,90 @@ class LaneType(types.Type):
 
 @register_model(LaneType)
 class _LaneModel(models.PrimitiveModel):
-    def __init__(self, manager: Any, kind: LaneType) -> None:
+    def __init__(self, manager: DataModelManager, kind: LaneType) -> None:
         super().__init__(manager, kind, ir.VectorType(ir.DoubleType(), kind.width))
 
 
-def _data(context: Any, builder: Any, kind: Any, array: Any) -> Any:
+def _data(context: BaseContext, builder: IRBuilder, kind: Type, array: Value) -> Value:
     return context.make_array(kind)(context, builder, array).data
 
 
 @intrinsic
-def address(typing: Any, array: Any) -> Any:
+def address(typing: Context, array: Type) -> Typed:
     """Address of a contiguous array; the caller must keep the array alive."""
 
-    def generate(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
-        return _data(context, builder, signature.args[0], arguments[0])
+    def emit(context: BaseContext, builder: IRBuilder, called: Signature, values: Values) -> Value:
+        return _data(context, builder, array, values[0])
 
-    return types.CPointer(array.dtype)(array), generate
+    return types.CPointer(array.dtype)(array), emit
 
 
 @intrinsic
-def ahead(typing: Any, place: Any, count: Any) -> Any:
+def ahead(typing: Context, place: Type, count: Type) -> Typed:
     """Address ``count`` items after ``place``."""
-
-    def generate(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
-        return builder.gep(arguments[0], [arguments[1]])
-
-    return place(place, types.intp), generate
+    return place(place, types.intp), of_operands(lambda builder, at, by: builder.gep(at, [by]))
 
 
 @intrinsic
-def on_line(typing: Any, place: Any) -> Any:
+def on_line(typing: Context, place: Type) -> Typed:
     """First address from ``place`` on that is aligned to a cache line.
 
     Vectors of eight numbers that lie across two lines are read and written at half the speed.
     """
 
-    def generate(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
-        number = builder.ptrtoint(arguments[0], ir.IntType(64))
+    def aligned(builder: IRBuilder, at: Value) -> Value:
+        number = builder.ptrtoint(at, ir.IntType(64))
         number = builder.and_(builder.add(number, number.type(63)), number.type(-64))
-        return builder.inttoptr(number, arguments[0].type)
+        return builder.inttoptr(number, at.type)
 
-    return place(place), generate
+    return place(place), of_operands(aligned)
 
 
-def _pointer(context: Any, builder: Any, kind: Any, array: Any, slot: Any, width: int) -> Any:
+def _pointer(
+    context: BaseContext, builder: IRBuilder, kind: Type, array: Value, slot: Value, width: int
+) -> Value:
     data = array if isinstance(kind, types.CPointer) else _data(context, builder, kind, array)
     place = builder.gep(data, [builder.mul(slot, ir.Constant(slot.type, width))])
     return builder.bitcast(place, ir.VectorType(ir.DoubleType(), width).as_pointer())
 
 
 @intrinsic
-def keep_apart(typing: Any) -> Any:
+def keep_apart(typing: Context) -> Typed:
     """Prevent inlining of the calling function, which would lengthen compilation."""
 
-    def generate(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
+    def emit(context: BaseContext, builder: IRBuilder, called: Signature, values: Values) -> Value:
         builder.function.attributes.add("noinline")
         return context.get_dummy_value()
 
-    return types.none(), generate
+    return types.none(), emit
 
 
 @intrinsic
-def load(typing: Any, lanes: Any, buffer: Any, slot: Any) -> Any:
+def load(typing: Context, lanes: Type, buffer: Type, slot: Type) -> Typed:
     """Read slot ``slot`` of ``buffer``: one number per lane."""
     kind = LaneType(len(lanes))
 
-    def generate(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
-        pointer = _pointer(
-            context, builder, signature.args[1], arguments[1], arguments[2], kind.width
-        )
+    def emit(context: BaseContext, builder: IRBuilder, called: Signature, values: Values) -> Value:
+        pointer = _pointer(context, builder, buffer, values[1], values[2], kind.width)
         return builder.load(pointer, align=8)
 
-    return kind(lanes, buffer, types.intp), generate
+    return kind(lanes, buffer, types.intp), emit
 
 
 @intrinsic
-def store(typing: Any, buffer: Any, slot: Any, value: Any) -> Any:
+def store(typing: Context, buffer: Type, slot: Type, value: Type) -> Typed:
     """Write one number per lane into slot ``slot`` of ``buffer``."""
 
-    def generate(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
-        width = signature.args[2].width
-        pointer = _pointer(context, builder, signature.args[0], arguments[0], arguments[1], width)
-        builder.store(arguments[2], pointer, align=8)
+    def emit(context: BaseContext, builder: IRBuilder, called: Signature, values: Values) -> Value:
+        width = called.args[2].width
+        pointer = _pointer(context, builder, called.args[0], values[0], values[1], width)
+        builder.store(values[2], pointer, align=8)
         return context.get_dummy_value()
 
-    return types.none(buffer, types.intp, value), generate
+    return types.none(buffer, types.intp, value), emit
 
 
-def _broadcast(builder: Any, scalar: Any, width: int) -> Any:
+def _broadcast(builder: IRBuilder, scalar: Value, width: int) -> Value:
     kind = ir.VectorType(ir.DoubleType(), width)
     first = builder.insert_element(
         ir.Constant(kind, ir.Undefined), scalar, ir.Constant(ir.IntType(32), 0)
@@ -128,72 +143,57 @@ def _broadcast(builder: Any, scalar: Any, width: int) -> Any:
     return builder.shuffle_vector(first, ir.Constant(kind, ir.Undefined), mask)
 
 
-def _uniform(width: int, number: float) -> Any:
-    return ir.Constant(ir.VectorType(ir.DoubleType(), width), [number] * width)
-
-
-def _any(builder: Any, comparison: Any, width: int) -> Any:
-    return cgutils.is_not_null(builder, builder.bitcast(comparison, ir.IntType(width)))
+def _uniform(vector: Value, number: float) -> Value:
+    """The same number in all lanes, as many as a vector has."""
+    return ir.Constant(vector.type, [number] * vector.type.count)
 
 
 @intrinsic
-def any_above(typing: Any, value: Any, limit: Any) -> Any:
+def any_above(typing: Context, value: Type, limit: Type) -> Typed:
     """Whether the number of any lane is above its limit or NaN."""
 
-    def generate(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
-        higher = builder.fcmp_unordered(">", arguments[0], arguments[1])
-        return _any(builder, higher, signature.args[0].width)
+    def above_any(builder: IRBuilder, value: Value, limit: Value) -> Value:
+        higher = builder.fcmp_unordered(">", value, limit)
+        bits = builder.bitcast(higher, ir.IntType(value.type.count))
+        return cgutils.is_not_null(builder, bits)
 
-    return types.boolean(value, limit), generate
+    return types.boolean(value, limit), of_operands(above_any)
 
 
 @intrinsic
-def negative_lanes(typing: Any, value: Any) -> Any:
+def negative_lanes(typing: Context, value: Type) -> Typed:
     """Bits of the lanes, at most 64, whose number is below zero."""
 
-    def generate(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
-        width = signature.args[0].width
-        below = builder.fcmp_ordered("<", arguments[0], _uniform(width, 0.0))
-        bits = builder.bitcast(below, ir.IntType(width))
-        return bits if width == 64 else builder.zext(bits, ir.IntType(64))
+    def negative(builder: IRBuilder, value: Value) -> Value:
+        below = builder.fcmp_ordered("<", value, _uniform(value, 0.0))
+        bits = builder.bitcast(below, ir.IntType(value.type.count))
+        return bits if value.type.count == 64 else builder.zext(bits, ir.IntType(64))
 
-    return types.int64(value), generate
-
-
-def _indicator(comparison: str) -> Any:
-    def compare(typing: Any, left: Any, right: Any) -> Any:
-        def generate(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
-            width = signature.args[0].width
-            holds = builder.fcmp_ordered(comparison, arguments[0], arguments[1])
-            return builder.select(holds, _uniform(width, 1.0), _uniform(width, 0.0))
-
-        return left(left, right), generate
-
-    return intrinsic(compare)
+    return types.int64(value), of_operands(negative)
 
 
 @intrinsic
-def entry(typing: Any, lanes: Any, rows: Any, item: Any) -> Any:
+def entry(typing: Context, lanes: Type, rows: Type, item: Type) -> Typed:
     """Read one item of a row table: one number, or one per lane where each lane has its rows."""
     per_lane = isinstance(rows, types.BaseTuple)
     kind = LaneType(len(lanes)) if per_lane else types.float64
 
-    def generate(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
+    def emit(context: BaseContext, builder: IRBuilder, called: Signature, values: Values) -> Value:
         if not per_lane:
-            return builder.load(builder.gep(arguments[1], [arguments[2]]))
-        data = builder.extract_value(arguments[1], 0)
-        pointer = _pointer(context, builder, rows[0], data, arguments[2], kind.width)
+            return builder.load(builder.gep(values[1], [values[2]]))
+        data = builder.extract_value(values[1], 0)
+        pointer = _pointer(context, builder, rows[0], data, values[2], kind.width)
         return builder.load(pointer, align=8)
 
-    return kind(lanes, rows, types.intp), generate
+    return kind(lanes, rows, types.intp), emit
 
 
-def _arithmetic(operation: Any, name: str) -> None:
+def _arithmetic(operation: Callable[[float, float], float], name: str) -> None:
     """Define an operator for lanes and numbers."""
 
     @infer_global(operation)
     class _Combine(AbstractTemplate):
-        def generic(self, arguments: Any, named: Any) -> Any:
+        def generic(self, arguments: Sequence[Type], named: object) -> Signature | None:
             lanes = [kind for kind in arguments if isinstance(kind, LaneType)]
             number_types = (LaneType, types.Float, types.Integer)
             if not lanes or not all(isinstance(kind, number_types) for kind in arguments):
@@ -203,18 +203,18 @@ def _arithmetic(operation: Any, name: str) -> None:
             ]
             return signature(lanes[0], *operand_types)
 
-    def generate(context: Any, builder: Any, kinds: Any, arguments: Any) -> Any:
-        operands = [
+    def emit(context: BaseContext, builder: IRBuilder, called: Signature, values: Values) -> Value:
+        vectors = [
             item
             if isinstance(kind, LaneType)
-            else _broadcast(builder, item, kinds.return_type.width)
-            for item, kind in zip(arguments, kinds.args, strict=True)
+            else _broadcast(builder, item, called.return_type.width)
+            for item, kind in zip(values, called.args, strict=True)
         ]
-        return getattr(builder, name)(*operands, flags=_FLAGS)
+        return getattr(builder, name)(*vectors, flags=_FLAGS)
 
     for left, right in product((LaneType, types.Float), repeat=2):
         if LaneType in (left, right):
-            lower_builtin(operation, left, right)(generate)
+            lower_builtin(operation, left, right)(emit)
 
 
 _arithmetic(operator.add, "fadd")
@@ -223,25 +223,36 @@ _arithmetic(operator.mul, "fmul")
 
 
 @intrinsic
-def first_lane(typing: Any, value: Any) -> Any:
+def first_lane(typing: Context, value: Type) -> Typed:
     """Return the number of the first lane."""
-
-    def generate(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
-        return builder.extract_element(arguments[0], ir.Constant(ir.IntType(32), 0))
-
-    return types.float64(value), generate
+    first = ir.Constant(ir.IntType(32), 0)
+    read = of_operands(lambda builder, value: builder.extract_element(value, first))
+    return types.float64(value), read
 
 
-def _choice(comparison: str) -> Any:
+def _of_two(build: Callable[[IRBuilder, Value, Value], Value]) -> Callable[[float, float], float]:
+    """Function of two vectors, lane by lane, from the instructions for it."""
+
     @intrinsic
-    def choose(typing: Any, left: Any, right: Any) -> Any:
-        def generate(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
-            first = builder.fcmp_ordered(comparison, arguments[0], arguments[1])
-            return builder.select(first, arguments[0], arguments[1])
+    def combine(typing: Context, left: Type, right: Type) -> Typed:
+        return left(left, right), of_operands(build)
 
-        return left(left, right), generate
+    return combine
 
-    return choose
+
+def _choice(comparison: str) -> Callable[[float, float], float]:
+    def choose(builder: IRBuilder, left: Value, right: Value) -> Value:
+        return builder.select(builder.fcmp_ordered(comparison, left, right), left, right)
+
+    return _of_two(choose)
+
+
+def _indicator(comparison: str) -> Callable[[float, float], float]:
+    def compare(builder: IRBuilder, left: Value, right: Value) -> Value:
+        holds = builder.fcmp_ordered(comparison, left, right)
+        return builder.select(holds, _uniform(left, 1.0), _uniform(left, 0.0))
+
+    return _of_two(compare)
 
 
 #: Smaller and larger of two vectors, lane by lane.
@@ -250,24 +261,16 @@ least, greatest = _choice("<"), _choice(">")
 #: 1 for every lane whose left number is above, or below, the right one, else 0.
 above, below = _indicator(">"), _indicator("<")
 
-
-@intrinsic
-def quotient(typing: Any, left: Any, right: Any) -> Any:
-    """Divide lane by lane."""
-
-    def generate(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
-        return builder.fdiv(arguments[0], arguments[1])
-
-    return left(left, right), generate
+#: The left vector over the right one, lane by lane.
+quotient = _of_two(IRBuilder.fdiv)
 
 
 @intrinsic
-def magnitude(typing: Any, value: Any) -> Any:
+def magnitude(typing: Context, value: Type) -> Typed:
     """Take absolute values lane by lane."""
 
-    def generate(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
-        width = signature.args[0].width
-        negative = builder.fcmp_ordered("<", arguments[0], _uniform(width, 0.0))
-        return builder.select(negative, builder.fneg(arguments[0]), arguments[0])
+    def absolute(builder: IRBuilder, value: Value) -> Value:
+        negative = builder.fcmp_ordered("<", value, _uniform(value, 0.0))
+        return builder.select(negative, builder.fneg(value), value)
 
-    return value(value), generate
+    return value(value), of_operands(absolute)

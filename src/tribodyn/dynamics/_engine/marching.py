@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any
+from collections.abc import Callable
 
 import numba as nb
 import numpy as np
@@ -24,11 +24,12 @@ from tribodyn.dynamics._engine.contact_forces import (
     slots_of,
 )
 from tribodyn.dynamics._engine.crossing import WIDTH, most_splits, split_step
-from tribodyn.dynamics._engine.lanes import address, ahead, load, on_line, store
+from tribodyn.dynamics._engine.lanes import Lanes, address, ahead, load, on_line, store
 from tribodyn.dynamics._engine.method import (
     INNER,
     JIT,
     ONCE,
+    Method,
     accept,
     kernel_digest,
     own_slots,
@@ -67,7 +68,7 @@ def put_lane(lane: int, width: int, first: int, last: int, w: Array, single: Arr
         w[slot * width + lane] = single[slot]
 
 
-def _row_slots(columns: int, rows: Any) -> int:
+def _row_slots(columns: int, rows: Array | LaneRows) -> int:
     """Slots for the rows of a step."""
     raise TypeError("chosen by type where it is compiled")
 
@@ -79,7 +80,7 @@ def _choose_slots(columns, rows):  # type: ignore[no-untyped-def]
     return lambda columns, rows: 0
 
 
-def _open_rows(rows: Any, three: Any) -> Any:
+def _open_rows(rows: Array | LaneRows, three: Array) -> Array:
     """Rows for :func:`~tribodyn.dynamics._engine.lanes.entry`; a tuple if each lane has its own."""
     raise TypeError("chosen by type where it is compiled")
 
@@ -91,7 +92,7 @@ def _choose_table(rows, three):  # type: ignore[no-untyped-def]
     return lambda rows, three: address(rows)
 
 
-def _rows_at(lanes: Any, columns: int, rows: Any, step: int, three: Any) -> int:
+def _rows_at(lanes: Lanes, columns: int, rows: Array | LaneRows, step: int, three: Array) -> int:
     """Address of the rows of a step; steps have to be read in order from the first."""
     raise TypeError("chosen by type where it is compiled")
 
@@ -117,7 +118,7 @@ def _choose_place(lanes, columns, rows, step, three):  # type: ignore[no-untyped
     return put_rows
 
 
-def _rows_of_lane(law: Law, base: int, width: int, lane: int, gathered: Any) -> tuple[Law, int]:
+def _rows_of_lane(law: Law, base: int, width: int, lane: int, gathered: Array) -> tuple[Law, int]:
     """Law of one lane and address of its rows; copied to ``gathered`` if each lane has its own."""
     raise TypeError("chosen by type where it is compiled")
 
@@ -136,7 +137,7 @@ def _choose_rows(law, base, width, lane, gathered):  # type: ignore[no-untyped-d
     return gather_rows
 
 
-def _moments_of(gathered: Any) -> Any:
+def _moments_of(gathered: Gathered | None) -> tuple[int, int]:
     """Count of all moments, and of the cosines and sines of a node."""
     raise TypeError("chosen by type where it is compiled")
 
@@ -175,14 +176,14 @@ def set_up(width: int, code: Index, period: Array, load: Array, state: Array, w:
 def has_dead_zones(law: Law) -> bool:
     """Whether any contact has a dead zone."""
     cursor = first_contact(law, I64(0), I64(0))
-    any_dead_zone: Any = np.bool_(False)
+    any_dead_zone: bool = np.bool_(False)  # type: ignore[assignment]
     for _ in range(law.code[1]):
         any_dead_zone = any_dead_zone or is_dead_zone(law, cursor)
         cursor = next_contact(law, cursor)
     return any_dead_zone
 
 
-def _statistics_slot_of(gathered: Any, slot: int) -> Any:
+def _statistics_slot_of(gathered: Gathered | None, slot: int) -> int:
     """Slot where a step stores its data for the statistics, or None."""
     raise TypeError("chosen by type where it is compiled")
 
@@ -194,11 +195,11 @@ def _choose_statistics_slot(gathered, slot):  # type: ignore[no-untyped-def]
     return lambda gathered, slot: slot
 
 
-def _build(digest: str) -> Any:
+def _build(digest: str) -> Callable[..., int]:
     @cached_njit(**JIT)
     def march_block(
-        lanes: Any,
-        method: Any,
+        lanes: Lanes,
+        method: Method,
         program: Program,
         rows: Array | LaneRows,
         period: Array,
@@ -362,10 +363,10 @@ def _build(digest: str) -> Any:
 march_block = announced(_build(kernel_digest()), "the engine", "a quarter of a minute")
 
 
-def _build_gather(digest: str) -> Any:
+def _build_gather(digest: str) -> Callable[..., None]:
     @cached_njit(**JIT)
     def gather_record(
-        lanes: Any,
+        lanes: Lanes,
         program: Program,
         period: Array,
         load: Array,

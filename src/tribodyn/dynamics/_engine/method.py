@@ -9,15 +9,22 @@ begin where those of the law end.
 from __future__ import annotations
 
 import inspect
+from collections.abc import Callable
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import TYPE_CHECKING, NamedTuple, TypeVar
 
 import numpy as np
 
 from tribodyn.compiled import source_digest
 from tribodyn.compiled.jit import INNER_OPTIONS
 from tribodyn.dynamics.equations.grid import Grid
-from tribodyn.types import Array, Index
+from tribodyn.types import Array, Index, Tree
+
+if TYPE_CHECKING:
+    from tribodyn.dynamics._engine.contact_forces import Law
+    from tribodyn.dynamics._engine.lanes import Lanes
+
+F = TypeVar("F", bound=Callable[..., object])
 
 
 def kernel_digest() -> str:
@@ -49,24 +56,26 @@ class Newmark(NamedTuple):
         return cls(float(gamma), float(beta), float(tolerance), widths, kind.astype(np.int64))
 
 
+Method = RungeKutta4 | Newmark
+
 #: NaN stays detectable: neither "nnan" nor "ninf". Only the outermost kernel is cached on disk.
-JIT: dict[str, Any] = {"nogil": True, "fastmath": {"contract", "nsz"}, "error_model": "numpy"}
+JIT: Tree = {"nogil": True, "fastmath": {"contract", "nsz"}, "error_model": "numpy"}
 
 #: Options of functions that only compiled functions call.
-INNER: dict[str, Any] = {**JIT, **INNER_OPTIONS}
+INNER: Tree = {**JIT, **INNER_OPTIONS}
 
 #: Options of functions with a single caller: they are compiled only as part of the caller.
-ONCE: dict[str, Any] = {**INNER, "inline": "always"}
+ONCE: Tree = {**INNER, "inline": "always"}
 
 
-def for_method(method: type, function: Any) -> Any:
+def for_method(method: type, function: Callable[..., object]) -> Callable[[F], F]:
     """Register the decorated function as overload of a function below for one type of method."""
     from numba.extending import overload
 
     place = list(inspect.signature(function).parameters).index("method")
 
-    def register(implementation: Any) -> Any:
-        def choose(*arguments: Any) -> Any:
+    def register(implementation: F) -> F:
+        def choose(*arguments: object) -> F | None:
             kind = getattr(arguments[place], "instance_class", None)
             return implementation if kind is method else None
 
@@ -77,23 +86,29 @@ def for_method(method: type, function: Any) -> Any:
     return register
 
 
-def own_slots(method: Any, law: Any) -> tuple[int, int, int]:
+def own_slots(method: Method, law: Law) -> tuple[int, int, int]:
     """Count of slots of the method, of those that persist after a step, and of kinds of steps."""
     raise TypeError("chosen by type where it is compiled")
 
 
-def prepare(method: Any, law: Any, base: int, duration: float, kind: int, w: Array) -> None:
+def prepare(method: Method, law: Law, base: int, duration: float, kind: int, w: Array) -> None:
     """Set up the slots of one lane for a kind of steps; kind -1: for a part of a step."""
     raise TypeError("chosen by type where it is compiled")
 
 
-def restart(lanes: Any, method: Any, law: Any, base: int, w: Array) -> None:
+def restart(lanes: Lanes, method: Method, law: Law, base: int, w: Array) -> None:
     """Restart at an event or a change of side; ``base`` is the row there."""
     raise TypeError("chosen by type where it is compiled")
 
 
 def step(
-    lanes: Any, method: Any, law: Any, number: int, base: int, w: Array, statistics_slot: Any
+    lanes: Lanes,
+    method: Method,
+    law: Law,
+    number: int,
+    base: int,
+    w: Array,
+    statistics_slot: int | None,
 ) -> bool:
     """Integrate every lane over step ``number`` (-1: a part of one); False without convergence.
 
@@ -104,6 +119,6 @@ def step(
     raise TypeError("chosen by type where it is compiled")
 
 
-def accept(lanes: Any, method: Any, law: Any, w: Array) -> None:
+def accept(lanes: Lanes, method: Method, law: Law, w: Array) -> None:
     """Copy the end of the step to the start of the next."""
     raise TypeError("chosen by type where it is compiled")

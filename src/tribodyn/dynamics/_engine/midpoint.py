@@ -5,12 +5,10 @@ The state in the middle is the cubic Hermite interpolant of the two ends.
 
 from __future__ import annotations
 
-from typing import Any
-
 import numba as nb
 
 from tribodyn.dynamics._engine.contact_forces import I64, Law, set_sides, slots_of
-from tribodyn.dynamics._engine.lanes import load, store
+from tribodyn.dynamics._engine.lanes import Lanes, load, store
 from tribodyn.dynamics._engine.method import INNER
 from tribodyn.dynamics.equations import motion
 from tribodyn.types import Array
@@ -19,7 +17,7 @@ cubic_middle = nb.njit(**INNER)(motion.cubic_middle)
 
 
 @nb.njit(**INNER)
-def set_inverse(lanes: Any, law: Law, share: float, w: Array) -> None:
+def set_inverse(lanes: Lanes, law: Law, share: float, w: Array) -> None:
     """Set the inverse of the duration of a step, which is a share of the mesh cycle."""
     s = slots_of(law.code)
     store(w, s.inverse, (1.0 / share) * load(lanes, w, s.beat))
@@ -36,14 +34,14 @@ def statistics_slots(contacts: int) -> int:
 
 
 @nb.njit(**INNER)
-def copy_slots(lanes: Any, source: int, target: int, count: int, w: Array) -> None:
+def copy_slots(lanes: Lanes, source: int, target: int, count: int, w: Array) -> None:
     """Copy slots of all lanes."""
     for item in range(count):
         store(w, target + item, load(lanes, w, source + item))
 
 
 @nb.njit(**INNER)
-def to_middle(lanes: Any, law: Law, row: int, statistics_slot: int, w: Array) -> None:
+def to_middle(lanes: Lanes, law: Law, row: int, statistics_slot: int, w: Array) -> None:
     """Write the state in the middle between buffers 0 and 2 to buffer 1, and set its sides."""
     s = slots_of(law.code)
     n, h, inverse = s.n, load(lanes, w, s.h), load(lanes, w, s.inverse)
@@ -59,7 +57,7 @@ def to_middle(lanes: Any, law: Law, row: int, statistics_slot: int, w: Array) ->
 
 
 @nb.njit(**INNER)
-def from_middle(lanes: Any, law: Law, statistics_slot: int, w: Array) -> None:
+def from_middle(lanes: Lanes, law: Law, statistics_slot: int, w: Array) -> None:
     """Store the sides in the middle of the step, and restore those at its ends."""
     s = slots_of(law.code)
     copy_slots(lanes, s.side, statistics_slot + s.contacts, s.contacts, w)

@@ -11,7 +11,7 @@ is of first order. Source: Newmark (1959), A method of computation for structura
 
 from __future__ import annotations
 
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numba as nb
 
@@ -31,6 +31,7 @@ from tribodyn.dynamics._engine.contact_forces import (
     sum_terms,
 )
 from tribodyn.dynamics._engine.lanes import (
+    Lanes,
     any_above,
     entry,
     greatest,
@@ -167,7 +168,7 @@ def _invert(method: Newmark, law: Law, base: int, duration: float, kind: int, w:
 
 @nb.njit(**INNER)
 def _without_contacts(
-    lanes: Any, method: Newmark, law: Law, base: int, inverse: int, w: Array
+    lanes: Lanes, method: Newmark, law: Law, base: int, inverse: int, w: Array
 ) -> None:
     """State at the end of the step, compressions and rates without contact forces."""
     s, o = slots_of(law.code), _slots_of(law.code)
@@ -209,7 +210,7 @@ def _without_contacts(
 
 
 @nb.njit(**INNER)
-def _pushes(lanes: Any, law: Law, base: int, inverse: int, w: Array) -> None:
+def _pushes(lanes: Lanes, law: Law, base: int, inverse: int, w: Array) -> None:
     """Accelerations per unit of each contact force and friction."""
     s, o = slots_of(law.code), _slots_of(law.code)
     n, zero = s.n, 0.0 * load(lanes, w, s.h)
@@ -232,7 +233,7 @@ def _pushes(lanes: Any, law: Law, base: int, inverse: int, w: Array) -> None:
 
 
 @nb.njit(**INNER)
-def _effects(lanes: Any, method: Newmark, law: Law, base: int, w: Array) -> None:
+def _effects(lanes: Lanes, method: Newmark, law: Law, base: int, w: Array) -> None:
     """Compressions and their rates per unit of each contact force and friction."""
     s, o = slots_of(law.code), _slots_of(law.code)
     n, m, sources = s.n, s.contacts, s.contacts + s.end - s.friction
@@ -255,7 +256,7 @@ def _effects(lanes: Any, method: Newmark, law: Law, base: int, w: Array) -> None
 
 
 @nb.njit(**INNER)
-def _solve(lanes: Any, m: int, matrix: int, right: int, w: Array) -> None:
+def _solve(lanes: Lanes, m: int, matrix: int, right: int, w: Array) -> None:
     """Solve for the corrections of the contact forces by elimination."""
     for k in range(m):
         for i in range(k + 1, m):
@@ -273,7 +274,7 @@ def _solve(lanes: Any, m: int, matrix: int, right: int, w: Array) -> None:
 
 
 @nb.njit(**INNER)
-def _slopes(lanes: Any, law: Law, cursor: Cursor, w: Array) -> None:
+def _slopes(lanes: Lanes, law: Law, cursor: Cursor, w: Array) -> None:
     """Every friction and its derivative by the load."""
     s, o = slots_of(law.code), _slots_of(law.code)
     cursor = Cursor(cursor.at + 1, cursor.read, cursor.row)
@@ -285,7 +286,9 @@ def _slopes(lanes: Any, law: Law, cursor: Cursor, w: Array) -> None:
 
 
 @nb.njit(**INNER)
-def _row_of_newton(lanes: Any, law: Law, i: int, rubbing: Cursor, k: Any, c: Any, w: Array) -> None:
+def _row_of_newton(
+    lanes: Lanes, law: Law, i: int, rubbing: Cursor, k: float, c: float, w: Array
+) -> None:
     """Row of Newton's matrix for contact ``i`` with the tangents ``k`` and ``c`` of its force."""
     s, o = slots_of(law.code), _slots_of(law.code)
     m, frictions = s.contacts, s.end - s.friction
@@ -305,7 +308,7 @@ def _row_of_newton(lanes: Any, law: Law, i: int, rubbing: Cursor, k: Any, c: Any
 
 
 @nb.njit(**INNER)
-def _iterate(lanes: Any, tolerance: float, law: Law, base: int, w: Array) -> bool:
+def _iterate(lanes: Lanes, tolerance: float, law: Law, base: int, w: Array) -> bool:
     """Solve for the contact forces by Newton's method; returns False without convergence."""
     s, o = slots_of(law.code), _slots_of(law.code)
     m, frictions = s.contacts, s.end - s.friction
@@ -340,7 +343,7 @@ def _iterate(lanes: Any, tolerance: float, law: Law, base: int, w: Array) -> boo
 
 
 @nb.njit(**INNER)
-def _step(lanes: Any, method: Newmark, law: Law, number: int, base: int, w: Array) -> bool:
+def _step(lanes: Lanes, method: Newmark, law: Law, number: int, base: int, w: Array) -> bool:
     """Integrate every lane over one step; ``base`` is the row at its end."""
     keep_apart()
     s, o = slots_of(law.code), _slots_of(law.code)
@@ -368,7 +371,13 @@ def _step(lanes: Any, method: Newmark, law: Law, number: int, base: int, w: Arra
 
 @for_method(Newmark, step)
 def newmark_step(
-    lanes: Any, method: Newmark, law: Law, number: int, base: int, w: Array, statistics_slot: Any
+    lanes: Lanes,
+    method: Newmark,
+    law: Law,
+    number: int,
+    base: int,
+    w: Array,
+    statistics_slot: int | None,
 ) -> bool:
     """Integrate every lane over one step with the sides at its start."""
     s, columns = slots_of(law.code), law.code[2]
@@ -391,12 +400,12 @@ def _own_slots(method: Newmark, law: Law) -> tuple[int, int, int]:
 
 
 @for_method(Newmark, restart)
-def _restart(lanes: Any, method: Newmark, law: Law, base: int, w: Array) -> None:
+def _restart(lanes: Lanes, method: Newmark, law: Law, base: int, w: Array) -> None:
     acceleration(lanes, law, base, I64(0), _slots_of(law.code).now, w)
 
 
 @for_method(Newmark, accept)
-def _accept(lanes: Any, method: Newmark, law: Law, w: Array) -> None:
+def _accept(lanes: Lanes, method: Newmark, law: Law, w: Array) -> None:
     n, o = law.code[0], _slots_of(law.code)
     take_over(lanes, n, w)
     for i in range(n):

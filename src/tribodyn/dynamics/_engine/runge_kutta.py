@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from typing import Any
-
 import numba as nb
 
 from tribodyn.dynamics._engine.contact_forces import (
@@ -14,7 +12,7 @@ from tribodyn.dynamics._engine.contact_forces import (
     slots_of,
     sum_terms,
 )
-from tribodyn.dynamics._engine.lanes import keep_apart, load, store
+from tribodyn.dynamics._engine.lanes import Lanes, keep_apart, load, store
 from tribodyn.dynamics._engine.method import (
     INNER,
     RungeKutta4,
@@ -30,7 +28,7 @@ from tribodyn.types import Array
 
 
 @nb.njit(**INNER)
-def take_over(lanes: Any, n: int, w: Array) -> None:
+def take_over(lanes: Lanes, n: int, w: Array) -> None:
     """Copy the state at the end of the step to its beginning."""
     for item in range(2 * n * len(lanes)):
         w[item] = w[4 * n * len(lanes) + item]
@@ -49,19 +47,19 @@ def _prepare(
 
 
 @for_method(RungeKutta4, restart)
-def _restart(lanes: Any, method: RungeKutta4, law: Law, base: int, w: Array) -> None:
+def _restart(lanes: Lanes, method: RungeKutta4, law: Law, base: int, w: Array) -> None:
     pass
 
 
 @for_method(RungeKutta4, step)
 def runge_kutta_step(
-    lanes: Any,
+    lanes: Lanes,
     method: RungeKutta4,
     law: Law,
     number: int,
     base: int,
     w: Array,
-    statistics_slot: Any,
+    statistics_slot: int | None,
 ) -> bool:
     """Integrate every lane over one step, from the state in buffer 0 to buffer 2."""
     keep_apart()
@@ -105,5 +103,5 @@ def runge_kutta_step(
 
 
 @for_method(RungeKutta4, accept)
-def _accept(lanes: Any, method: RungeKutta4, law: Law, w: Array) -> None:
+def _accept(lanes: Lanes, method: RungeKutta4, law: Law, w: Array) -> None:
     take_over(lanes, law.code[0], w)

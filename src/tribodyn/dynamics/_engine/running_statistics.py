@@ -11,7 +11,7 @@ their order are those of
 from __future__ import annotations
 
 import math
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numba as nb
 import numpy as np
@@ -28,7 +28,7 @@ from tribodyn.dynamics._engine.contact_forces import (
     slots_of,
 )
 from tribodyn.dynamics._engine.crossing import row_within
-from tribodyn.dynamics._engine.lanes import greatest, least, load, store
+from tribodyn.dynamics._engine.lanes import Lanes, greatest, least, load, store
 from tribodyn.dynamics._engine.method import INNER, ONCE
 from tribodyn.dynamics._engine.midpoint import to_middle
 from tribodyn.dynamics._engine.statistics import PLAIN_MOMENTS
@@ -42,9 +42,9 @@ class Gathered(NamedTuple):
     """Sums that are accumulated; in kernels with addresses instead of arrays."""
 
     outputs: Array  #: linear outputs of the state
-    waves: Any  #: cosine and sine of every harmonic at the three nodes of every step
+    waves: Array  #: cosine and sine of every harmonic at the three nodes of every step
     harmonics: int
-    moments: Any  #: of all lanes, or of one
+    moments: Array  #: of all lanes, or of one
 
 
 class Place(NamedTuple):
@@ -57,7 +57,7 @@ class Place(NamedTuple):
 
 
 @nb.njit(**INNER)
-def _add(lanes: Any, left: Any, right: Any, weights: Any, at: int, m: Array) -> None:
+def _add(lanes: Lanes, left: float, right: float, weights: Array, at: int, m: Array) -> None:
     """Add two values to the plain moments of a signal."""
     heavy, weighted = weights[0] * left, weights[1] * right
     store(m, at, load(lanes, m, at) + heavy + weighted)
@@ -67,7 +67,7 @@ def _add(lanes: Any, left: Any, right: Any, weights: Any, at: int, m: Array) -> 
 
 
 @nb.njit(**INNER)
-def add_nodes(lanes: Any, law: Law, place: Place, kind: int, into: Gathered, w: Array) -> None:
+def add_nodes(lanes: Lanes, law: Law, place: Place, kind: int, into: Gathered, w: Array) -> None:
     """Add the signals at one or two nodes of a step to the moments.
 
     Kind 0 is the left end, as right end of the previous step only; 1 the left end as end of both
@@ -124,7 +124,7 @@ def add_nodes(lanes: Any, law: Law, place: Place, kind: int, into: Gathered, w: 
 
 
 @nb.njit(**INNER)
-def gather(lanes: Any, law: Law, switching: bool, place: Place, into: Gathered, w: Array) -> None:
+def gather(lanes: Lanes, law: Law, switching: bool, place: Place, into: Gathered, w: Array) -> None:
     """Add one step, whose ends are in buffers 0 and 2, to the moments, node by node."""
     to_middle(lanes, law, place.row + law.code[2], I64(0), w)
     for node in range(3):

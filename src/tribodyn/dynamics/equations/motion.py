@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
@@ -17,18 +17,18 @@ from tribodyn.arrays.linear_algebra import times
 from tribodyn.dynamics.equations.grid import Grid, unrepeated
 from tribodyn.dynamics.equations.nodes import Nodes, friction_force, ramp_force
 from tribodyn.dynamics.equations.system import System
-from tribodyn.types import Array, Index, Mask
+from tribodyn.types import Array, Index, Mask, Numbers
 
 
 class Scales(NamedTuple):
     """Factors of the parts of a system, numbers or arrays that go with the rows [1]."""
 
-    stiffness: Any = 1.0
-    damping: Any = 1.0
-    friction: Any = 1.0
-    error: Any = 1.0
-    gap: Any = 1.0
-    force: Any = 1.0
+    stiffness: Numbers = 1.0
+    damping: Numbers = 1.0
+    friction: Numbers = 1.0
+    error: Numbers = 1.0
+    gap: Numbers = 1.0
+    force: Numbers = 1.0
 
     @classmethod
     def of_lanes(cls, table: Array) -> Scales:
@@ -83,17 +83,17 @@ def _pushed(push: Array, force: Array) -> Array:
     return np.asarray(np.einsum("...ji,...j->...i", push, force))
 
 
-def compression(rows: Nodes, q: Array, error: Any = 1.0) -> Array:
+def compression(rows: Nodes, q: Array, error: Numbers = 1.0) -> Array:
     """Compression of every contact."""
     return np.asarray(_along(rows.direction, q) - error * unrepeated(rows.error, 1))
 
 
-def compression_rate(rows: Nodes, beat: Any, q: Array, v: Array) -> Array:
+def compression_rate(rows: Nodes, beat: Numbers, q: Array, v: Array) -> Array:
     """Rate of every compression at the mesh frequency ``beat``."""
     return np.asarray(_along(rows.direction, v) + _turning(rows, beat, q))
 
 
-def _turning(rows: Nodes, beat: Any, q: Array, error: Any = 1.0) -> Array:
+def _turning(rows: Nodes, beat: Numbers, q: Array, error: Numbers = 1.0) -> Array:
     """Rate of every compression because the mesh turns at the mesh frequency ``beat``."""
     turning, slope = (
         -error * unrepeated(rows.error_slope, 1),
@@ -118,12 +118,12 @@ def clearance(deflection: Array, gap: Array, side: Array, leaving: Array) -> Arr
 def forces(
     system: System,
     rows: Nodes,
-    beat: Any,
+    beat: Numbers,
     q: Array,
     v: Array,
     side: Array | None = None,
     scales: Scales = _SAME,
-    extra: Any = 0.0,
+    extra: Numbers = 0.0,
 ) -> Forces:
     """Contact forces and accelerations; without ``side`` the sides follow from the compressions."""
     inverse, (stiffness, damping) = system.inverse_mass, system.over_mass
@@ -158,17 +158,19 @@ def forces(
     return Forces(d, contact, side, total)
 
 
-def quadratic_weights(tau: Any) -> tuple[Any, Any, Any]:
+def quadratic_weights(tau: Array) -> tuple[Array, Array, Array]:
     """Weights of the left end, the middle and the right end of a step at its fraction ``tau``."""
     return (1.0 - tau) * (1.0 - 2.0 * tau), 4.0 * tau * (1.0 - tau), tau * (2.0 * tau - 1.0)
 
 
-def cubic_middle(h: Any, inverse: Any, q0: Any, v0: Any, q1: Any, v1: Any) -> tuple[Any, Any]:
+def cubic_middle(
+    h: Array, inverse: Array, q0: Array, v0: Array, q1: Array, v1: Array
+) -> tuple[Array, Array]:
     """Middle of the cubic through position and velocity at both ends; ``inverse`` is 1/h."""
     return 0.5 * (q0 + q1) + 0.125 * h * (v0 - v1), 1.5 * inverse * (q1 - q0) - 0.25 * (v0 + v1)
 
 
-def quintic_place(s: Any) -> tuple[Any, Any, Any, Any, Any]:
+def quintic_place(s: Array) -> tuple[Array, ...]:
     """Weights of mean velocity, both velocities and both accelerations in the place at ``s``.
 
     The quintic through position, velocity and acceleration at both ends of a step ``h`` is
@@ -184,7 +186,7 @@ def quintic_place(s: Any) -> tuple[Any, Any, Any, Any, Any]:
     )
 
 
-def quintic_speed(s: Any) -> tuple[Any, Any, Any, Any, Any]:
+def quintic_speed(s: Array) -> tuple[Array, ...]:
     """The same weights in its velocity ``d . (mean, v0, v1) + h (d . (a0, a1))``."""
     s2 = s * s
     return (

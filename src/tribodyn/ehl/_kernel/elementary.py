@@ -6,15 +6,19 @@ branches, several times faster in a loop over an array.
 
 from __future__ import annotations
 
-from typing import Any
+from collections.abc import Callable
 
 import numba as nb
 from llvmlite import ir
 from numba import types
+from numba.core.typing import Context, Signature
 from numba.extending import intrinsic
 
 from tribodyn.compiled.jit import INNER_OPTIONS
 from tribodyn.types import Tree
+
+#: What the definition of an intrinsic function returns.
+Typed = tuple[Signature, Callable[..., ir.Value]]
 
 #: NaN stays detectable: neither "nnan" nor "ninf". Only the outermost kernel is cached on disk.
 JIT: Tree = {
@@ -35,24 +39,20 @@ SOURCES += ("grid_transfer", "inlet", "newton")
 STRICT = {**INNER, "fastmath": {"contract"}}
 
 
+def _read_as(read: ir.Type) -> Callable[..., ir.Value]:
+    return lambda context, builder, called, values: builder.bitcast(values[0], read)
+
+
 @intrinsic
-def _bits(typing: Any, value: Any) -> Any:
+def _bits(typing: Context, value: types.Type) -> Typed:
     """Bit pattern of a double as an integer."""
-
-    def generate(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
-        return builder.bitcast(arguments[0], ir.IntType(64))
-
-    return types.int64(types.float64), generate
+    return types.int64(types.float64), _read_as(ir.IntType(64))
 
 
 @intrinsic
-def _double(typing: Any, value: Any) -> Any:
+def _double(typing: Context, value: types.Type) -> Typed:
     """Double of a bit pattern."""
-
-    def generate(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
-        return builder.bitcast(arguments[0], ir.DoubleType())
-
-    return types.float64(types.int64), generate
+    return types.float64(types.int64), _read_as(ir.DoubleType())
 
 
 @nb.njit(**STRICT)

@@ -13,7 +13,6 @@ from functools import lru_cache
 from importlib.metadata import version
 from traceback import walk_tb
 from types import FunctionType
-from typing import Any
 
 import numba
 import numpy as np
@@ -32,7 +31,7 @@ from tribodyn.dynamics.equations.divergence import most_splits
 from tribodyn.dynamics.equations.program import Program, lay_out
 from tribodyn.errors import Argument, ComputationError, InputError
 from tribodyn.interrupt import STOPPED, refuse_stopped, stop_flag
-from tribodyn.types import Array, Index
+from tribodyn.types import Array, Index, Tree
 
 #: Threads of a block, which share a multiprocessor, and lanes in the memory of the processor.
 _BLOCK, _LANES = 64, 1 << 16
@@ -75,11 +74,11 @@ class _Kernel:
         parts = 1 + (most_splits(contacts) + 1) * (2 + contacts + 4 * n)
         sizes = (self.slots, 3 * columns, crossing.WIDTH * (contacts + 1), parts)
         self.ends = tuple(int(end) for end in np.cumsum(sizes))
-        names: dict[str, Any] = {}
+        names: Tree = {}
         for module in (contact_forces, crossing, midpoint, running_statistics, runge_kutta, thread):
             names.update(vars(module))
         for name, value in list(names.items()):
-            function = getattr(value, "py_func", value)
+            function = getattr(value, "py_func", None) or value
             if function is not value or getattr(value, "__module__", "") == thread.__name__:
                 names[name] = FunctionType(function.__code__, names, name, function.__defaults__)
         names |= {"SLOTS": self.slots, "COLUMNS": columns, "ENDS": self.ends}

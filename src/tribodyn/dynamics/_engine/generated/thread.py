@@ -9,7 +9,7 @@ instead of vectors of lanes: the first functions below replace those of
 from __future__ import annotations
 
 import math
-from typing import Any
+from collections.abc import Callable
 
 import numpy as np
 from numba import cuda
@@ -17,6 +17,7 @@ from numba.extending import register_jitable
 
 from tribodyn.dynamics._engine.contact_forces import I64, Law, set_sides, slots_of
 from tribodyn.dynamics._engine.crossing import split_step
+from tribodyn.dynamics._engine.lanes import Lanes
 from tribodyn.dynamics._engine.marching import (
     CHATTERING,
     has_dead_zones,
@@ -24,68 +25,71 @@ from tribodyn.dynamics._engine.marching import (
     set_up,
     take_lane,
 )
+from tribodyn.dynamics._engine.method import Method
 from tribodyn.dynamics._engine.runge_kutta import take_over
 from tribodyn.dynamics._engine.running_statistics import Gathered, Place, gather, gather_parts
+from tribodyn.types import Array, Index, Mask
 
 #: Constants and functions of one structure, set before compilation.
 SLOTS, COLUMNS, ENDS = 0, 0, (0, 0, 0, 0)
-step: Any = None
-left_side: Any = None
+step: Callable[..., bool] = NotImplemented
+left_side: Callable[..., int] = NotImplemented
 
 
-def load(lanes: Any, w: Any, slot: int) -> Any:
+def load(lanes: Lanes, w: Array, slot: int) -> float:
     """The number in a slot."""
     return w[slot]
 
 
-def store(w: Any, slot: int, value: Any) -> None:
+def store(w: Array, slot: int, value: float) -> None:
     """Write a number into a slot."""
     w[slot] = value
 
 
-def entry(lanes: Any, rows: Any, item: int) -> Any:
+def entry(lanes: Lanes, rows: Array, item: int) -> float:
     """One item of a row table."""
     return rows[item]
 
 
-def first_lane(value: Any) -> Any:
+def first_lane(value: float) -> float:
     """The number itself."""
     return value
 
 
-def least(left: Any, right: Any) -> Any:
+def least(left: float, right: float) -> float:
     """Smaller of two numbers."""
     return left if left < right else right
 
 
-def greatest(left: Any, right: Any) -> Any:
+def greatest(left: float, right: float) -> float:
     """Larger of two numbers."""
     return left if left > right else right
 
 
-def above(left: Any, right: Any) -> Any:
+def above(left: float, right: float) -> float:
     """1 where the left number is above the right one, else 0."""
     return 1.0 if left > right else 0.0
 
 
-def below(left: Any, right: Any) -> Any:
+def below(left: float, right: float) -> float:
     """1 where the left number is below the right one, else 0."""
     return 1.0 if left < right else 0.0
 
 
-def prepare(method: Any, law: Law, base: int, duration: float, kind: int, w: Any) -> None:
+def prepare(method: Method, law: Law, base: int, duration: float, kind: int, w: Array) -> None:
     """Do nothing: the method has no slots."""
 
 
-def restart(lanes: Any, method: Any, law: Law, base: int, w: Any) -> None:
+def restart(lanes: Lanes, method: Method, law: Law, base: int, w: Array) -> None:
     """Do nothing: the method has no slots."""
 
 
 @register_jitable
 def march_thread(
-    code: Any, reads: Any, tables: Any, share: Any, again: Any, member: Any, period: Any, load: Any,
-    state: Any, cycles: int, marched: int, lane_slots: Any, scratches: Any, record: Any,
-    outputs: Any, waves: Any, harmonics: int, moments: Any, weight: float, ended: Any,
+    code: Index, reads: Index, tables: Array, share: Array, again: Mask, member: Index,
+    period: Array, load: Array, state: Array, cycles: int, marched: int, lane_slots: Array,
+    scratches: Array, record: Array, outputs: Array, waves: Array, harmonics: int, moments: Array,
+    weight: float, ended: Index,
 ) -> None:  # fmt: skip
     """Integrate one lane over ``cycles`` mesh cycles, after the first call from ``lane_slots`` on.
 
