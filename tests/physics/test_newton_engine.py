@@ -12,6 +12,7 @@ from tribodyn.ehl import solve_line_contact, solve_line_contact_moes
 from tribodyn.ehl._kernel.film_sum import influence, make_grid
 from tribodyn.ehl._kernel.grid_transfer import refine
 from tribodyn.ehl._kernel.linear_solver import (
+    System,
     coarse_tangent,
     linear_solve,
     linear_work,
@@ -19,7 +20,7 @@ from tribodyn.ehl._kernel.linear_solver import (
     prepare,
 )
 from tribodyn.ehl._kernel.newton import Equation, Limits, newton_level, newton_work
-from tribodyn.ehl._kernel.reynolds import coefficients, mobility, oil_state
+from tribodyn.ehl._kernel.reynolds import fill_oil, fill_tangent, make_fields
 from tribodyn.lubricant import Lubricant
 
 OIL = Lubricant(0.082, 880.0, 2.19e-8)
@@ -32,7 +33,7 @@ def solve_system(n, dx, k, imposed, lam, oil, P, H, cH, cP, ratio, rhs, x):
     if ratio > 0:
         coarse = coarse_tangent(n, dx, k, ratio, lam, 1.0, 0.0, imposed, oil, P, H)
     good = prepare(grid, k, imposed, work)
-    return good, linear_solve(grid, k, imposed, 1e-11, coarse, work, rhs, x)
+    return good, linear_solve(System(grid, k, imposed, coarse, work), 1e-11, rhs, x)
 
 
 @nb.njit
@@ -51,12 +52,10 @@ def refined(n, dx, P, k, load, tail, fine):
 
 @nb.njit
 def _coefficients_of(n, dx, lam, oil, P, H):
-    lneta, dlneta, rho, drho, eps = np.empty((5, n + 1))
-    cH, cP = np.empty((2, n + 1, 4))
-    oil_state(n, P, oil, lneta, dlneta, rho, drho)
-    mobility(n, H, lam, lneta, rho, eps)
-    coefficients(n, dx, 1.0, 0.0, P, H, dlneta, rho, drho, eps, cH, cP)
-    return cH, cP, eps, influence(n, dx)
+    f, (cH, cP) = make_fields(n), np.empty((2, n + 1, 4))
+    fill_oil(n, lam, oil, P, H, f)
+    fill_tangent(n, dx, 1.0, 0.0, P, H, f, cH, cP)
+    return cH, cP, f.eps, influence(n, dx)
 
 
 @pytest.fixture(scope="module")

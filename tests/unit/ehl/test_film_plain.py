@@ -45,13 +45,11 @@ def _oil(n, P, oil):
 
 @nb.njit
 def _reynolds(n, dx, lam, u, squeeze, history, P, H, oil):
-    lneta, dlneta, rho, drho = _oil(n, P, oil)
-    eps, F, G = np.empty(n + 1), np.empty(n + 1), np.empty(n + 1)
-    cH, cP = np.empty((n + 1, 4)), np.empty((n + 1, 4))
-    reynolds.mobility(n, H, lam, lneta, rho, eps)
-    reynolds.residual(n, dx, u, squeeze, history, P, H, rho, eps, F, G)
-    reynolds.coefficients(n, dx, u, squeeze, P, H, dlneta, rho, drho, eps, cH, cP)
-    return F, G, cH, cP
+    f, cH, cP = reynolds.make_fields(n), np.empty((n + 1, 4)), np.empty((n + 1, 4))
+    reynolds.fill_oil(n, lam, oil, P, H, f)
+    reynolds.residual(n, dx, u, squeeze, history, P, H, f)
+    reynolds.fill_tangent(n, dx, u, squeeze, P, H, f, cH, cP)
+    return f.F[: n + 1], f.G[: n + 1], cH, cP
 
 
 def make(

@@ -60,6 +60,16 @@ class LinearWork(NamedTuple):
     transform: Array  #: of :func:`film_sum`
 
 
+class System(NamedTuple):
+    """A tangent after :func:`prepare`."""
+
+    grid: Grid
+    k: int  #: last free node
+    imposed: bool  #: whether the load is imposed
+    coarse: CoarseTangent
+    work: LinearWork
+
+
 @nb.njit(**INNER)
 def linear_work(n: int) -> LinearWork:
     """Arrays of the linear solver on ``n`` intervals."""
@@ -118,16 +128,9 @@ def coarse_tangent(
 
 
 @nb.njit(**INNER)
-def _correct(
-    fine: Grid,
-    k: int,
-    imposed: bool,
-    target: float,
-    coarse: CoarseTangent,
-    work: LinearWork,
-    z: Array,
-) -> float:
+def _correct(system: System, target: float, z: Array) -> float:
     """Coarse correction of the scaled rows ``z``, which keep what it leaves over; its load."""
+    fine, k, imposed, coarse, work = system
     cH, cP, scale, x = work.by_film, work.by_pressure, work.scale, work.correction
     r, p, h = coarse.right, coarse.pressure, coarse.film
     m, last = coarse.grid.n, coarse.last
@@ -233,19 +236,12 @@ def prepare(grid: Grid, k: int, imposed: bool, work: LinearWork) -> bool:
 
 
 @nb.njit(**INNER)
-def _precondition(
-    grid: Grid,
-    k: int,
-    imposed: bool,
-    target: float,
-    coarse: CoarseTangent,
-    work: LinearWork,
-    z: Array,
-) -> None:
+def _precondition(system: System, target: float, z: Array) -> None:
     """Overwrite scaled rows 1..k by the correction; ``target`` is its share of the load."""
+    grid, k, imposed, coarse, work = system
     border, correction = work.border, work.correction
     if coarse.factors.size > 0:
-        target -= _correct(grid, k, imposed, target, coarse, work, z)
+        target -= _correct(system, target, z)
     band_solve(k, work.band, work.pivot, z)
     if imposed:
         total = 0.0
@@ -273,8 +269,9 @@ def film_change(grid: Grid, k: int, first: float, x: Array, work: LinearWork) ->
 
 
 @nb.njit(**INNER)
-def _apply(grid: Grid, k: int, imposed: bool, work: LinearWork, x: Array, y: Array) -> None:
+def _apply(system: System, x: Array, y: Array) -> None:
     """Rows 1..k of the tangent times ``x``, scaled."""
+    grid, k, imposed, _, work = system
     cH, cP, p, h, scale = work.by_film, work.by_pressure, work.pressure, work.film, work.scale
     film_change(grid, k, 0.0, x, work)
     if imposed:
@@ -298,16 +295,7 @@ def _apply(grid: Grid, k: int, imposed: bool, work: LinearWork, x: Array, y: Arr
 
 
 @nb.njit(**INNER)
-def linear_solve(
-    grid: Grid,
-    k: int,
-    imposed: bool,
-    tolerance: float,
-    coarse: CoarseTangent,
-    work: LinearWork,
-    rhs: Array,
-    x: Array,
-) -> int:
+def linear_solve(system: System, tolerance: float, rhs: Array, x: Array) -> int:
     """Solve ``J x = rhs`` by GMRES after :func:`prepare`; products, negative where it fails.
 
     ``rhs`` has the rows 1..k of the mass balance first, then the load row; ``x`` receives the
@@ -315,6 +303,7 @@ def linear_solve(
     residual over that of the first correction. Classical Gram-Schmidt, done twice.
     Source: Saad and Schultz, GMRES, 1986.
     """
+    _, k, imposed, _, work = system
     scale, basis, small, shares = work.scale, work.basis, work.small, work.correction
     # Hessenberg columns in small[:, j]; rotations, right-hand side.
     cosine, sine, g = small[BASIS + 1], small[BASIS + 2], small[BASIS + 3]
@@ -326,13 +315,13 @@ def linear_solve(
         v = basis[used] if started else x
         if started:
             old = x if used == 0 else basis[used - 1]
-            _apply(grid, k, imposed, work, old, v)
+            _apply(system, old, v)
             products += 1
         if used == 0:
             for i in range(k):
                 v[i] = scale[i] * rhs[i] - (v[i] if started else 0.0)
         target = 0.0 if started else rhs[k]
-        _precondition(grid, k, imposed, target, coarse, work, v)
+        _precondition(system, target, v)
         if not started:
             started = True
             for i in range(size):

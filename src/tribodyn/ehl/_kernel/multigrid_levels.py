@@ -81,14 +81,8 @@ class LevelWork(NamedTuple):
 def level_work(n: int, coarsest: int, lam: float, oil: Array) -> LevelWork:
     """Arrays for the finest grid of ``n`` intervals and the coarsest one."""
     a, m = np.zeros((4, n + 2)), coarsest + 1
-    dense = CoarsestWork(
-        np.empty((m, m)),
-        np.empty(m, np.int64),
-        np.empty(m),
-        np.empty(m),
-        np.empty(m),
-        np.zeros(1, np.int64),
-    )
+    pivot, numbers, factored = np.empty(m, np.int64), np.empty((3, m)), np.zeros(1, np.int64)
+    dense = CoarsestWork(np.empty((m, m)), pivot, numbers[0], numbers[1], numbers[2], factored)
     return LevelWork(
         lam, oil, make_fields(n), a[0], np.empty((n + 1, 4)), np.empty((n + 1, 4)),
         np.empty(film_work_size(n)), np.empty((n, LEFT + RIGHT + 1)), a[1], a[2], a[3],
@@ -111,7 +105,7 @@ def fill_balance(level: Level, work: LevelWork) -> None:
     """Oil, mobility, fluxes and residual of pressure and film of a grid."""
     n, f = level.grid.n, work.fields
     fill_oil(n, work.lam, work.oil, level.P, level.H, f)
-    residual(n, level.grid.dx, 1.0, 0.0, work.none, level.P, level.H, f.rho, f.eps, f.F, f.G)
+    residual(n, level.grid.dx, 1.0, 0.0, work.none, level.P, level.H, f)
 
 
 @nb.njit(**INNER)
@@ -323,11 +317,8 @@ def _factor(k: int, level: Level, work: LevelWork) -> bool:
         h0, h1, h2, h3 = cH[i, 0], cH[i, 1], cH[i, 2], cH[i, 3]
         for j in range(1, k + 1):
             d = i - j
-            inner_terms, outer_terms = (
-                h1 * K[abs(d - 1)] + h2 * K[abs(d)],
-                h0 * K[abs(d - 2)] + h3 * K[abs(d + 1)],
-            )
-            row[j - 1] = inner_terms + outer_terms
+            inner_terms = h1 * K[abs(d - 1)] + h2 * K[abs(d)]
+            row[j - 1] = inner_terms + (h0 * K[abs(d - 2)] + h3 * K[abs(d + 1)])
         for s in range(4):
             if 1 <= i - 2 + s <= k:
                 row[i - 3 + s] += cP[i, s]

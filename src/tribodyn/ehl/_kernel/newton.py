@@ -17,6 +17,7 @@ from tribodyn.ehl._kernel.grid_transfer import cut_negative, extend
 from tribodyn.ehl._kernel.linear_solver import (
     CoarseTangent,
     LinearWork,
+    System,
     film_change,
     linear_solve,
     linear_work,
@@ -214,9 +215,7 @@ def newton_level(
             for i in range(n + 1):
                 H[i] += offset + equation.shape[i]
         fill_oil(n, equation.lam, equation.oil, P, H, f)
-        residual(
-            n, dx, equation.speed, equation.squeeze, equation.history, P, H, f.rho, f.eps, f.F, G
-        )
+        residual(n, dx, equation.speed, equation.squeeze, equation.history, P, H, f)
         if steps > 0:
             settled, grown = not moved and change < 0.1, False
             if settled and torn and _refill(k, refills, cavity, visits, G):
@@ -265,7 +264,7 @@ def newton_level(
         if not torn:
             # Where many steps are needed, the linear solver is often what holds them up.
             tolerance *= max(1e-4, 0.3 ** max(0, steps - 3))
-        linear_solve(grid, k, imposed, tolerance, coarse, linear, rhs, delta)
+        linear_solve(System(grid, k, imposed, coarse, linear), tolerance, rhs, delta)
         # Film of the whole step: the line search and the next film need no further sum.
         film_change(grid, k, 0.0, delta, linear)
         if imposed:

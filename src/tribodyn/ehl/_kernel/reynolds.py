@@ -59,6 +59,25 @@ def oil_state(
             drho[i] *= factor
 
 
+class Fields(NamedTuple):
+    """What follows from pressure and film at the nodes, and its balance."""
+
+    lneta: Array  #: logarithm of the viscosity ratio
+    dlneta: Array  #: its slope over the pressure
+    rho: Array  #: density ratio
+    drho: Array  #: its slope over the pressure
+    eps: Array  #: mobility
+    F: Array  #: flux through the face behind each node
+    G: Array  #: residual of the mass balance
+
+
+@nb.njit(**INNER)
+def make_fields(n: int) -> Fields:
+    """Fields of a grid of ``n`` intervals, not yet filled."""
+    a = np.zeros((7, n + 2))
+    return Fields(a[0], a[1], a[2], a[3], a[4], a[5], a[6])
+
+
 #: Least film in the mobility, so that an iterate with overlapping flanks stays computable.
 THINNEST = 1e-10
 
@@ -74,20 +93,10 @@ def mobility(n: int, H: Array, lam: float, lneta: Array, rho: Array, eps: Array)
 
 @nb.njit(**INNER)
 def residual(
-    n: int,
-    dx: float,
-    u: float,
-    squeeze: float,
-    history: Array,
-    P: Array,
-    H: Array,
-    rho: Array,
-    eps: Array,
-    F: Array,
-    G: Array,
+    n: int, dx: float, u: float, squeeze: float, history: Array, P: Array, H: Array, f: Fields
 ) -> None:
     """Flux ``F[i]`` through the face between nodes i and i+1, and residual ``G[1..n-1]``."""
-    half = 0.5 / dx
+    half, rho, eps, F, G = 0.5 / dx, f.rho, f.eps, f.F, f.G
     F[0] = 0.5 * u * (rho[0] * H[0] + rho[1] * H[1]) - half * (eps[0] + eps[1]) * (P[1] - P[0])
     for i in range(1, n):
         C = 1.5 * rho[i] * H[i] - 0.5 * rho[i - 1] * H[i - 1]
@@ -98,22 +107,18 @@ def residual(
 
 
 @nb.njit(**INNER)
-def coefficients(
-    n: int,
-    dx: float,
-    u: float,
-    squeeze: float,
-    P: Array,
-    H: Array,
-    dlneta: Array,
-    rho: Array,
-    drho: Array,
-    eps: Array,
-    cH: Array,
-    cP: Array,
+def fill_oil(n: int, lam: float, oil: Array, P: Array, H: Array, f: Fields) -> None:
+    """Oil and mobility of a pressure and a film."""
+    oil_state(n, P, oil, f.lneta, f.dlneta, f.rho, f.drho)
+    mobility(n, H, lam, f.lneta, f.rho, f.eps)
+
+
+@nb.njit(**INNER)
+def fill_tangent(
+    n: int, dx: float, u: float, squeeze: float, P: Array, H: Array, f: Fields, cH: Array, cP: Array
 ) -> None:
     """Derivatives of ``G_i`` by film and, at fixed film, by pressure at the nodes i-2..i+1."""
-    half = 0.5 / dx
+    half, dlneta, rho, drho, eps = 0.5 / dx, f.dlneta, f.rho, f.drho, f.eps
     for s in range(4):
         cH[0, s] = cP[0, s] = cH[n, s] = cP[n, s] = 0.0
     for i in range(1, n):
@@ -142,37 +147,3 @@ def coefficients(
         cP[i, 1] = wa * drho[a] * H[a] + pa * left - mean_left
         cP[i, 2] = wo * drho[o] * H[o] + po * (left - right) + mean_left + mean_right
         cP[i, 3] = -pb * right - mean_right
-
-
-class Fields(NamedTuple):
-    """What follows from pressure and film at the nodes, and its balance."""
-
-    lneta: Array  #: logarithm of the viscosity ratio
-    dlneta: Array  #: its slope over the pressure
-    rho: Array  #: density ratio
-    drho: Array  #: its slope over the pressure
-    eps: Array  #: mobility
-    F: Array  #: flux through the face behind each node
-    G: Array  #: residual of the mass balance
-
-
-@nb.njit(**INNER)
-def make_fields(n: int) -> Fields:
-    """Fields of a grid of ``n`` intervals, not yet filled."""
-    a = np.zeros((7, n + 2))
-    return Fields(a[0], a[1], a[2], a[3], a[4], a[5], a[6])
-
-
-@nb.njit(**INNER)
-def fill_oil(n: int, lam: float, oil: Array, P: Array, H: Array, f: Fields) -> None:
-    """Oil and mobility of a pressure and a film."""
-    oil_state(n, P, oil, f.lneta, f.dlneta, f.rho, f.drho)
-    mobility(n, H, lam, f.lneta, f.rho, f.eps)
-
-
-@nb.njit(**INNER)
-def fill_tangent(
-    n: int, dx: float, u: float, squeeze: float, P: Array, H: Array, f: Fields, cH: Array, cP: Array
-) -> None:
-    """Tangent about fields that are filled; see :func:`coefficients`."""
-    coefficients(n, dx, u, squeeze, P, H, f.dlneta, f.rho, f.drho, f.eps, cH, cP)

@@ -15,6 +15,7 @@ from tribodyn.ehl._kernel.film_sum import influence, make_grid
 from tribodyn.ehl._kernel.grid_transfer import central, refine
 from tribodyn.ehl._kernel.inlet import cold_start, free_nodes
 from tribodyn.ehl._kernel.linear_solver import (
+    System,
     coarse_tangent,
     film_change,
     linear_solve,
@@ -30,14 +31,7 @@ from tribodyn.ehl._kernel.newton import (
     newton_level,
     newton_work,
 )
-from tribodyn.ehl._kernel.reynolds import (
-    coefficients,
-    fill_oil,
-    fill_tangent,
-    make_fields,
-    mobility,
-    oil_state,
-)
+from tribodyn.ehl._kernel.reynolds import fill_oil, fill_tangent, make_fields
 from tribodyn.types import Array, Index
 
 #: Intervals from which on the linear solver has a coarse grid, and about how many that has.
@@ -83,26 +77,16 @@ def _build(digest: str) -> Any:
     ) -> tuple[Solved, int, int, int]:  # fmt: skip
         """Solve on all grids from ``first`` to ``n`` intervals; state, last grid, first, count."""
         digest  # noqa: B018  # a closure variable, hence part of the key of the disk cache
-        start, lam, oil, load, tail = (
-            contact.start,
-            contact.lam,
-            contact.oil,
-            contact.load,
-            contact.tail,
-        )
+        start, lam, oil = contact.start, contact.lam, contact.oil
+        load, tail = contact.load, contact.tail
         # Typed, or each literal would make the compiler compile the callees again.
         m: Any = nb.int64(first)
         level: Any = nb.int64(0)
         free = nb.int64(free)
         before, film_before, once = np.empty(0), np.empty(0), np.empty(0)
         coarse = no_coarse()
-        passing = Limits(
-            limits.pressure,
-            max(limits.flux, _PASSING_FLUX),
-            limits.steps,
-            limits.linear,
-            limits.change,
-        )
+        flux = max(limits.flux, _PASSING_FLUX)
+        passing = Limits(limits.pressure, flux, limits.steps, limits.linear, limits.change)
         while True:
             grid, work = make_grid(m, (contact.end - start) / m), newton_work(m, flag)
             shape = _gap(m, start, grid.dx, n // m, contact.profile)
@@ -169,7 +153,7 @@ def _build_tangent(digest: str) -> Any:
         rhs[0] -= cP[1, 1] * tail
         rhs[1] -= cP[2, 0] * tail
         rhs[k] = load - 0.5 * dx * tail
-        products = linear_solve(grid, k, imposed, _TOLERANCE, no_coarse(), work, rhs, x)
+        products = linear_solve(System(grid, k, imposed, no_coarse(), work), _TOLERANCE, rhs, x)
         film_change(grid, k, tail, x, work)
         for i in range(n + 1):
             work.film[i] += x[k]
@@ -189,11 +173,9 @@ def _build_parts(digest: str) -> Any:
         every node by the pressures at 0..k and by the offset, and the central one of each.
         """
         digest  # noqa: B018  # a closure variable, hence part of the key of the disk cache
-        lneta, dlneta, rho, drho, eps = np.empty((5, n + 1))
-        cH, cP = np.empty((2, n + 1, 4))
-        oil_state(n, P, oil, lneta, dlneta, rho, drho)
-        mobility(n, H, lam, lneta, rho, eps)
-        coefficients(n, dx, 1.0, 0.0, P, H, dlneta, rho, drho, eps, cH, cP)
+        f, (cH, cP) = make_fields(n), np.empty((2, n + 1, 4))
+        fill_oil(n, lam, oil, P, H, f)
+        fill_tangent(n, dx, 1.0, 0.0, P, H, f, cH, cP)
         pressed = influence(n, dx)
         film, middle = np.ones((k + 2, n + 1)), np.empty(k + 2)
         for j in range(k + 2):
@@ -201,7 +183,7 @@ def _build_parts(digest: str) -> Any:
                 for i in range(n + 1):
                     film[j, i] = pressed[abs(i - j)]
             middle[j] = central(n, start, dx, film[j])
-        return cH, cP, rho, drho, film, middle
+        return cH, cP, f.rho[: n + 1], f.drho[: n + 1], film, middle
 
     return linear_parts
 

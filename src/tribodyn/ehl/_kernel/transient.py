@@ -85,6 +85,7 @@ class Instant(NamedTuple):
 class _Setting(NamedTuple):
     """What stays over all instants: the grid, and arrays that each of them fills."""
 
+    contact: TransientContact
     grid: Grid
     shape: Array  #: gap of the undeformed bodies
     history: Array  #: what the squeeze term takes over
@@ -96,7 +97,7 @@ def _setting(contact: TransientContact, flag: Index) -> _Setting:
     n = contact.n
     kernel = influence(n, contact.dx) + contact.dx * np.log(contact.depth) / np.pi
     grid = Grid(n, contact.dx, kernel, film_plan(n, kernel))
-    return _Setting(grid, np.empty(n + 1), np.zeros(n + 1), newton_work(n, flag))
+    return _Setting(contact, grid, np.empty(n + 1), np.zeros(n + 1), newton_work(n, flag))
 
 
 @nb.njit(**INNER)
@@ -161,10 +162,11 @@ def _inlet(
 
 @nb.njit(inline="always", **INNER)
 def _solve(
-    contact: TransientContact, setting: _Setting, row: Array, film: float, squeeze: float,
-    state: Instant, load: float, P: Array, H: Array, cavity: Array,
+    setting: _Setting, row: Array, film: float, squeeze: float, state: Instant, load: float,
+    P: Array, H: Array, cavity: Array,
 ) -> tuple[int, Instant]:  # fmt: skip
     """Solve one instant from a state nearby: its status and what it hands on."""
+    contact = setting.contact
     lam, speed, imposed = contact.lam, row[SPEED], contact.imposed
     carried = row[LOAD] if imposed else load / _FULL
     tail, outside = _inlet(contact.start, film, carried, lam, contact.flooded, row)
@@ -186,15 +188,10 @@ def _solve(
 
 @nb.njit(inline="always", **INNER)
 def _carry(
-    contact: TransientContact,
-    setting: _Setting,
-    ratio: float,
-    table: Array,
-    P: Array,
-    H: Array,
-    state: Instant,
+    setting: _Setting, ratio: float, table: Array, P: Array, H: Array, state: Instant
 ) -> tuple[int, Instant]:
     """Carry a steady state, in place, from the inputs of the first row to those of the last."""
+    contact = setting.contact
     n, start, dx = contact.n, contact.start, contact.dx
     first, last, row = table[0], table[table.shape[0] - 1], np.empty(table.shape[1])
     p, h, cavity = np.empty(n + 1), np.empty(n + 1), np.zeros(n + 1)
@@ -218,9 +215,7 @@ def _carry(
         status = nb.int64(CONVERGED)
         # The inlet follows the film that it feeds.
         for _ in range(40):
-            status, trial = _solve(
-                contact, setting, row, film, 0.0, trial, trial.load, p, h, cavity
-            )
+            status, trial = _solve(setting, row, film, 0.0, trial, trial.load, p, h, cavity)
             before, film = film, central(n, start, dx, h)
             if status != CONVERGED or not contact.flooded or abs(film - before) < 1e-13 * abs(film):
                 break
@@ -237,16 +232,10 @@ def _carry(
 
 @nb.njit(**INNER)
 def _keep(
-    contact: TransientContact,
-    P: Array,
-    H: Array,
-    cavity: Array,
-    state: Instant,
-    steps: int,
-    parts: int,
-    record: Array,
-) -> None:
-    """Fill a line of the record."""
+    contact: TransientContact, P: Array, H: Array, cavity: Array, state: Instant,
+    counts: tuple[int, int], record: Array,
+) -> None:  # fmt: skip
+    """Fill a line of the record; ``counts`` are Newton steps and parts of the step."""
     n, dx, k = contact.n, contact.dx, state.free
     total, highest, late = 0.0, 0.0, 0.0
     for i in range(k + 1):
@@ -259,21 +248,20 @@ def _keep(
         least = min(least, H[i])
     record[0], record[1], record[2] = state.offset, dx * total, state.load
     record[3], record[4] = central(n, contact.start, dx, H), least
-    record[5], record[6], record[7] = k, steps, state.flux_error
-    record[8], record[9] = parts, highest
+    record[5], record[6], record[7] = k, counts[0], state.flux_error
+    record[8], record[9] = counts[1], highest
     record[10] = late / total if total > 0.0 else 0.0
     record[11] = np.sum(cavity)
 
 
 @nb.njit(inline="always", **INNER)
 def _follow(
-    contact: TransientContact, setting: _Setting, time: Array, table: Array, halvings: int,
-    every: int, past: Array, P: Array, H: Array, state: Instant, records: Array, pressures: Array,
-    films: Array,
+    setting: _Setting, time: Array, table: Array, halvings: int, every: int, past: Array,
+    P: Array, H: Array, state: Instant, records: Array, pressures: Array, films: Array,
 ) -> tuple[int, int, Instant]:  # fmt: skip
     """Follow a contact over time, from the state of the first instant."""
+    contact, history = setting.contact, setting.history
     n, start, dx, oil = contact.n, contact.start, contact.dx, contact.oil
-    history = setting.history
     cavity, broken = np.zeros(n + 1), np.zeros(n + 1)
     lneta, dlneta, rho, drho = np.empty((4, n + 1))
     before, earlier = np.empty(n + 1), np.empty(n + 1)
@@ -285,7 +273,7 @@ def _follow(
     film, film_before = central(n, start, dx, H), 0.0
     load, load_before = state.load, 0.0
     last = 0.0
-    _keep(contact, P, H, cavity, state, state.steps, nb.int64(0), records[0])
+    _keep(contact, P, H, cavity, state, (state.steps, nb.int64(0)), records[0])
     if every > 0:
         pressures[0], films[0] = P, H
     for m in range(1, time.size):
@@ -306,17 +294,15 @@ def _follow(
             else:
                 r = width / last
                 squeeze = dx / width * (1.0 + 2.0 * r) / (1.0 + r)
-                weight_before, weight_earlier = (
-                    dx / width * (1.0 + r),
-                    dx / width * r * r / (1.0 + r),
-                )
+                weight_before = dx / width * (1.0 + r)
+                weight_earlier = dx / width * r * r / (1.0 + r)
                 for i in range(n + 1):
                     history[i] = weight_before * before[i] - weight_earlier * earlier[i]
                 expected = film + r * (film - film_before)
                 expected_load = load + r * (load - load_before)
             p[:], h[:], broken[:] = P, H, cavity
             status, trial = _solve(
-                contact, setting, row, expected, squeeze, state, expected_load, p, h, broken
+                setting, row, expected, squeeze, state, expected_load, p, h, broken
             )
             if status != CONVERGED:
                 part *= 0.5
@@ -334,7 +320,7 @@ def _follow(
             last, done = width, progress
             parts += 1
             steps += state.steps
-        _keep(contact, P, H, cavity, state, steps, parts, records[m])
+        _keep(contact, P, H, cavity, state, (steps, parts), records[m])
         if every > 0 and m % every == 0:
             pressures[m // every], films[m // every] = P, H
     return nb.int64(CONVERGED), time.size - 1, state
@@ -352,12 +338,11 @@ def _build(digest: str) -> Any:
         digest  # noqa: B018  # a closure variable, hence part of the key of the disk cache
         setting = _setting(contact, flag)
         if time.size == 0:
-            status, final_state = _carry(contact, setting, ratio, table, P, H, state)
+            status, final_state = _carry(setting, ratio, table, P, H, state)
             return status, nb.int64(0), final_state
         return _follow(
-            contact, setting, time, table, halvings, every, past, P, H, state, records, pressures,
-            films,
-        )  # fmt: skip
+            setting, time, table, halvings, every, past, P, H, state, records, pressures, films
+        )
 
     return follow_contact
 

@@ -11,8 +11,9 @@ compression has left its range.
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from pathlib import Path
-from typing import Any
+from typing import NamedTuple
 
 import numba as nb
 import numpy as np
@@ -39,6 +40,28 @@ _INNER_STEPS = 200
 _OUTER_STEPS = 200
 
 
+class Teeth(NamedTuple):
+    """Compliances of the pairs at one phase, the same in every slice."""
+
+    C: Array
+    A: Array
+    B: float
+
+
+class Work(NamedTuple):
+    """Tangent system of the pairs that carry, their places, and sums over the slices."""
+
+    a: Array
+    b: Array
+    place: Array
+    sums: Array  #: force and tangent stiffness
+
+
+@nb.njit(**_INNER)
+def _work(n: int) -> Work:
+    return Work(np.empty((n, n)), np.empty(n), np.empty(n), np.empty(2))
+
+
 @nb.njit(**_INNER)
 def _eliminate(m: int, a: Array, b: Array) -> None:
     """Solve in place; the matrix is symmetric and positive definite, so nothing is pivoted."""
@@ -56,12 +79,10 @@ def _eliminate(m: int, a: Array, b: Array) -> None:
 
 
 @nb.njit(**_INNER)
-def _touching_system(
-    n: int, C: Array, A: Array, B: float, gaps: Array, delta: float,
-    f: Array, a: Array, b: Array, place: Array,
-) -> int:  # fmt: skip
+def _touching_system(teeth: Teeth, gaps: Array, delta: float, f: Array, work: Work) -> int:
     """Tangent compliances and residuals of the pairs that carry; their number, -2 out of range."""
-    m = 0
+    (C, A, B), (a, b, place, _), m = teeth, work, 0
+    n = A.size
     for i in range(n):
         if f[i] > 0.0:
             place[m] = i
@@ -82,11 +103,10 @@ def _touching_system(
 
 
 @nb.njit(**_INNER)
-def _residual(
-    n: int, C: Array, A: Array, B: float, gap: float, delta: float, f: Array, i: int
-) -> float:
+def _residual(teeth: Teeth, gap: float, delta: float, f: Array, i: int) -> float:
+    C, A, B = teeth
     total = gap - delta
-    for j in range(n):
+    for j in range(A.size):
         total += C[i, j] * f[j]
     if f[i] > 0.0:
         total += f[i] * (A[i] - B * np.log(f[i]) if B > 0.0 else A[i])
@@ -94,24 +114,14 @@ def _residual(
 
 
 @nb.njit(**_INNER)
-def _slice(
-    n: int,
-    C: Array,
-    A: Array,
-    B: float,
-    gaps: Array,
-    delta: float,
-    f: Array,
-    a: Array,
-    b: Array,
-    place: Array,
-) -> int:
+def _slice(teeth: Teeth, gaps: Array, delta: float, f: Array, work: Work) -> int:
     """Loads ``f`` of one slice at an approach, from the loads that it holds.
 
     Returns the number of pairs that carry, whose tangent system is in ``a`` and ``place``, or minus
     the status of a failure.
     """
-    least = gaps[0]
+    (C, A, B), (a, b, place, _), least = teeth, work, gaps[0]
+    n = A.size
     for i in range(1, n):
         least = min(least, gaps[i])
     approach = delta - least
@@ -129,13 +139,13 @@ def _slice(
             largest = max(largest, f[i])
         for i in range(n):
             if f[i] <= 0.0:
-                away = _residual(n, C, A, B, gaps[i], delta, f, i)
+                away = _residual(teeth, gaps[i], delta, f, i)
                 if away < -tight:
                     f[i] = -0.5 * away / (C[i, i] + A[i] + 10.0 * B)
                     touched = True
         if touched:
             continue
-        m: int = _touching_system(n, C, A, B, gaps, delta, f, a, b, place)
+        m: int = _touching_system(teeth, gaps, delta, f, work)
         if m <= 0:
             return m
         for r in range(m):
@@ -151,31 +161,21 @@ def _slice(
             if f[i] < _FAINT * largest:
                 previous = f[i]
                 f[i] = 0.0
-                if _residual(n, C, A, B, gaps[i], delta, f, i) < 0.0:
+                if _residual(teeth, gaps[i], delta, f, i) < 0.0:
                     f[i] = previous
     return -1
 
 
 @nb.njit(**_INNER)
 def _total_force(
-    n: int,
-    C: Array,
-    A: Array,
-    B: float,
-    gaps: Array,
-    width: Array,
-    delta: float,
-    f: Array,
-    a: Array,
-    b: Array,
-    place: Array,
-    sums: Array,
-) -> Any:
-    """Force and tangent stiffness of all slices at an approach, into ``sums``."""
+    teeth: Teeth, gaps: Array, width: Array, delta: float, f: Array, work: Work
+) -> int:
+    """Force and tangent stiffness of all slices at an approach, into ``sums``; the status."""
+    a, b, place, sums = work
     sums[0] = 0.0
     sums[1] = 0.0
     for s in range(width.shape[0]):
-        m = _slice(n, C, A, B, gaps[s], delta, f[s], a, b, place)
+        m: int = _slice(teeth, gaps[s], delta, f[s], work)
         if m < 0:
             return -m
         for r in range(m):
@@ -202,21 +202,10 @@ def _least(gaps: Array) -> float:
 
 @nb.njit(**_INNER)
 def _approach(
-    C: Array,
-    A: Array,
-    B: float,
-    gaps: Array,
-    width: Array,
-    total: float,
-    start: float,
-    f: Array,
-    a: Array,
-    b: Array,
-    place: Array,
-    sums: Array,
+    teeth: Teeth, gaps: Array, width: Array, total: float, start: float, f: Array, work: Work
 ) -> tuple[float, int]:
     """Approach at which all slices together carry ``total``, by safeguarded Newton steps."""
-    n, low, high = A.size, _least(gaps), np.inf
+    n, low, high, sums = teeth.A.size, _least(gaps), np.inf, work.sums
     delta = start
     if not delta > low:
         widest = 0.0
@@ -225,9 +214,9 @@ def _approach(
             for each in width[:, i]:
                 across += each
             widest = max(widest, across)
-        delta = low + total / widest * (C[0, 0] + A[0])
+        delta = low + total / widest * (teeth.C[0, 0] + teeth.A[0])
     for _ in range(_OUTER_STEPS):
-        status = _total_force(n, C, A, B, gaps, width, delta, f, a, b, place, sums)
+        status = _total_force(teeth, gaps, width, delta, f, work)
         if status == 2 and delta - low > 1e-9 * (abs(delta) + abs(low)):
             # A soft pair was touched alone, and its slope led far beyond the load: come back.
             high = delta
@@ -252,7 +241,7 @@ def _approach(
     return delta, 1
 
 
-def _build(digest: str) -> tuple[Any, Any, Any]:
+def _build(digest: str) -> tuple[Callable[..., int], ...]:
     """Make the kernels; the content of the sources is part of their cache key."""
 
     @cached_njit(**_JIT)
@@ -267,25 +256,25 @@ def _build(digest: str) -> tuple[Any, Any, Any]:
         force: Array,
         tangent: Array,
         flag: Index,
-    ) -> Any:
+    ) -> int:
         """Solve every phase at every total load, in the order of the loads."""
         digest  # noqa: B018  # a closure variable, hence part of the key of the disk cache
         n, slices = A.shape[1], width.shape[1]
-        a, b, place, sums = np.empty((n, n)), np.empty(n), np.empty(n), np.empty(2)
+        work = _work(n)
         f = np.empty((slices, n))
         for p in range(A.shape[0]):
+            teeth = Teeth(C[p], A[p], B)
             f[:] = 0.0
             start = -np.inf
             for t in range(totals.shape[0]):
                 if flag[0] != 0:
                     return STOPPED
-                start, status = _approach(
-                    C[p], A[p], B, gaps[p], width[p], totals[t, p], start, f, a, b, place, sums
-                )
+                total = totals[t, p]
+                start, status = _approach(teeth, gaps[p], width[p], total, start, f, work)
                 if status != 0:
                     return status
                 delta[t, p] = start
-                tangent[t, p] = sums[1]
+                tangent[t, p] = work.sums[1]
                 # One by one: the copy of arrays brings its error messages, slow to compile.
                 for s in range(slices):
                     for i in range(n):
@@ -303,38 +292,38 @@ def _build(digest: str) -> tuple[Any, Any, Any]:
         total: Array,
         tangent: Array,
         flag: Index,
-    ) -> Any:
+    ) -> int:
         """Force and tangent stiffness (D, P) of every phase at every approach ``delta`` (D, P)."""
         digest  # noqa: B018  # a closure variable, hence part of the key of the disk cache
         n, slices = A.shape[1], width.shape[1]
-        a, b, place, sums = np.empty((n, n)), np.empty(n), np.empty(n), np.empty(2)
+        work = _work(n)
         f = np.empty((slices, n))
         for p in range(A.shape[0]):
+            teeth = Teeth(C[p], A[p], B)
             f[:] = 0.0
             for d in range(delta.shape[0]):
                 if flag[0] != 0:
                     return STOPPED
-                status = _total_force(
-                    n, C[p], A[p], B, gaps[p], width[p], delta[d, p], f, a, b, place, sums
-                )
+                status = _total_force(teeth, gaps[p], width[p], delta[d, p], f, work)
                 if status != 0:
                     return status
-                total[d, p] = sums[0]
-                tangent[d, p] = sums[1]
+                total[d, p] = work.sums[0]
+                tangent[d, p] = work.sums[1]
         return 0
 
     @cached_njit(**_JIT)
     def pickups(
         C: Array, A: Array, B: float, gaps: Array, most: Array, pickup: Array, flag: Index
-    ) -> Any:
+    ) -> int:
         """Approach (P, n) at which each pair of a single slice begins to carry, up to ``most``."""
         digest  # noqa: B018  # a closure variable, hence part of the key of the disk cache
         n = A.shape[1]
-        a, b, place = np.empty((n, n)), np.empty(n), np.empty(n)
+        work = _work(n)
         f, alone = np.empty(n), np.empty(n)
         for p in range(A.shape[0]):
             if flag[0] != 0:
                 return STOPPED
+            teeth = Teeth(C[p], A[p], B)
             for i in range(n):
                 # The pair itself stays separated; neighbours may pull its teeth together.
                 for j in range(n):
@@ -349,10 +338,10 @@ def _build(digest: str) -> tuple[Any, Any, Any]:
                     middle = 0.5 * (low + high)
                     if middle <= low or middle >= high:
                         break
-                    status = _slice(n, C[p], A[p], B, alone, middle, f, a, b, place)
+                    status = _slice(teeth, alone, middle, f, work)
                     if status < 0:
                         return -status
-                    if _residual(n, C[p], A[p], B, gaps[p, 0, i], middle, f, i) < 0.0:
+                    if _residual(teeth, gaps[p, 0, i], middle, f, i) < 0.0:
                         high = middle
                     else:
                         low = middle
