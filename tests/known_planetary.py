@@ -2,9 +2,15 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
+
+from tribodyn.dynamics import Response, System, clearance_motion
+from tribodyn.machine.planetary.double_planets import Directions
+from tribodyn.machine.planetary.plane_model import Pins
+from tribodyn.types import ByName
 
 ALPHA = float(np.radians(24.6))
 LIN_PARKER: dict[str, Any] = {
@@ -39,3 +45,26 @@ FREQUENCIES = {
         "planet": [1808.18, 5963.76, 6981.71],
     },
 }
+
+
+def pins_of(data: ByName) -> Pins:
+    """Pins of the arguments of a plane model."""
+    count, double = int(data["planets"]), data.get("double_planets")
+    alpha = data["sun_pressure_angle"], data["ring_pressure_angle"]
+    axes = Directions(data["phases"].angles, *alpha, double)
+    stiffness, ahead = (
+        np.broadcast_to(data[name], (count,)) for name in ("pin_stiffness", "pin_errors")
+    )
+    return Pins(axes, stiffness, ahead, float(data.get("pin_clearance", 0.0)))
+
+
+def motion_in_clearance(system: System, data: ByName, frequency: float, **search: Any) -> Response:
+    """Periodic motion of a stage with the exact law of its pins."""
+    pins = pins_of(data)
+    matrix, load = pins.springs(pins.axes.forces(float(data["force_per_planet"])))
+    free = replace(
+        system,
+        stiffness=np.asarray(system.stiffness) - matrix,
+        force=np.asarray(system.force) - load,
+    )
+    return clearance_motion(free, pins.supports(), frequency, **search)

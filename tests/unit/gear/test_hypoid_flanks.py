@@ -10,7 +10,13 @@ from known_hypoids import h1043, random_blanks
 from tribodyn.errors import InputError, ModelWarning
 from tribodyn.gear import EaseOff, hypoid_blank, hypoid_flanks
 from tribodyn.gear.hypoid.ease_off import eased_gap
-from tribodyn.gear.hypoid.envelope import Axes, Surface, envelope, relative_curvature
+from tribodyn.gear.hypoid.envelope import (
+    Axes,
+    Surface,
+    envelope,
+    relative_curvature,
+    turned,
+)
 from tribodyn.gear.hypoid.flank import SIDES
 
 #: Drive side of 10 x 43: place [mm], rotation [deg], sliding [mm], curvature [1/mm], position [mm].
@@ -141,7 +147,7 @@ def test_the_curvature_is_that_of_the_gap_of_the_surfaces():
 
     def pinion(parameters):
         position, _ = flanks.pinion_at(parameters[None])
-        turn = axes.to_pinion(position, np.array([-rotation / axes.ratio]))
+        turn = turned(position, axes.axis, np.array([rotation / axes.ratio]))
         return turn[0] + axes.origin
 
     def wheel(parameters):

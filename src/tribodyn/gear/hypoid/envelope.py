@@ -30,10 +30,6 @@ class Axes(NamedTuple):
         """Velocity of the pinion less that of the wheel for a unit velocity of the pinion."""
         return np.asarray(cross(self.relative, position) - cross(self.axis, self.origin))
 
-    def to_pinion(self, vector: Array, rotation: Array) -> Array:
-        """Vector of the fixed frame in a pinion that has turned."""
-        return turned(vector, self.axis, -rotation)
-
 
 class Surface(NamedTuple):
     """Points of a flank with their derivatives by two parameters in the last axis."""

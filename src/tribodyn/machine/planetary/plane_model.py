@@ -4,14 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from tribodyn.dynamics.equations.entry import Entry, varies
 from tribodyn.dynamics.equations.system import Contact, System
-from tribodyn.dynamics.harmonic.clearance_motion import clearance_motion
 from tribodyn.dynamics.harmonic.radial_clearance import RadialClearance
 from tribodyn.dynamics.linear.linear_system import linear_system
 from tribodyn.dynamics.linear.natural_modes import undamped_modes
@@ -31,10 +30,7 @@ from tribodyn.machine.planetary.double_planets import (
 from tribodyn.machine.planetary.phases import MeshPhases
 from tribodyn.machine.planetary.positions import read_angles
 from tribodyn.nomenclature import require_number, require_whole
-from tribodyn.types import Array, ByName
-
-if TYPE_CHECKING:
-    from tribodyn.dynamics import Response
+from tribodyn.types import Array
 
 
 @dataclass(frozen=True, eq=False)
@@ -85,29 +81,6 @@ class Pins:
             moved = np.asarray(law.offset) + displacement
             load += rows.T @ (tangent @ moved - law.force(displacement))
         return matrix, load
-
-
-def pins_of(data: ByName) -> Pins:
-    """Pins of the arguments of a plane model."""
-    count, double = int(data["planets"]), data.get("double_planets")
-    alpha = data["sun_pressure_angle"], data["ring_pressure_angle"]
-    axes = Directions(data["phases"].angles, *alpha, double)
-    stiffness, ahead = (
-        np.broadcast_to(data[name], (count,)) for name in ("pin_stiffness", "pin_errors")
-    )
-    return Pins(axes, stiffness, ahead, float(data.get("pin_clearance", 0.0)))
-
-
-def motion_in_clearance(system: System, data: ByName, frequency: float, **search: Any) -> Response:
-    """Periodic motion of a stage with the exact law of its pins."""
-    pins = pins_of(data)
-    matrix, load = pins.springs(pins.axes.forces(float(data["force_per_planet"])))
-    free = replace(
-        system,
-        stiffness=np.asarray(system.stiffness) - matrix,
-        force=np.asarray(system.force) - load,
-    )
-    return clearance_motion(free, pins.supports(), frequency, **search)
 
 
 #: Central members, in the order of their coordinates.

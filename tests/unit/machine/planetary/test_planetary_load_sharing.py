@@ -3,10 +3,9 @@
 import numpy as np
 import pytest
 
-from known_planetary import ALPHA, LIN_PARKER
+from known_planetary import ALPHA, LIN_PARKER, motion_in_clearance, pins_of
 from tribodyn.errors import InputError
 from tribodyn.machine import load_shares, mesh_phases, planetary_plane_model
-from tribodyn.machine.planetary.plane_model import motion_in_clearance, pins_of
 
 
 def shares(planets, sun_support, errors, **changes):

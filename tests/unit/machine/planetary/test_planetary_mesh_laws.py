@@ -7,14 +7,11 @@ import numpy as np
 import pytest
 
 from known_planetary import LIN_PARKER
+from plain.planet_meshes import PlanetMesh, with_computed_teeth
 from tribodyn.dynamics import Contact
 from tribodyn.gear import cylindrical_pair, gear_outline
 from tribodyn.machine import Gear, Mesh, mesh_phases, planetary_plane_model
-from tribodyn.machine.planetary.mesh_laws import (
-    PlanetMesh,
-    sun_to_ring_lag,
-    with_computed_teeth,
-)
+from tribodyn.machine.planetary.mesh_laws import sun_to_ring_lag
 
 MODULE, ALPHA = 4e-3, math.radians(20.0)
 
