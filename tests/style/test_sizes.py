@@ -22,7 +22,6 @@ FUNCTIONS = {
     "follow": 9,
     "march": 12,
     "number": 11,
-    "solved_films": 12,
 }
 
 

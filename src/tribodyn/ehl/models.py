@@ -256,11 +256,11 @@ class FilmModel(Model):
         if self.method:
             chosen.pop("positions")
             chosen |= {"length": length, "method": self.method, "progress": progress}
+            if chosen["domain"] is None:
+                chosen["domain"] = "auto"
             if self.heated:
-                chosen |= {
-                    "thermal": thermal or ThermalModel("ree-eyring"),
-                    "sliding_speed": _required(sliding_speed),
-                }
+                chosen["thermal"] = thermal or ThermalModel("ree-eyring")
+                chosen["sliding_speed"] = _required(sliding_speed)
             return solved_films(*contacts, lubricant, effective_modulus, **chosen)
         oil = lubricant.dynamic_viscosity, lubricant.pressure_viscosity_coefficient
         arguments = *contacts, *oil, effective_modulus

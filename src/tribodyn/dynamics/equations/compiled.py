@@ -19,8 +19,8 @@ from tribodyn.dynamics.equations.nodes import Nodes, coefficient_count, evaluate
 from tribodyn.dynamics.equations.program import Program, build_program, compile_system
 from tribodyn.dynamics.equations.step_limit import (
     largest_rate,
+    refuse_rate,
     refuse_unstable_lanes,
-    refuse_unstable_step,
 )
 from tribodyn.dynamics.equations.system import System
 from tribodyn.errors import InputError, require_positive
@@ -103,8 +103,9 @@ def compile_for(
     grid, nodes, program = compile_system(system, int(steps))
     beat = np.atleast_1d(np.asarray(mesh_frequency, dtype=float))
     if parameters is None:
-        cached_rate = system._rates.get(grid.steps)  # from the same rows
-        number = refuse_unstable_step(system, nodes, grid, float(beat.min()), rate=cached_rate)
+        # The cached rate is from the same rows.
+        rate = system._rates.get(grid.steps) or largest_rate(system, nodes)
+        number = refuse_rate(system, grid, float(beat.min()), rate)
     else:
         number = refuse_unstable_lanes(system, nodes, grid, beat, parameters)
     return Compiled(system, grid, nodes, program, number, parameters=parameters)

@@ -198,23 +198,10 @@ def accurate_steps(rate: float, mesh_frequency: float) -> int:
     return int(min(max(2 ** math.ceil(math.log2(max(needed, 1.0))), FEWEST), _MOST))
 
 
-def refuse_unstable_step(
-    system: System,
-    nodes: Nodes,
-    grid: Grid,
-    mesh_frequency: float,
-    factors: tuple[float, ...] = _PLAIN,
-    lane: str = "",
-    rate: float | None = None,
-) -> float:
-    """Return ``omega_max * dt`` of the widest step, or refuse it."""
-    rate = largest_rate(system, nodes, factors) if rate is None else rate
-    return _refuse_rate(system, grid, mesh_frequency, rate, lane)
-
-
-def _refuse_rate(
+def refuse_rate(
     system: System, grid: Grid, mesh_frequency: float, rate: float, lane: str = ""
 ) -> float:
+    """Return ``omega_max * dt`` of the widest step, or refuse it."""
     number = rate * float(grid.width.max()) / mesh_frequency
     if number > LIMIT:
         steps = grid.steps // system.cycles
@@ -232,7 +219,7 @@ def _refuse_rate(
 def refuse_steps(system: System, mesh_frequency: float, steps: int) -> None:
     """Refuse steps as the compiled system does, without its tables."""
     grid = build_grid(system_events(system), steps * system.cycles)
-    _refuse_rate(system, grid, mesh_frequency, rate_on_grid(system, steps))
+    refuse_rate(system, grid, mesh_frequency, rate_on_grid(system, steps))
 
 
 def refuse_unstable_lanes(
@@ -261,8 +248,8 @@ def refuse_unstable_lanes(
     scaled = [f"{name} = {value:g}" for name, value in factors.items() if value != 1.0]
     number = worst if lanes is None else int(lanes[worst])
     who = f" in lane {number}" + (f" ({', '.join(scaled)})" if scaled else "")
-    scales = tuple(factors.values())
-    return refuse_unstable_step(system, nodes, grid, float(beat[worst]), scales, who)
+    rate = largest_rate(system, nodes, tuple(factors.values()))
+    return refuse_rate(system, grid, float(beat[worst]), rate, who)
 
 
 def _every_lane(

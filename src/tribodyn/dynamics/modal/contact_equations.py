@@ -189,8 +189,10 @@ class ContactEquations(ContactLaw):
     ) -> tuple[Law, Breaks, None]:
         """Law of a motion (steps, r) at the steps, and where it jumps between them."""
         motion = self.frequency, y, rate, excess, closed
-        law = self.law(self.rows, *motion)
-        return law, self.breaks(law, *motion), None
+        law, parts = self.law(self.rows, *motion), [self._event_breaks(*motion)]
+        for edge in (1.0, -1.0) if closed is None else ():
+            parts.append(self._crossings(law, *motion[:3], edge))
+        return law, Breaks(*(np.concatenate(part) for part in zip(*parts, strict=True))), None
 
     def coarser(self) -> ContactEquations:
         """The same on half as many steps."""
@@ -198,24 +200,10 @@ class ContactEquations(ContactLaw):
         rows = rows._replace(nodes=rows.nodes._replace(weight=2.0 * rows.nodes.weight))
         return replace(self, rows=rows, steps=self.steps // 2)
 
-    def breaks(
-        self,
-        law: Law,
-        frequency: float,
-        y: Array,
-        rate: Array,
-        excess: Array,
-        closed: Mask | None = None,
-    ) -> Breaks:
-        """Jumps at events and where contacts open or close."""
-        parts = [self._event_breaks(frequency, y, rate, excess, closed)]
-        for edge in (1.0, -1.0) if closed is None else ():
-            parts.append(self._crossings(law, frequency, y, rate, edge))
-        return Breaks(*(np.concatenate(columns) for columns in zip(*parts, strict=True)))
-
     def _event_breaks(
         self, frequency: float, y: Array, rate: Array, excess: Array, closed: Mask | None
     ) -> Breaks:
+        """Jumps at the events."""
         place = self.events * self.steps
         step = np.ceil(place - 1e-6).astype(np.int64) - 1
         fraction = place - step
@@ -231,6 +219,7 @@ class ContactEquations(ContactLaw):
         return Breaks(step, after, fraction, jump, weight[:, None] * jump, tangent)
 
     def _crossings(self, law: Law, frequency: float, y: Array, rate: Array, edge: float) -> Breaks:
+        """Jumps where contacts open or close."""
         clearance = edge * law.compression[..., None] - self.rows.gap
         inside = (clearance > 0.0) & self.dead
         step, contact, spring = np.nonzero(inside != np.roll(inside, -1, axis=0))

@@ -7,7 +7,7 @@ then Newton's method in the plane across it, so that the branch may turn back in
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -141,15 +141,15 @@ def continuation(
         periods = 2 * start.period
     low = min(between) if isinstance(start, SpecialPoint) else between[0]
     family = Family(make_system, mesh_frequency, steps, min(between))
-    function = FamilyMap(family, int(periods), (float(low), float(sum(between) - low)))
+    function = FamilyMap(family, int(periods), (float(low), float(sum(between) - low)), tolerance)
     progress.start("Points of the branch", None)
     names = signal_names(function.at(low).compiled.system, signals)
     require_positive("tolerance", tolerance)
-    first = _first(function, start, between, tolerance)
-    stepping = Stepping(longest_step, points, tolerance)
+    first = _first(function, start, between)
+    stepping = Stepping(longest_step, points)
     orbits, ending, complete = follow(function, first, stepping, progress)
-    orbits = with_values(function, orbits, np.asarray(at, dtype=float), tolerance)
-    branch = _collect(function, orbits, names, parameter, (ending, complete), tolerance)
+    orbits = with_values(function, orbits, np.asarray(at, dtype=float))
+    branch = _collect(function, orbits, names, parameter, (ending, complete))
     progress.finish()
     if not complete:
         warn("steady-state", f"the branch over {parameter} {ending}", stacklevel=2)
@@ -177,10 +177,9 @@ def _first(
     function: FamilyMap,
     start: tuple[ArrayLike, ArrayLike] | SpecialPoint | None,
     between: tuple[float, float],
-    tolerance: float,
 ) -> BranchPoint:
     if isinstance(start, SpecialPoint):
-        return _aside(function, start, tolerance)
+        return _aside(function, start)
     mapping = function.at(between[0])
     system = mapping.compiled.system
     state = static_start(mapping.compiled) if start is None else read_start(system, start)
@@ -189,9 +188,7 @@ def _first(
         # The start may be a state of an unstable orbit, which a search would leave.
         function.size = _motion(mapping, y)
         try:
-            point = correct(
-                function, np.append(y / function.size, 0.0), hold(y.size + 1), None, tolerance
-            )
+            point = correct(function, np.append(y / function.size, 0.0), hold(y.size + 1), None)
             if np.linalg.norm(point.x[:-1] - y / function.size) < _NEAR:
                 return point
         except StalledError:
@@ -206,7 +203,7 @@ def _first(
         )
     function.size = _motion(mapping, y)
     x = np.append(y / function.size, 0.0)
-    return correct(function, x, hold(x.size), None, tolerance)
+    return correct(function, x, hold(x.size), None)
 
 
 def _search(mapping: OrbitMap, y: Array) -> tuple[Array, float]:
@@ -230,7 +227,7 @@ def _motion(mapping: OrbitMap, y: Array) -> float:
     return float(np.linalg.norm(reduced, axis=1).max()) or 1.0
 
 
-def _aside(function: FamilyMap, start: SpecialPoint, tolerance: float) -> BranchPoint:
+def _aside(function: FamilyMap, start: SpecialPoint) -> BranchPoint:
     """First point of the branch of twice the period, near the point where it begins."""
     if not 0.0 <= (start.parameter - function.origin) / function.range <= 1.0:
         what = f"start lies at {start.parameter:.8g}"
@@ -248,19 +245,12 @@ def _aside(function: FamilyMap, start: SpecialPoint, tolerance: float) -> Branch
     along = np.append(real / np.linalg.norm(real), 0.0)
     for length in _ASIDE * 0.5 ** np.arange(6 if start.kind == "period-doubling" else 0):
         try:
-            point = correct(function, x + length * along, along, None, tolerance)
+            point = correct(function, x + length * along, along, None)
         except StalledError:
             continue
         if (point.x - x) @ along > 0.5 * length:
             outward = np.sign(point.tangent @ along) or 1.0
-            return BranchPoint(
-                point.x,
-                outward * point.tangent,
-                point.jet,
-                point.multipliers,
-                point.error,
-                point.effort,
-            )
+            return replace(point, tangent=outward * point.tangent)
     raise ComputationError(
         f"no branch of {function.periods} mesh cycles was found at {start.parameter:.8g}",
         why=f"The start is a {start.kind} of period {start.period}",
@@ -274,7 +264,6 @@ def _collect(
     signals: tuple[str, ...],
     name: str,
     ending: tuple[str, bool],
-    tolerance: float,
 ) -> Branch:
     def figures(point: BranchPoint) -> OrbitFigures:
         value = function.parameter(point.x)
@@ -283,7 +272,7 @@ def _collect(
 
     measured = [figures(point) for point in orbits]
     opening = {id(point): item.opening for point, item in zip(orbits, measured, strict=True)}
-    located = _located(function, orbits, figures, opening, tolerance)
+    located = _located(function, orbits, figures, opening)
     values = np.array([function.parameter(point.x) for point in orbits])
     multipliers = np.array([point.multipliers for point in orbits])
     return Branch(
@@ -309,19 +298,18 @@ def _located(
     orbits: list[BranchPoint],
     figures: Callable[[BranchPoint], OrbitFigures],
     openings: dict[int, float],
-    tolerance: float,
 ) -> list[Located]:
     """Special points in the order of the branch."""
     located: list[Located] = []
     for kind, (test, holds) in tests_of_multipliers().items():
-        located += locate(function, orbits, kind, test, holds, tolerance)
+        located += locate(function, orbits, kind, test, holds)
     if np.isfinite(openings[id(orbits[0])]):
 
         def opening(point: BranchPoint) -> float:
             cached_opening = openings.get(id(point))
             return figures(point).opening if cached_opening is None else cached_opening
 
-        located += locate(function, orbits, "grazing", opening, lambda point: True, tolerance)
+        located += locate(function, orbits, "grazing", opening, lambda point: True)
     return sorted(
         located, key=lambda item: (item.after, np.linalg.norm(item.point.x - orbits[item.after].x))
     )

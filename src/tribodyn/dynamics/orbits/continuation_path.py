@@ -103,9 +103,13 @@ class Jet:
 class FamilyMap:
     """The scaled map of a point ``x = (state / size, (parameter - low) / range)``."""
 
-    def __init__(self, family: Family, periods: int, between: tuple[float, float]) -> None:
+    def __init__(
+        self, family: Family, periods: int, between: tuple[float, float], tolerance: float
+    ) -> None:
         self.family, self.periods = family, periods
         self.origin, self.range = between[0], between[1] - between[0]
+        #: Largest error of a point, relative to the motion.
+        self.tolerance = tolerance
         self.size = 1.0
         self.cycles = 0
         self._coordinates: OrbitCoordinates | None = None
@@ -183,9 +187,7 @@ def _norm(function: FamilyMap, x: Array, row: Array, guess: Array) -> tuple[Arra
     return value, float(np.linalg.norm(value))
 
 
-def correct(
-    function: FamilyMap, guess: Array, row: Array, jet: Jet | None, tolerance: float
-) -> BranchPoint:
+def correct(function: FamilyMap, guess: Array, row: Array, jet: Jet | None) -> BranchPoint:
     """Find the point of the branch in the plane through the guess."""
     x, fresh = guess.copy(), jet is None
     value, size = _norm(function, x, row, guess)
@@ -203,7 +205,7 @@ def correct(
         contraction = new_size / size if size else 0.0
         # The remaining distance is the last step times the contraction; rounding ends it too.
         left = float(np.linalg.norm(moved)) * (min(contraction, 1.0) if contraction < 0.1 else 1.0)
-        if left <= 0.5 * tolerance and np.isfinite(new_size):
+        if left <= 0.5 * function.tolerance and np.isfinite(new_size):
             return _accept(function, trial if new_size < size else x, row, count)
         if new_size < size:
             # Broyden's update of the matrix.
@@ -232,7 +234,6 @@ class Stepping:
 
     longest: float  #: longest step in the parameter, relative to the range
     points: int  #: points at most
-    tolerance: float  #: largest error of a point, relative to the motion
 
 
 def _inside(x: Array) -> bool:
@@ -246,15 +247,8 @@ def hold(size: int) -> Array:
     return row
 
 
-def _last(
-    function: FamilyMap, before: BranchPoint, beyond: BranchPoint, tolerance: float
-) -> BranchPoint | None:
-    """Point at the end of the range, between one inside and one outside."""
-    return _at(function, before, beyond, 1.0 if beyond.x[-1] > 1.0 else 0.0, tolerance)
-
-
 def _at(
-    function: FamilyMap, before: BranchPoint, beyond: BranchPoint, end: float, tolerance: float
+    function: FamilyMap, before: BranchPoint, beyond: BranchPoint, end: float
 ) -> BranchPoint | None:
     """Point at a scaled parameter between those of two neighbours."""
     part = (end - before.x[-1]) / (beyond.x[-1] - before.x[-1])
@@ -262,15 +256,13 @@ def _at(
     guess[-1] = end
     nearer = before if part < 0.5 else beyond
     try:
-        point = correct(function, guess, hold(guess.size), nearer.jet, tolerance)
+        point = correct(function, guess, hold(guess.size), nearer.jet)
     except StalledError:
         return None
     return replace(point, tangent=tangent_at(point.jet, before.tangent))
 
 
-def with_values(
-    function: FamilyMap, points: list[BranchPoint], values: Array, tolerance: float
-) -> list[BranchPoint]:
+def with_values(function: FamilyMap, points: list[BranchPoint], values: Array) -> list[BranchPoint]:
     """Add the points of a branch at ``values`` of the parameter, as often as it passes them."""
     scaled = (np.asarray(values, dtype=float) - function.origin) / function.range
     joined = points[:1]
@@ -278,7 +270,7 @@ def with_values(
         low, high = sorted((float(left.x[-1]), float(right.x[-1])))
         inside = np.sort(scaled[(scaled > low) & (scaled < high)])
         for value in inside if right.x[-1] > left.x[-1] else inside[::-1]:
-            point = _at(function, left, right, float(value), tolerance)
+            point = _at(function, left, right, float(value))
             joined += [point] if point is not None else []
         joined.append(right)
     return joined
@@ -310,9 +302,7 @@ def follow(
         turned, new = False, None
         try:
             guess = current.x + length * along
-            new = correct(
-                function, guess, row / np.linalg.norm(row), current.jet, stepping.tolerance
-            )
+            new = correct(function, guess, row / np.linalg.norm(row), current.jet)
             turned = _cosine(weight * new.tangent, weight * along) < _STRAIGHT
             worst = "the branch turns sharply" if turned else ""
             if np.linalg.norm(weight * (new.x - guess)) > length:
@@ -326,7 +316,7 @@ def follow(
             continue
         progress.advance(1)
         if not _inside(new.x):
-            end = _last(function, current, new, stepping.tolerance)
+            end = _at(function, current, new, 1.0 if new.x[-1] > 1.0 else 0.0)
             points += [end] if end is not None else []
             reason = f"left the range at {function.parameter(np.clip(new.x, 0.0, 1.0)):.10g}"
             break
@@ -426,7 +416,6 @@ def locate(
     kind: str,
     test: Test,
     holds: Callable[[BranchPoint], bool],
-    tolerance: float,
 ) -> list[Located]:
     """Find where a test function changes its sign."""
     values = [test(point) for point in points]
@@ -434,7 +423,7 @@ def locate(
     for number, (left, right) in enumerate(pairwise(values)):
         if left * right < 0.0 or (right == 0.0 and left != 0.0 and test is not _fold):
             ends = (points[number], points[number + 1])
-            point = _between(function, ends, (left, right), test, tolerance)
+            point = _between(function, ends, (left, right), test)
             if holds(point):
                 located.append(Located(kind, number, point))
     return located
@@ -445,7 +434,6 @@ def _between(
     ends: tuple[BranchPoint, BranchPoint],
     values: tuple[float, float],
     test: Test,
-    tolerance: float,
 ) -> BranchPoint:
     """Regula falsi (Illinois method) on the chord of two points."""
     chord = ends[1].x - ends[0].x
@@ -456,7 +444,7 @@ def _between(
         part = low + (high - low) * left / (left - right)
         try:
             guess = ends[0].x + part * chord
-            best = correct(function, guess, row, best.jet, tolerance)
+            best = correct(function, guess, row, best.jet)
         except StalledError:
             break
         value = test(best)
@@ -469,5 +457,4 @@ def _between(
             moved, high, right, left = abs(high - part), part, value, 0.5 * left
         if moved < _WIDTH or abs(high - low) < _WIDTH:
             break
-    oriented = tangent_at(best.jet, ends[0].tangent)
-    return BranchPoint(best.x, oriented, best.jet, best.multipliers, best.error, best.effort)
+    return replace(best, tangent=tangent_at(best.jet, ends[0].tangent))

@@ -114,27 +114,24 @@ def speed_sweep(
     linear = read_outputs(outputs, systems[0])
     tables = Tables(systems, 1, float(frequency[0]), steps)
     family = SpeedFamily(tables, table_frequencies, frequency)
-    followed = _follow_all(
-        family, directions, start, tolerance, patience, sorted({1, *periods}), progress
-    )
-    return _result(
-        family, followed, linear, tuple(outputs or ()), output_unit, tuple(directions), teeth
-    )
+    progress.start("Speeds", frequency.size * (1 if family.affine else len(directions)))
+    closed = family.all_at_once(tolerance)
+    valid = closed.error <= tolerance
+    valid = valid if family.affine else _in_contact(family, closed.point, valid)
+    follower = Follower(family, closed, valid, tolerance, patience, sorted({1, *periods}))
+    followed = _follow_all(follower, directions, start, progress)
+    labels = _signals(systems[0], tuple(outputs or ()), output_unit)
+    return _result(family, followed, linear, labels, tuple(directions), teeth)
 
 
 def _follow_all(
-    family: SpeedFamily,
+    follower: Follower,
     directions: Sequence[str],
     start: tuple[ArrayLike, ArrayLike] | None,
-    tolerance: float,
-    patience: int,
-    periods: Sequence[int],
     progress: Progress,
 ) -> list[list[Followed]]:
     """Motions of every direction in the order of the speeds."""
-    count = family.frequency.size
-    progress.start("Speeds", count * (1 if family.affine else len(directions)))
-    closed = family.all_at_once(tolerance)
+    family, closed, count = follower.family, follower.closed, follower.valid.size
     if family.affine:
         mapping = family.mapping(0, 1)
         orbits = [
@@ -144,11 +141,9 @@ def _follow_all(
         progress.advance(count)
         progress.finish()
         return [orbits] * len(directions)
-    valid = _in_contact(family, closed.point, closed.error <= tolerance)
     begin = None
     if start is not None:
         begin = family.mapping(0, 1).start(read_start(family.system, start))
-    follower = Follower(family, closed, valid, tolerance, patience, periods)
     lock = Lock()
 
     def report_speed() -> None:
@@ -182,8 +177,7 @@ def _result(
     family: SpeedFamily,
     followed: list[list[Followed]],
     linear: Array,
-    outputs: tuple[str, ...],
-    output_unit: str,
+    labels: tuple[tuple[str, ...], tuple[str, ...]],
     directions: tuple[str, ...],
     teeth: int,
 ) -> SpeedSweep:
@@ -202,13 +196,12 @@ def _result(
         return values.reshape(len(followed), count, *values.shape[1:])
 
     contacts = len(system.contacts)
-    names, units = _signals(system, outputs, output_unit)
     return SpeedSweep(
         mesh_frequency=family.frequency,
         teeth=int(teeth),
         directions=directions,
-        signals=names,
-        units=units,
+        signals=labels[0],
+        units=labels[1],
         mean=shaped(mean.T),
         rms=shaped(np.sqrt(np.maximum(square - mean**2, 0.0)).T),
         peak_to_peak=shaped((high - low).T),

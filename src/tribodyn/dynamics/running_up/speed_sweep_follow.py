@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -128,19 +129,15 @@ def _blended(table: Table, left: int, part: float) -> tuple[Program, float]:
     return program, table.step_number
 
 
+@dataclass(eq=False)
 class Followed:
     """Motion at one speed."""
 
-    def __init__(
-        self,
-        point: Array,
-        multipliers: ComplexArray,
-        error: float,
-        period: int,
-        jumped: bool = False,
-    ) -> None:
-        self.point, self.multipliers, self.error = point, multipliers, error
-        self.period, self.jumped = period, jumped
+    point: Array
+    multipliers: ComplexArray
+    error: float
+    period: int
+    jumped: bool = False
 
     @property
     def stable(self) -> bool:
@@ -166,24 +163,20 @@ def _march(mapping: OrbitMap, y: Array, cycles: int) -> Array:
     return mapping(y)
 
 
+@dataclass(frozen=True, eq=False)
 class Follower:
     """Find the motion of one speed from that of the previous speed."""
 
-    def __init__(
-        self,
-        family: SpeedFamily,
-        closed: Orbits | None,
-        valid: Mask,
-        tolerance: float,
-        patience: int,
-        periods: Sequence[int],
-    ) -> None:
-        self.family, self.closed, self.valid = family, closed, valid
-        self.tolerance, self.patience, self.periods = tolerance, patience, sorted(periods)
+    family: SpeedFamily
+    closed: Orbits  #: of one mesh cycle, at all speeds
+    valid: Mask  #: speeds at which these never leave the driving flanks
+    tolerance: float
+    patience: int
+    periods: Sequence[int]  #: in rising order
 
     def shut(self, number: int) -> Followed | None:
         """Stable orbit of a speed without loss of contact, or None."""
-        if self.closed is None or not self.valid[number]:
+        if not self.valid[number]:
             return None
         mapping = self.family.mapping(number, 1)
         multipliers = mapping.multipliers(self.closed.matrix[number])
@@ -193,7 +186,7 @@ class Follower:
 
     def is_shut(self, number: int, orbit: Followed) -> bool:
         """Whether an orbit is the one without loss of contact."""
-        if self.closed is None or not self.valid[number] or orbit.period != 1:
+        if not self.valid[number] or orbit.period != 1:
             return False
         away = float(np.linalg.norm(orbit.point - self.closed.point[number]))
         return away <= _SAME * float(np.linalg.norm(orbit.point))

@@ -19,6 +19,7 @@ import numpy as np
 
 from tribodyn.dynamics._engine.method import Newmark
 from tribodyn.dynamics.equations.compiled import Compiled, Member
+from tribodyn.dynamics.equations.grid import Grid
 from tribodyn.dynamics.equations.lane_parameters import LaneParameters
 from tribodyn.dynamics.equations.nodes import Nodes
 from tribodyn.dynamics.equations.step_limit import largest_rate
@@ -68,34 +69,25 @@ def newmark_method(
     tolerance: float = 1e-12,
     parameters: LaneParameters | None = None,
 ) -> Newmark:
-    """Set up the method for :func:`~tribodyn.dynamics._engine.blocks.march`."""
-    refuse_newmark(compiled, period, gamma, beta, parameters)
-    require_positive("tolerance", tolerance)
-    return Newmark.on(compiled.grid, gamma, beta, max(tolerance, _FINEST))
+    """Set up the method for :func:`~tribodyn.dynamics._engine.blocks.march`.
 
-
-def refuse_newmark(
-    compiled: Compiled,
-    period: Array,
-    gamma: float,
-    beta: float,
-    parameters: LaneParameters | None = None,
-) -> None:
-    """Refuse parameters, or a step that is beyond the limit of a conditionally stable scheme."""
+    Refuses parameters, and steps beyond the limit of a conditionally stable scheme.
+    """
     if not (np.isfinite(gamma) and np.isfinite(beta) and gamma >= 0.5 and beta >= 0.0):
         what = f"gamma = {gamma:g}, beta = {beta:g}"
         why = "With gamma < 1/2 the scheme is unstable at any step; beta is not negative"
         remedy = "Use for example gamma = 0.5, beta = 0.25 (average acceleration)"
         raise InputError(what, "arguments gamma, beta", why, remedy)
-    if 2.0 * beta >= gamma:
-        return
+    require_positive("tolerance", tolerance)
+    method = Newmark.on(compiled.grid, gamma, beta, max(tolerance, _FINEST))
     scales = np.ones((period.size, 6)) if parameters is None else parameters.table(period.size)
-    for member in compiled.each(period.size):
+    for member in compiled.each(period.size) if 2.0 * beta < gamma else ():
         for lane in _outermost(scales[member.lanes, 0], period[member.lanes]):
             number = int(member.lanes[lane])
             who = f" in lane {number}" if period.size > 1 else ""
-            lane_period, factors = float(period[number]), tuple(scales[number, :3])
-            _refuse_step(compiled, member, lane_period, gamma, beta, factors, who)
+            at = float(period[number]), tuple(scales[number, :3]), who
+            _refuse_step(method, compiled.grid, member, *at)
+    return method
 
 
 def _outermost(stiffness: Array, period: Array) -> list[int]:
@@ -115,16 +107,10 @@ def _undamped_rate(system: System, nodes: Nodes, factors: tuple[float, ...]) -> 
 
 
 def _refuse_step(
-    compiled: Compiled,
-    member: Member,
-    period: float,
-    gamma: float,
-    beta: float,
-    factors: tuple[float, ...],
-    who: str,
+    method: Newmark, grid: Grid, member: Member, period: float, factors: tuple[float, ...], who: str
 ) -> None:
+    gamma, beta = method.gamma, method.beta
     limit = 1.0 / math.sqrt(0.5 * gamma - beta)
-    grid = compiled.grid
     rate = _undamped_rate(member.system, member.nodes, factors)
     number = rate * float(grid.width.max()) * period
     if number > limit:

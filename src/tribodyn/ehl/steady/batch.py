@@ -302,37 +302,13 @@ class Films:
     solutions: tuple[Any, ...] = field(default=(), repr=False)
 
 
-def solved_films(
-    load_per_width: ArrayLike,
-    equivalent_radius: ArrayLike,
-    entrainment_speed: ArrayLike,
-    lubricant: Lubricant,
-    effective_modulus: float,
-    *,
-    length: ArrayLike,
-    stiffness: str,
-    nodes: int,
-    domain: tuple[float, float] | None,
-    progress: Progress = SILENT,
-    **solver: Any,
-) -> Films:
-    """Solve many contacts in threads."""
+def solved_films(*contacts: Any, length: ArrayLike, stiffness: str, **solver: Any) -> Films:
+    """Solve many contacts in threads, with arguments of :func:`solve_line_contacts`."""
     sums = stiffness in ("secant", "seed")
     with quiet("film-stiffness"):
         # Whoever uses the stiffness says what a negative one means for it.
-        batch = solve_line_contacts(
-            load_per_width,
-            equivalent_radius,
-            entrainment_speed,
-            lubricant,
-            effective_modulus,
-            nodes=nodes,
-            domain="auto" if domain is None else domain,
-            stiffness=False if sums else "tangent" if stiffness == "tangent" else "approach",
-            keep_solutions=True,
-            progress=progress,
-            **solver,
-        )
+        kind = False if sums else "tangent" if stiffness == "tangent" else "approach"
+        batch = solve_line_contacts(*contacts, stiffness=kind, keep_solutions=True, **solver)
     solutions = tuple(np.ravel(batch.solutions))
     pressures = np.array([solution.pressure.max() for solution in solutions])
     if sums:
@@ -343,7 +319,7 @@ def solved_films(
         warn(
             "seed-film-stiffness",
             "the film stiffness is the sum as one source prints it: a length, which doubles when "
-            f"the {nodes} nodes are doubled. It is shown, and is no spring. "
+            f"the {solver['nodes']} nodes are doubled. It is shown, and is no spring. "
             'Use film.stiffness = "approach", or "secant" for a consistent sum',
             stacklevel=4,
         )
