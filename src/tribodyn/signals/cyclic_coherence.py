@@ -233,25 +233,25 @@ def cyclic_coherence(
     # Single precision is enough for a mean over blocks, and twice as fast.
     centred = ((values - values.mean()) / (np.std(values) or 1.0)).astype(np.float32)
     weights = weights.astype(np.float32)
-    sample = np.arange(values.size)
+    # The signal is real: the line at f - a/2 is the conjugate of the mirrored one.
+    mirror = -np.arange(half + 1)
+    sample, whole = np.arange(block_length), np.arange(0, values.size, block_length)
     for column, each in enumerate(alpha):
-        turning = np.exp(-1j * np.pi * each / sampling_rate * sample).astype(np.complex64)
-        shifted = centred * turning
-        blocks = np.lib.stride_tricks.sliding_window_view(shifted, block_length)[::step]
-        above = fft(blocks * weights, axis=1)
-        # The signal is real: the line at f - a/2 is the conjugate of the mirrored one.
-        below = np.concatenate((above[:, :1], above[:, :0:-1]), axis=1)[:, : half + 1]
-        above = above[:, : half + 1]
+        turns = -1j * np.pi * each / sampling_rate
+        turning = np.outer(np.exp(turns * whole), np.exp(turns * sample)).reshape(-1)
+        turning = turning[: values.size].astype(np.complex64)
+        blocks = np.lib.stride_tricks.sliding_window_view(centred * turning, block_length)[::step]
+        above = fft(blocks * weights, axis=1, overwrite_x=True)
         phase = turning[: count * step : step] ** 2
         leakage = phase.conj() * phase.mean()
-        if np.abs(phase.mean()) ** 2 < _LEAKAGE / independent:
-            leakage[:] = 0.0
-        cross = np.abs((1.0 - leakage) @ (above * below) / count) ** 2
-        power = np.mean(np.abs(above) ** 2, axis=0) * np.mean(np.abs(below) ** 2, axis=0)
+        leakage *= np.abs(phase.mean()) ** 2 >= _LEAKAGE / independent
+        both = above[:, : half + 1] * above[:, mirror]
+        cross = np.abs((1.0 - leakage) @ both / count) ** 2
+        power = np.mean(above.real**2 + above.imag**2, axis=0)
+        power = power[: half + 1] * power[mirror]
         # Next to its mirror image a line of noise is coherent with itself.
         edge = 0.5 * each + frequency[1]
-        inside = (frequency >= edge) & (frequency <= 0.5 * sampling_rate - edge)
-        inside &= power > 0.0
+        inside = (frequency >= edge) & (frequency <= 0.5 * sampling_rate - edge) & (power > 0.0)
         coherence[inside, column] = np.minimum(cross[inside] / power[inside], 1.0)
     threshold = 1.0 - _FALSE_ALARM ** (1.0 / (independent - 1.0))
     return CyclicCoherence(frequency, alpha, coherence, threshold, independent, spread)
