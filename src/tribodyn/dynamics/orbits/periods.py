@@ -9,7 +9,7 @@ from typing import NamedTuple
 import numpy as np
 
 from tribodyn.arrays.memory import Memory
-from tribodyn.dynamics._engine.blocks import LaneBlock, lane_blocks
+from tribodyn.dynamics._engine.blocks import OWN_ROWS, LaneBlock, lane_blocks
 from tribodyn.dynamics._engine.method import RungeKutta4
 from tribodyn.dynamics.equations.grid import Grid
 from tribodyn.dynamics.equations.nodes import Nodes
@@ -153,7 +153,7 @@ def find_any_orbit(first: OrbitMap, y: Array, tolerance: float) -> AnyOrbit:
     return AnyOrbit(first, orbit, _stable(orbit, tolerance), recurrence, first.cycles + cycles)
 
 
-#: Systems in one block of lanes: for fewer the kernel is not compiled.
+#: Systems of a batch: for fewer the kernel of blocks is not compiled.
 _MANY = 8
 
 
@@ -169,7 +169,7 @@ class BatchedLanes(NamedTuple):
     def of(cls, system: System, grid: Grid, nodes: Nodes, memory: Memory) -> BatchedLanes:
         """Lanes of a batch of systems on a grid."""
         count = len(nodes.stiffness)
-        blocks = lane_blocks(count, _MANY if count >= _MANY else 1)
+        blocks = lane_blocks(count, OWN_ROWS if count >= _MANY else 1)
         lanes = [block.index for block in blocks]
         flat = program_of_lanes(system, grid, nodes, lanes, memory)
         return cls(*flat, blocks, memory)
