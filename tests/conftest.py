@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+import gc
 import os
 import random
 import signal
 import tempfile
 from collections import Counter
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Generator, Iterator
 from pathlib import Path
 from typing import Any
 
@@ -30,22 +31,26 @@ def pytest_configure(config: pytest.Config) -> None:
         signal.signal(signal.SIGINT, signal.default_int_handler)
 
 
-#: Folders whose files run on one worker, since they share kernels.
-_TOGETHER = ("tests/docs", "tests/unit/dynamics")
-#: Folders whose tests need no compiled kernel, or few.
+#: Folders whose files run on one worker, and the name of their scope. They share kernels, of which
+#: the frozen figures need all that the pages compile, or the syntax trees of all files.
+_TOGETHER = {
+    "tests/docs/": "kernels", "tests/freeze/": "kernels", "tests/unit/dynamics/": "dynamics",
+    "tests/style/": "style",
+}  # fmt: skip
+#: Folders whose tests need no compiled kernel, or few; the last is the longest.
 _WITHOUT_KERNELS = tuple(
-    f"tests/{folder}/"
+    f"tests/unit/{folder}/"
     for folder in (
-        "style", "freeze", "unit/gear", "unit/lubricant", "unit/friction", "unit/contact",
-        "unit/plot",
+        "gear", "lubricant", "friction", "contact", "arrays", "losses", "rating", "surrogate",
+        "uncertainty", "measurement",
     )
 )  # fmt: skip
 
 
 def _scope(nodeid: str) -> str:
-    """Tests that run one after the other on the same worker: those of a file or of a folder."""
+    """Tests that run one after the other on the same worker: those of a file or of folders."""
     file = nodeid.split("::", 1)[0]
-    return next((folder for folder in _TOGETHER if file.startswith(f"{folder}/")), file)
+    return next((_TOGETHER[folder] for folder in _TOGETHER if file.startswith(folder)), file)
 
 
 def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
@@ -57,15 +62,30 @@ def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item
     if not hasattr(config, "workerinput"):
         return
     slow = Counter(_scope(item.nodeid) for item in items if item.get_closest_marker("slow"))
-    first, second = _TOGETHER
 
     def rank(item: pytest.Item) -> tuple[int, int]:
         scope = _scope(item.nodeid)
-        if scope.startswith(_WITHOUT_KERNELS):
-            return 1, 0
-        return {first: 0, second: 2}.get(scope, 3), -slow[scope]
+        for place, folder in enumerate(_WITHOUT_KERNELS):
+            if scope.startswith(folder):
+                return 2, place
+        return {"kernels": 0, "style": 1, "dynamics": 3}.get(scope, 4), -slow[scope]
 
     items.sort(key=rank)
+
+
+@pytest.hookimpl(wrapper=True)
+def pytest_collection() -> Generator[None, object, object]:
+    """Collect without garbage collections, a third of the time, and leave what is there out of all.
+
+    They would look through half a million objects of modules and tests each time.
+    """
+    gc.disable()
+    try:
+        return (yield)
+    finally:
+        gc.collect()
+        gc.freeze()
+        gc.enable()
 
 
 @pytest.hookimpl(optionalhook=True)

@@ -90,6 +90,7 @@ def slope_of(system: System, pins: list[RadialClearance], frequencies: Any) -> A
     return slope
 
 
+@pytest.mark.slow
 def test_a_disturbance_in_a_loose_bearing_grows_as_its_warning_says() -> None:
     system, pins = two_stages(OVER_PHASES, 300.0)
     frequencies = np.array([900.0, 600.0])

@@ -225,6 +225,7 @@ def test_free_rotation_and_balancing_torque_have_no_multiplier():
     assert steady_state(loaded, 2000.0, periods=2).period == 1
 
 
+@pytest.mark.slow
 def test_where_and_why_a_branch_stops():
     def jump(parameter):
         return oscillator(0.1, 0.1, load=1.0 if parameter < 0.5 else 300.0)

@@ -22,7 +22,7 @@ from tribodyn.stiffness.teeth.face_influence import FaceInfluence
 from tribodyn.types import Array
 
 STEEL = Material()
-COARSE = SolidSize(MeshSize(0.28, 0.6, 1.7, 1.0, 0.6, 2), FaceSize(0.6, 2.0, 2.0), depth=1.5)
+COARSE = SolidSize(MeshSize(0.4, 0.9, 2.2, 1.4, 0.9, 2), FaceSize(0.6, 2.0, 2.0), depth=1.5)
 
 
 def pair_of(degrees: float = 0.0) -> SpurPair:

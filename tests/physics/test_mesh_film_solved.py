@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 import warnings
 from dataclasses import replace
+from functools import cache
 from typing import Any
 
 import numpy as np
@@ -71,6 +72,12 @@ def table(name: str = "pinion drives", **changes: Any) -> Any:
     return build(pair, **{**conditions, **changes})
 
 
+@cache
+def with_film(stiffness: str = "approach", name: str = "pinion drives") -> Any:
+    """Table that several tests look at."""
+    return table(name, film_options={"stiffness": stiffness})
+
+
 def touching(mesh: Any) -> Any:
     cycle = mesh_cycle(path_of_contact(mesh.gear_pair), 32)
     motion = cycle.motion(mesh.pinion_speed)
@@ -79,7 +86,7 @@ def touching(mesh: Any) -> Any:
 
 @pytest.mark.parametrize("name", PAIRS)
 def test_films_between_the_positions_are_those_solved_at_the_knots(name: str) -> None:
-    mesh = table(name, film_options={"stiffness": "tangent"})
+    mesh = with_film("tangent", name)
     in_contact = mesh.in_contact
     loads = mesh.load_per_width[in_contact]
     direct = touching(mesh)[0].films("newton", loads, stiffness="tangent")
@@ -92,7 +99,7 @@ def test_films_between_the_positions_are_those_solved_at_the_knots(name: str) ->
 
 
 def test_more_positions_are_nearer_to_the_knots() -> None:
-    mesh = table()
+    mesh = with_film()
     direct = touching(mesh)[0].films("newton", mesh.load_per_width[mesh.in_contact])
     errors = [
         np.abs(
@@ -106,7 +113,7 @@ def test_more_positions_are_nearer_to_the_knots() -> None:
 
 
 def test_film_columns_solve_every_contact() -> None:
-    mesh = table()
+    mesh = with_film()
     contacts, motion = touching(mesh)
     some = slice(0, 3)
     motion = replace(motion, **{name: getattr(motion, name)[some] for name in vars(motion)})
@@ -123,7 +130,7 @@ def test_film_columns_solve_every_contact() -> None:
 
 @pytest.mark.parametrize("kind", ["tangent", "secant"])
 def test_the_film_in_series_is_solved_at_the_share_that_it_makes(kind: str) -> None:
-    mesh = table(film_options={"stiffness": kind})
+    mesh = with_film(kind)
     in_contact = mesh.in_contact
     # films solved anew at the final loads give the stiffness that is in series
     direct = touching(mesh)[0].films("newton", mesh.load_per_width[in_contact], stiffness=kind)
@@ -139,7 +146,7 @@ def test_the_film_in_series_is_solved_at_the_share_that_it_makes(kind: str) -> N
 def test_kinds_of_stiffness_keep_their_order() -> None:
     # the film falls with a tenth power of the load, which is what tangent and secant differ by
     stiffness = {
-        kind: table(film_options={"stiffness": kind}).at_pitch_point("film_stiffness")
+        kind: with_film(kind).at_pitch_point("film_stiffness")
         for kind in ("none", "approach", "tangent", "secant")
     }
     assert stiffness["none"] == pytest.approx(stiffness["approach"], rel=0.02)
@@ -160,7 +167,7 @@ def test_the_printed_sum_doubles_with_the_grid_and_warns() -> None:
 
 
 def test_multigrid_finds_the_same_mesh_cycle() -> None:
-    newton, multigrid = table(), table(film_model="multigrid")
+    newton, multigrid = with_film(), table(film_model="multigrid")
     in_contact = newton.in_contact
     assert multigrid.central_film[in_contact] == pytest.approx(
         newton.central_film[in_contact], rel=3e-4

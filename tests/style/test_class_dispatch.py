@@ -23,7 +23,7 @@ def questions(module: Module) -> list[str]:
         f"{module.path}:{node.lineno}: {ast.unparse(node)}"
         for node in module.nodes
         if isinstance(node, ast.Call)
-        and ast.unparse(node.func) in ("isinstance", "issubclass")
+        and getattr(node.func, "id", "") in ("isinstance", "issubclass")
         and any(isinstance(each, ast.Name) and each.id in _KINDS for each in ast.walk(node.args[1]))
         and not _of_itself(module, node)
     ]

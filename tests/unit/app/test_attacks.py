@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from functools import cached_property
 from pathlib import Path
 from typing import Any
 
@@ -46,10 +47,16 @@ class Browser:
     def desk(self) -> str:
         return str(self.get("/").headers["Location"]).split("/")[-2]
 
+    @cached_property
+    def listed(self) -> Any:
+        """What the page may ask."""
+        answers = self.get("/_dash-dependencies").json
+        return next(each for each in answers if "form.data" in each["output"])
+
     def ask(self, desk: str, do: str = "", of: str = "", edit: Any = None, **more: Any) -> Any:
         """What the page asks when something is pressed or typed."""
         self.number += 1
-        listed = next(d for d in self.get("/_dash-dependencies").json if "form.data" in d["output"])
+        listed = self.listed
         act = {"do": do, "of": of, "number": self.number, **more.pop("act", {})}
         edits = [{"form": "case", "number": self.number, **edit}] if edit else None
         values = {"url": f"/desk/{desk}/", "edit": edits, "act": act if do else None}

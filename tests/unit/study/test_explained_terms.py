@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import ast
 import json
 import math
 import re
@@ -24,32 +23,7 @@ from tribodyn.study.case.reference import (
 )
 from tribodyn.study.case.values import find_term, listed_terms
 
-_SOURCE = Path(tribodyn.__file__).parent
 _PAGE = Path(__file__).resolve().parents[3] / "docs" / "command-line.md"
-_CODE = re.compile(r"[a-z0-9]+(-[a-z0-9]+)*")
-
-
-def _codes(tree: ast.AST) -> set[str]:
-    """First texts of warnings and of pairs of code and message."""
-    codes = set()
-    for node in ast.walk(tree):
-        first = None
-        if isinstance(node, ast.Call) and getattr(node.func, "id", "") in ("warn", "ModelWarning"):
-            first = node.args[0]
-        if isinstance(node, ast.Tuple) and len(node.elts) == 2:
-            first = node.elts[0] if isinstance(node.elts[1], ast.JoinedStr) else None
-        if isinstance(first, ast.Constant) and _CODE.fullmatch(str(first.value)):
-            codes.add(str(first.value))
-    return codes
-
-
-def test_the_explained_warnings_are_those_that_are_issued() -> None:
-    issued = {
-        code
-        for path in _SOURCE.rglob("*.py")
-        for code in _codes(ast.parse(path.read_text(encoding="utf-8")))
-    }
-    assert issued == set(warning_meanings())
 
 
 def test_the_page_lists_every_warning_with_its_meaning() -> None:

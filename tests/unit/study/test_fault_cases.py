@@ -176,6 +176,7 @@ def test_motion_without_faults_is_that_of_the_mesh_cycle(healthy: Case) -> None:
     assert abs(motion.mesh_force.min() - force.min()) < 0.03 * swing
 
 
+@pytest.mark.slow
 def test_a_slow_motion_follows_the_error_at_rest(result: Result) -> None:
     from tribodyn.dynamics import harmonic_balance
 
@@ -215,6 +216,7 @@ def hunting(healthy: Case) -> Case:
     })  # fmt: skip
 
 
+@pytest.mark.slow
 def test_a_hunting_pair_moves_over_phases_of_its_shafts(hunting: Case) -> None:
     from tribodyn.dynamics import PhaseResponse
 

@@ -138,6 +138,7 @@ def test_a_negative_torque_names_the_other_side_of_the_teeth():
         tribodyn.load_case("fzg-roughness").replace({"operation.torque": "-500 N*m"})
 
 
+@pytest.mark.slow
 def test_friction_that_follows_the_load_is_that_of_tables_at_other_loads(result, tmp_path):
     case = built_in(**{"dynamics.friction_load": "dynamic"})
     followed, phase = quiet(case), np.linspace(0.0, 0.97, 23)
