@@ -18,7 +18,6 @@ from collections.abc import Callable, Iterable
 from dataclasses import dataclass, field
 from functools import cache, partial
 from importlib import import_module
-from importlib.metadata import entry_points
 from inspect import Parameter, Signature, cleandoc, signature
 from pathlib import Path
 from typing import Any, TypeVar
@@ -27,7 +26,7 @@ import numpy as np
 
 from tribodyn.arguments.reading import checked
 from tribodyn.errors import InputError, did_you_mean
-from tribodyn.model import Registry
+from tribodyn.model import Registry, entry_points
 from tribodyn.types import Tree
 
 Writer = TypeVar("Writer", bound=Callable[..., Path])
@@ -329,17 +328,18 @@ def drawing(
 @cache
 def load_figures() -> None:
     """Import the modules of the entry-point group: their figures and reports register."""
-    for entry in entry_points(group="tribodyn.figures"):
+    for entry in entry_points("tribodyn.figures"):
         import_module(entry.module)
 
 
 def figures_of(result: object) -> list[str]:
     """Names of the figures that draw this type of result."""
     load_figures()
-    return [name for name in FIGURES if _draws(FIGURES[name], result)]
+    return [name for name in FIGURES if draws(FIGURES[name], result)]
 
 
-def _draws(figure: Callable[..., object], result: object) -> bool:
+def draws(figure: Callable[..., object], result: object) -> bool:
+    """Whether a figure draws this type of result."""
     try:
         return not isinstance(figure, Drawing) or figure.subject(result) is not None
     except InputError:  # The figure draws gears of another kind.

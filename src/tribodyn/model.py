@@ -14,9 +14,9 @@ import sys
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, field
 from functools import cache, partial
-from importlib.metadata import entry_points
+from importlib import metadata
 from types import MappingProxyType
-from typing import TYPE_CHECKING, Any, Generic, TypeVar
+from typing import TYPE_CHECKING, Any, Generic, TypeVar, cast
 
 from tribodyn.errors import InputError, did_you_mean
 from tribodyn.types import ByName
@@ -30,6 +30,13 @@ Names = Callable[[], list[str]]
 #: The default of an option that must be given, and what no options are.
 REQUIRED: Any = ...
 NO_OPTIONS: ByName = MappingProxyType({})
+
+
+@cache
+def entry_points(group: str = "") -> metadata.EntryPoints:
+    """Entry points of a group, or of all; the installed packages are searched once."""
+    every = entry_points() if group else cast("metadata.EntryPoints", metadata.entry_points())
+    return every.select(group=group) if group else every
 
 
 @dataclass(frozen=True)
@@ -318,7 +325,7 @@ class Registry(Generic[T]):
     def _search(self) -> None:
         if not self._searched and self.group is not None:
             self._searched = True
-            for entry in entry_points(group=self.group):
+            for entry in entry_points(self.group):
                 self._items.setdefault(entry.name, entry.load())
                 self._entered.add(entry.name)
             self.version += 1

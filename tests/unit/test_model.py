@@ -1,5 +1,7 @@
 """Things picked by name, with third parties let in through entry points."""
 
+from importlib import metadata
+
 import pytest
 
 from tribodyn import model as module
@@ -74,3 +76,16 @@ def test_without_a_group_nothing_is_searched(monkeypatch: pytest.MonkeyPatch) ->
 
     monkeypatch.setattr(module, "entry_points", entry_points)
     assert Registry("law").names() == []
+
+
+def test_installed_packages_are_searched_once(monkeypatch: pytest.MonkeyPatch) -> None:
+    every = metadata.EntryPoints(
+        metadata.EntryPoint(name, f"math:{name}", group)
+        for name, group in (("pi", "tribodyn.one"), ("tau", "tribodyn.other"))
+    )
+    searches = iter([every])
+    monkeypatch.setattr(metadata, "entry_points", lambda: next(searches))
+    module.entry_points.cache_clear()
+    names = [Registry[float]("number", f"tribodyn.{end}").names() for end in ("one", "other")]
+    module.entry_points.cache_clear()
+    assert names == [["pi"], ["tau"]]

@@ -63,13 +63,13 @@ def standard_rotation(values: Array, vectors: Any) -> Any:
     """Rotation (m, m) of eigenvectors, rows (m, n), to a basis of equal ascending values (m,)."""
     # The first row of a group gets all of the column in which the group is largest, as a positive
     # entry, the next one of what is left, and so on: whatever their basis was.
-    rotation = np.zeros((len(vectors),) * 2, dtype=vectors.dtype)
-    for group in groups_of_equal(values):
+    first = leading(vectors)[:, 0].conj()
+    rotation = np.diag(first / np.where(first == 0.0, 1.0, np.abs(first)))
+    for group in (each for each in groups_of_equal(values) if len(each) > 1):
         left = vectors[group]
         for row in group:
             size = np.linalg.norm(left, axis=0)
             column = int((size >= (1.0 - _ALIKE) * size.max()).argmax())
-            part = left[:, column].conj() / (size[column] or 1.0)
-            rotation[row, group] = part
+            rotation[row, group] = part = left[:, column].conj() / (size[column] or 1.0)
             left = left - np.outer(part.conj(), part @ left)
     return rotation

@@ -8,12 +8,12 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from functools import lru_cache
-from importlib.metadata import EntryPoints, entry_points
 from importlib.resources import files
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from tribodyn.errors import InputError
+from tribodyn.model import entry_points
 from tribodyn.study.case.checks import DEFAULT_MARK
 from tribodyn.study.case.provenance import changed_keys, reasons, same
 from tribodyn.study.case.read import parse_toml, read_text
@@ -39,7 +39,7 @@ def case_files() -> dict[str, Path]:
     """
     folder = Path(str(files("tribodyn.cases")))
     paths = {path.stem: path for path in sorted(folder.glob("*.toml"), key=_name)}
-    for entry in _external_cases():
+    for entry in entry_points("tribodyn.cases"):
         if entry.name not in paths:
             paths[entry.name] = Path(str(entry.load()))
     return paths
@@ -60,12 +60,6 @@ def planetary_files() -> dict[str, Path]:
 def all_files() -> dict[str, Path]:
     """Files of all named cases: gear pairs, machines and planetary stages."""
     return {**case_files(), **machine_files(), **planetary_files()}
-
-
-@lru_cache(maxsize=1)
-def _external_cases() -> EntryPoints:
-    """Cases of other packages; cached, since searching the installed packages takes a while."""
-    return entry_points(group="tribodyn.cases")
 
 
 def _name(path: Path) -> str:

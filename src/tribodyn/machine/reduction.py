@@ -7,6 +7,7 @@ from dataclasses import replace
 import numpy as np
 
 from tribodyn.arrays.linear_algebra import groups_of_equal, standard_rotation
+from tribodyn.arrays.memory import Memo
 from tribodyn.errors import InputError, require_between, require_positive
 from tribodyn.machine.machine import Machine
 from tribodyn.machine.static.balance import static_balance
@@ -27,6 +28,8 @@ _ROUNDING = 3e-8
 _LIMITS, _HARMONICS = (5e3, 5e4), 3
 #: Coordinates beyond which a machine is reduced.
 _LARGE = 120
+#: Modes of the shafts between bearings and meshes, which loads and speeds do not change.
+_modes_of_shafts: Memo[tuple[Array, Array]] = Memo(4)
 
 
 def default_limit(structure: MachineStructure) -> float:
@@ -161,7 +164,9 @@ def _interface(structure: MachineStructure) -> Mask:
 
 def _craig_bampton(structure: MachineStructure, interface: Mask) -> tuple[Array, list[str], Array]:
     """Basis of static displacements and fixed modes, names and squared frequencies of both."""
-    inner, squares, shapes = _fixed_modes(structure, interface)
+    inner = np.flatnonzero(~interface)
+    parts = [m[np.ix_(inner, inner)] for m in (structure.mass, structure.stiffness)]
+    squares, shapes = _modes_of_shafts.get((*parts,), lambda: _fixed_modes(*parts))
     edge = np.flatnonzero(interface)
     elastic = squares > _RIGID * squares.max(initial=0.0)
     basis = np.zeros((structure.size, structure.size))
@@ -177,16 +182,12 @@ def _craig_bampton(structure: MachineStructure, interface: Mask) -> tuple[Array,
     )
 
 
-def _fixed_modes(structure: MachineStructure, interface: Mask) -> tuple[Index, Array, Array]:
-    """Inner coordinates, and squared frequencies and shapes of their modes, interface fixed."""
+def _fixed_modes(mass: Array, stiffness: Array) -> tuple[Array, Array]:
+    """Squared frequencies and shapes of the modes with the interface fixed."""
     from scipy.linalg import eigh
     from scipy.sparse.csgraph import connected_components
 
-    inner = np.flatnonzero(~interface)
-    mass, stiffness = (
-        matrix[np.ix_(inner, inner)] for matrix in (structure.mass, structure.stiffness)
-    )
-    squares, shapes = np.zeros(len(inner)), np.zeros((len(inner), len(inner)))
+    squares, shapes = np.zeros(len(mass)), np.zeros(mass.shape)
     count, labels = connected_components((mass != 0.0) | (stiffness != 0.0), directed=False)
     for label in range(count):
         part = np.flatnonzero(labels == label)
@@ -196,7 +197,7 @@ def _fixed_modes(structure: MachineStructure, interface: Mask) -> tuple[Index, A
     order = np.argsort(squares, kind="stable")
     for group in groups_of_equal(squares[order]):
         order[group] = np.sort(order[group])
-    return inner, squares[order], shapes[:, order]
+    return squares[order], shapes[:, order]
 
 
 def _omission(amplitudes: Array, squares: Array, frequency: Array) -> Array:

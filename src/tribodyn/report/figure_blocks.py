@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from tribodyn import plot
-from tribodyn.drawing import Sketch, figures_of
+from tribodyn.drawing import Sketch, draws, load_figures
 from tribodyn.errors import InputError, collected
 from tribodyn.gear import Misalignment, tooth_contact
 from tribodyn.plot import FIGURES, Drawing
@@ -148,9 +148,9 @@ def figure_blocks(result: Any) -> list[Block]:
 
 def _of_others(result: object) -> Iterator[_Place]:
     """Figures that other packages and scripts have registered for this kind of result."""
-    for name in figures_of(result):
-        figure = FIGURES[name]
-        if isinstance(figure, Drawing) and not figure.draw.__module__.startswith("tribodyn."):
+    load_figures()
+    for figure in (each for each in FIGURES.all().values() if isinstance(each, Drawing)):
+        if not figure.draw.__module__.startswith("tribodyn.") and draws(figure, result):
             yield _Place(figure, result)
 
 

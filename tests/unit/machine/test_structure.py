@@ -1,5 +1,7 @@
 """Matrices, reduction and natural modes of machines."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from machines import DEGREE, RPM, split_path, two_stage_parts, two_stages
@@ -110,6 +112,20 @@ def test_shares_of_the_strain_energy(reduced):
     mass = 18.0 + output.mass[::6, ::6].sum()
     assert modes.frequency[0] == pytest.approx(np.sqrt(2e8 / mass) / (2 * np.pi), rel=0.02)
     assert modes.strain_share[0, modes.parts.index("bearings.C")] > 0.95
+
+
+def test_modes_of_shafts_are_those_of_another_bearing_stiffness(full, reduced, monkeypatch):
+    def refused(*_):
+        raise AssertionError("computed again")
+
+    bearings = full.machine.bearings
+    soft = {n: replace(b, radial_stiffness=0.5 * b.radial_stiffness) for n, b in bearings.items()}
+    other = MachineStructure(full.machine._with(bearings=soft))
+    expected = np.sqrt(eigh(other.stiffness, other.mass, eigvals_only=True)[6:20])
+    monkeypatch.setattr("tribodyn.machine.reduction._fixed_modes", refused)
+    few = reduce_structure(other, 5000.0)
+    got = np.sqrt(eigh(few.stiffness, few.mass, eigvals_only=True)[6:20])
+    np.testing.assert_allclose(got, expected, rtol=1e-3)
 
 
 def test_reduction_against_the_full_model(full, reduced):
