@@ -26,6 +26,8 @@ _LIGHT = {"check", "export", "friction-from-loss", "new", "rate", "signal"}
 #: Reasons for which a command for all kinds may refuse a reduced case: a gear whose mate turns with
 #: a carrier, and machines whose constant teeth excite nothing.
 _EXCUSES = {
+    "continuation": "derivatives over each period",
+    "lyapunov": "derivatives over each period",
     "paper": "there are no printed tables",
     "rate": "the case has no table [rating]",
     "surrogate": "no level of the parts varies",
@@ -178,10 +180,11 @@ def test_every_command_with_a_case_is_tried() -> None:
 
 #: Studies of motions that take minutes: those of a stage are in test_motions_of_machines.py.
 _LONG = {
-    (command, name)
-    for command in ("basins", "bifurcation", "continuation", "lyapunov")
-    for name in ("planetary-stage", "two-stage-helical", "two-stage-spur", "wind-turbine-gearbox")
-    if command in ("basins", "continuation") or name == "wind-turbine-gearbox"
+    *(
+        ("continuation", name)
+        for name in ("planetary-stage", "two-stage-helical", "two-stage-spur")
+    ),
+    *(("basins", name) for name in ("two-stage-helical", "two-stage-spur", "wind-turbine-gearbox")),
 }
 
 

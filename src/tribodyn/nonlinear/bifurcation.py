@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from contextlib import suppress
-from time import perf_counter
+from time import process_time
 from typing import Any, Literal
 
 import numpy as np
@@ -13,6 +13,7 @@ from numpy.typing import ArrayLike, NDArray
 from tribodyn.aliases import with_old_names
 from tribodyn.checkpoints import Checkpoints
 from tribodyn.compiled import announce
+from tribodyn.dynamics.equations.compiled import Compiled
 from tribodyn.dynamics.equations.orbit_coordinates import static_start
 from tribodyn.dynamics.equations.step_limit import LIMIT
 from tribodyn.dynamics.equations.system import System
@@ -271,27 +272,33 @@ def _read_survey(survey: Survey) -> Survey:
     return survey
 
 
-def _announce(values: Points, transient: int, cycles: int) -> None:
-    """Announce the duration of a long computation, estimated from one period."""
-    system, frequency = values.systems[0], float(values.mesh_frequency[0])
-    compiled = values.compiled(values.groups[0])
-    engine, rest_state = compiled.engine, static_start(compiled)
-    steps = compiled.grid.steps * values.count * cycles
-    if engine is None and steps < _MANY:
-        return
+def period_seconds(compiled: Compiled, frequency: float) -> float:
+    """Seconds in which one period of one motion is followed, measured without other programs."""
+    system, rest_state = compiled.system, static_start(compiled)
 
     def march(periods: int) -> None:
-        if engine is not None:
-            engine.march(np.array([1.0 / frequency]), rest_state[None], periods)
+        if compiled.engine is not None:
+            compiled.engine.march(np.array([1.0 / frequency]), rest_state[None], periods)
         else:
             start = rest_state[: system.size], rest_state[system.size :]
-            simulate(system, frequency, 1, start, steps=int(values.steps[0]))
+            simulate(system, frequency, 1, start, steps=compiled.grid.steps)
+
+    march(0)  # the first time compiles
+    begin = process_time()
+    march(1)
+    return process_time() - begin
+
+
+def _announce(values: Points, transient: int, cycles: int) -> None:
+    """Announce the duration of a long computation, estimated from one period."""
+    frequency = float(values.mesh_frequency[0])
+    compiled = values.compiled(values.groups[0])
+    steps = compiled.grid.steps * values.count * cycles
+    if compiled.engine is None and steps < _MANY:
+        return
 
     with suppress(ComputationError):
-        march(0)  # the first time compiles
-        begin = perf_counter()
-        march(1)
-        minutes = values.count * cycles * (perf_counter() - begin) / 60.0
+        minutes = values.count * cycles * period_seconds(compiled, frequency) / 60.0
         if minutes > _LONG:
             announce(
                 f"following {values.count} motions with {compiled.grid.steps} steps in each "

@@ -157,7 +157,7 @@ def basins_report_data(
     case: AnyCase,
     transmission_error: Any = None,
     rate: Any = None,
-    points: int = 31,
+    points: int | None = 31,
     keep_partial: bool = False,
     progress: Progress = SILENT,
     mesh: str | None = None,

@@ -15,6 +15,7 @@ from tribodyn.dynamics.orbits.system_family import family_of
 from tribodyn.errors import InputError
 from tribodyn.nonlinear import bifurcation
 from tribodyn.study import read_case
+from tribodyn.study.studies import nonlinear
 from tribodyn.study.studies.case_grid import moving, moving_at, settling_periods
 from tribodyn.study.studies.needs import STUDIES, needs_table, require_short, takes
 
@@ -144,6 +145,45 @@ def test_a_branch_with_too_many_derivatives_is_refused_with_a_remedy(
     with pytest.raises(InputError, match="derivatives over each period") as caught:
         td.continuation(small, between=("1200 rpm", "1234 rpm"), mesh="second")
     assert "bifurcation, which needs none" in str(caught.value)
+
+
+@pytest.mark.parametrize("study", ["lyapunov_exponents", "continuation", "basins"])
+def test_what_takes_too_long_is_refused_before_teeth_are_computed(
+    small: Any, study: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    needs = {name: need._replace(most=1e4) for name, need in STUDIES.items()}
+    monkeypatch.setattr("tribodyn.study.studies.needs.STUDIES", needs)
+    monkeypatch.setattr(nonlinear, "_PATIENCE", 1e-3)
+    monkeypatch.setattr(nonlinear, "moving_at", None)
+
+    def rehearsed(*of_case: Any, rehearsal: bool = False) -> Any:
+        assert rehearsal
+        return moving(*of_case, rehearsal=True)
+
+    monkeypatch.setattr(nonlinear, "moving", rehearsed)
+    options = {} if study == "lyapunov_exponents" else {"mesh": "second"}
+    if study == "continuation":
+        options["between"] = ("1200 rpm", "1234 rpm")  # type: ignore[assignment]
+    with pytest.raises(InputError) as caught:
+        getattr(td, study)(small, **options)
+    assert all(problem.why and problem.remedy for problem in caught.value.problems)
+
+
+def test_starts_of_a_machine_are_as_many_as_one_waits_for(
+    small: Any, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Each start takes thrice the steps of its settling; twice as many values have four times."""
+    told: list[str] = []
+    monkeypatch.setattr(nonlinear, "announce", told.append)
+    monkeypatch.setattr("tribodyn.nonlinear.bifurcation.period_seconds", lambda *_: 1.0)
+    settling = settling_periods(moving(small, "second"))
+    for each, count in ((9.0, 3), (36.0, 6), (1e9, 41)):
+        monkeypatch.setattr(nonlinear, "_PATIENCE", 3.0 * settling * (each + 0.5))
+        assert nonlinear._starts(small, "second", 500, None) == count
+        assert f"{count} x {count} starts" in told[-1]
+    monkeypatch.setattr(nonlinear, "_PATIENCE", 3.0 * settling * 8.5)
+    with pytest.raises(InputError, match="3 x 3 starts take"):
+        nonlinear._starts(small, "second", 500, None)
 
 
 def test_the_time_of_a_long_diagram_is_said_before_it_is_computed(

@@ -137,7 +137,7 @@ def basins(
     *,
     transmission_error: _Signed = None,
     rate: _Signed = None,
-    points: int = 31,
+    points: int | None = None,
     mesh: Mesh = None,
     at: Place = USUAL,
 ) -> int:
@@ -151,13 +151,14 @@ def basins(
     rate : str
         Range of its rate: "-400000..400000 um/s". By default what a free vibration reaches.
     points : int
-        Values of each.
+        Values of each: 31 by default, of a machine as many as take about two minutes.
     """
 
     def compute(ready: Any, progress: Progress) -> StudyReportData:
         from tribodyn.report.nonlinear_report_data import basins_report_data
 
-        return basins_report_data(ready, error, speed, points, True, progress, mesh)
+        count = points or (31 if ready.lumped else None)
+        return basins_report_data(ready, error, speed, count, True, progress, mesh)
 
     error = None if transmission_error is None else read_ends(transmission_error, "-20..40 um")
     speed = None if rate is None else read_ends(rate, "-400000..400000 um/s")

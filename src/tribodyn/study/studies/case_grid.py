@@ -132,13 +132,16 @@ class Moving(NamedTuple):
     contact: int = 0  #: contact of the mesh that is followed
 
 
-def moving(case: AnyCase, mesh: str | None = None) -> Moving:
-    """Structure of a case under its load; ``mesh`` is that of a machine that is followed."""
+def moving(case: AnyCase, mesh: str | None = None, *, rehearsal: bool = False) -> Moving:
+    """Structure of a case under its load; ``mesh`` is that of a machine that is followed.
+
+    That of a rehearsal has teeth of a few phases: its size and its steps are those of the others.
+    """
     if case.lumped:
         member = built(case)
         frequency = member.mesh.mesh_frequency
         return Moving(member.system, frequency, study_steps(case, member.system, frequency))
-    balanced = balanced_machine(case, case.operating_point)
+    balanced = balanced_machine(case, case.operating_point, rehearsal=rehearsal)
     structure = structure_of(case, balanced.static.linearized())
     if supports := clearance_supports(structure):
         name = next(iter(supports))

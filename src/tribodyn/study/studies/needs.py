@@ -52,7 +52,7 @@ STUDIES: dict[str, Need] = {
     "bifurcation": _MOTION,
     "continuation": _BRANCH,
     "basins": _MOTION,
-    "lyapunov": _ANY,
+    "lyapunov": _ANY._replace(why=_DERIVATIVES, most=2e8),
     **dict.fromkeys(("harris", "losses", "film"), _TEETH),
     "relief": _PLANE._replace(why="Flanks of hypoid gears are relieved by their cutter"),
     "lead": _PLANE._replace(why="The face of hypoid gears is crowned by their cutter"),

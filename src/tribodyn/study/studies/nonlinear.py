@@ -8,9 +8,10 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from tribodyn.compiled import announce
 from tribodyn.dynamics.orbits.solution_branch import of_contact
 from tribodyn.dynamics.orbits.system_family import family_of
-from tribodyn.errors import InputError
+from tribodyn.errors import Argument, InputError
 from tribodyn.progress import SILENT, Progress
 from tribodyn.study.machine.case import AnyCase
 from tribodyn.study.studies.case_grid import (
@@ -19,6 +20,7 @@ from tribodyn.study.studies.case_grid import (
     many_motions,
     moving,
     moving_at,
+    settling_periods,
 )
 from tribodyn.study.studies.needs import mesh_in_motion, require, require_short
 from tribodyn.study.studies.study_axes import ends_of
@@ -29,6 +31,10 @@ if TYPE_CHECKING:
 
 #: Half width of the plane of initial states, relative to the static deflection of the mesh.
 _WIDE = 5.0
+#: Values of each coordinate of the starts of a pair, least ones of a machine.
+_STARTS, _LEAST = 41, 3
+#: Seconds that the starts of a machine take by default, and steps of each over those of one motion.
+_PATIENCE, _FOLLOWED = 120.0, 3
 
 
 def lyapunov_exponents(
@@ -82,6 +88,7 @@ def lyapunov_exponents(
 
     require("lyapunov", case)
     with many_motions(case):
+        _require_short("lyapunov", case, steps=steps)
         progress.start("Tooth contact")
         structure = moving(case)
         progress.finish()
@@ -101,7 +108,7 @@ def basins(
     transmission_error: tuple[Any, Any] | None = None,
     rate: tuple[Any, Any] | None = None,
     *,
-    points: int | Sequence[int] = 41,
+    points: int | Sequence[int] | None = None,
     mesh: str | None = None,
     cycles: int = 400,
     steps: int | None = None,
@@ -122,8 +129,8 @@ def basins(
     rate : tuple, optional
         Range of its rate: floats in m/s, or text such as ``"2e5 um/s"``. By default what a free
         vibration as large as the other range reaches.
-    points : int or two int
-        Values of each.
+    points : int or two int, optional
+        Values of each: 41 by default, of a machine as many as take about two minutes.
     mesh : str, optional
         Mesh of a machine or a stage whose transmission error it is, where there are several.
     cycles : int
@@ -146,13 +153,13 @@ def basins(
     Raises
     ------
     InputError
-        If an argument is out of range.
+        If an argument is out of range, or nine starts of a machine take much more than two minutes
+        and ``points`` is not given.
     """
     from tribodyn.analysis import basins as compute
     from tribodyn.nonlinear.basins import MESH_PLANE
 
     name = mesh_in_motion("basins", case, mesh)
-    counts = (points, points) if isinstance(points, int) else tuple(points)
     ends = [
         None if ends_of_range is None else _read_ends(name, ends_of_range, unit)
         for name, ends_of_range, unit in (
@@ -161,6 +168,9 @@ def basins(
         )
     ]
     with many_motions(case):
+        if points is None:
+            points = _STARTS if case.lumped else _starts(case, name, cycles, steps)
+        counts = (points, points) if isinstance(points, int) else tuple(points)
         progress.start("Tooth contact")
         structure = moving(case, name)
         progress.finish()
@@ -180,6 +190,43 @@ def basins(
             keep_partial=keep_partial,
             progress=progress,
         )
+
+
+def _require_short(study: str, case: AnyCase, name: str | None = None, *, steps: Any) -> None:
+    """Refuse a machine whose motion is too long for a study, before its teeth are computed."""
+    if not case.lumped:
+        rehearsed = moving(case, name, rehearsal=True)
+        period = (steps or rehearsed.steps) * rehearsed.system.cycles
+        require_short(study, period, rehearsed.system.size)
+
+
+def _starts(case: AnyCase, name: str, cycles: int, steps: int | None) -> int:
+    """Values of each coordinate whose motions take no longer than one waits for; told beforehand.
+
+    The motions are those of a rehearsal, so that the teeth are computed only if they are followed.
+    """
+    from tribodyn.dynamics.modal.modal_march import compile_motion
+    from tribodyn.nonlinear.bifurcation import period_seconds
+
+    rehearsed = moving(case, name, rehearsal=True)
+    rehearsed = rehearsed._replace(steps=steps or rehearsed.steps)
+    compiled = compile_motion(rehearsed.system, rehearsed.frequency, rehearsed.steps)
+    periods = min(cycles, settling_periods(rehearsed))
+    seconds = _FOLLOWED * periods * period_seconds(compiled, rehearsed.frequency)
+    count = min(int(np.sqrt(_PATIENCE / seconds)), _STARTS)
+    if count >= _LEAST:
+        announce(
+            f"following {count} x {count} starts over about {periods} periods until they settle, "
+            f"{count**2 * seconds / 60.0:.2g} min; points (--points) asks for others"
+        )
+        return count
+    least = _LEAST**2 * seconds / 60.0
+    what = f"{_LEAST} x {_LEAST} starts take {least:.2g} min"
+    why = (
+        f"Each settles over about {periods} periods of the clock, {rehearsed.system.cycles} cycles"
+    )
+    remedy = f"Give points = {_LEAST} (--points {_LEAST}) to wait, or more damping or fewer cycles"
+    raise InputError(what, Argument("points"), f"{why} of its meshes each", remedy)
 
 
 def _read_ends(name: str, ends: Sequence[Any], unit: str) -> tuple[float, float]:
@@ -289,11 +336,9 @@ def continuation(
                          why, remedy)  # fmt: skip
     pair = case if case.lumped else None
     with many_motions(case):
+        _require_short("continuation", case.replace({over: float(first)}), name, steps=steps)
         every = partial(moving_at, case, over, name)
         start = every(first)
-        if pair is None:
-            period = (steps or start.steps) * start.system.cycles
-            require_short("continuation", period, start.system.size)
         count = steps or max(start.steps, every(last).steps)
         same = over == "operation.speed" and pair is not None and contact_without_speed(pair)
         smooth = None if pair is not None else family_of(every, (first, last), count)
