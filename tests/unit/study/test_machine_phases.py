@@ -198,3 +198,45 @@ def test_hunting_teeth_in_bearings_with_clearance_run_over_phases() -> None:
         rows = result.operation.structure.bearing(name)[1:3]
         moved = np.hypot(*(response.fine.position @ rows.T).T)
         assert moved.min() > 20e-6
+
+
+@pytest.mark.slow
+def test_planets_on_loose_pins_beside_hunting_teeth_are_one_clock() -> None:
+    """A planetary stage whose pins have a clearance, and a spur stage of 23 and 37 teeth."""
+    shafts = {"sun": "mid", "planet": None, "ring": "held", "wheel": "mid", "pinion": "high"}
+    teeth = {"sun": 24, "planet": 24, "ring": -72, "wheel": 23, "pinion": 37}
+    gears = {
+        name: {"teeth": teeth[name], "face_width": 0.03} | ({"shaft": shaft} if shaft else {})
+        for name, shaft in shafts.items()
+    }
+    gears["wheel"]["position"] = 0.1
+    stage = {
+        "sun": "sun", "ring": "ring", "planet": "planet", "carrier": "rotor", "count": 3,
+        "normal_module": 3e-3, "pin_stiffness": 2e8, "pin_clearance": 20e-6,
+    }  # fmt: skip
+    mesh = {"gears": ["wheel", "pinion"], "normal_module": 3e-3, "stiffness": 4e8}
+    mesh["transmission_error_amplitude"] = 2e-6
+    base = td.study.MachineCase(
+        gears=gears, planets={"low": stage}, meshes={"last": mesh},
+        operation={"input": "rotor", "output": "high", "speed": "100 rpm", "torque": 600.0},
+        stiffness={"model": "fourier", "mean_stiffness": 3e8, "cosine": [3e7, 8e6]},
+    )  # fmt: skip
+    results = {way: td.run(base.replace({"solver.phases": way})) for way in ("on", "off")}
+    response = results["on"].operation.response
+    assert isinstance(response, PhaseResponse)
+    assert response.converged
+    apart, clock = (result.summary() for result in results.values())
+    cosine, torque = np.cos(np.radians(20.0)), 600.0 * 24 / 96
+    forces = [apart[f"meshes.low_sun{n}.mean_mesh_force"] for n in (1, 2, 3)]
+    assert sum(forces) == pytest.approx(torque / (0.036 * cosine), rel=1e-9)
+    assert apart["meshes.last.mean_mesh_force"] == pytest.approx(torque / (0.0345 * cosine))
+    for number, force in enumerate(forces, start=1):
+        load = apart[f"bearings.low_pin{number}.mean_radial_force"]
+        assert load == pytest.approx(2.0 * force * cosine, rel=1e-5)
+        rows = results["on"].operation.structure.bearing(f"low_pin{number}")[1:3]
+        moved = np.hypot(*(response.fine.position @ rows.T).T).mean()
+        assert moved == pytest.approx(20e-6 + load / 2e8, rel=1e-4)
+    compared = [name for name in apart if name.endswith("alternating_rms_mesh_force")]
+    assert len(compared) == 7
+    for name in compared:
+        assert apart[name] == pytest.approx(clock[name], rel=1e-6)
