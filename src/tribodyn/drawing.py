@@ -287,7 +287,8 @@ def drawing(
         Function of the result that returns why it cannot be drawn, see :class:`Need`.
     of : str or iterable of str
         Classes that it draws, by name, or parts of them: ``("MeshTable", "Result.mesh")``. The
-        function is handed the part. Empty: any result, which is handed over as it is.
+        function is handed the part; a ``"Result"`` is that of a pair of gears. Empty: any result,
+        which is handed over as it is.
     made_by : str
         How to obtain such a result, for the message when another result is drawn.
 
@@ -307,7 +308,9 @@ def drawing(
     >>> FIGURES["mesh_force"].heading
     'Mesh force'
     """
-    more = (missing, (of,) if isinstance(of, str) else tuple(of), made_by)
+    kinds = (of,) if isinstance(of, str) else of
+    # Results of every kind are a Result; a figure of that name is of the motion of a pair.
+    more = (missing, tuple(re.sub(r"^Result\b", "PairResult", kind) for kind in kinds), made_by)
 
     def keep(draw: Callable[..., object]) -> Drawing:
         argument, description = next(iter(signature(draw).parameters)), cleandoc(draw.__doc__ or "")
@@ -375,8 +378,7 @@ def draw(result: object, name: str = "", *arguments: object, **options: object) 
             figure = FIGURES[each]
             if isinstance(figure, Drawing) and kind in figure.of:
                 return figure(result, *arguments, **options)
-    what = f"no figure draws a {kinds[0]}"
-    why = "Figures are registered with the classes that they draw"
+    what, why = f"no figure draws a {kinds[0]}", "Figures are registered with what they draw"
     raise InputError(what, why=why, remedy=f'Register one with @drawing(..., of="{kinds[0]}")')
 
 

@@ -118,7 +118,7 @@ def run(case: AnyCase | str | os.PathLike[str], progress: Progress = SILENT) -> 
 
     Returns
     -------
-    Result or MachineResult
+    Result
 
     Raises
     ------
@@ -158,7 +158,7 @@ def load_result(directory: str | os.PathLike[str]) -> Any:
 
     Returns
     -------
-    Result or MachineResult
+    Result
         With the same case, summary, warnings and figures. Of a long transient it has the mesh
         cycles that were stored; the summary is that of the whole run.
 

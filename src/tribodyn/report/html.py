@@ -31,7 +31,6 @@ from tribodyn.types import Tree
 
 if TYPE_CHECKING:
     from tribodyn.study import Result
-    from tribodyn.study.machine.result import MachineResult
     from tribodyn.study.planetary.machine_stages import CaseStage
 
 #: Packages whose version may change a figure.
@@ -162,12 +161,12 @@ def embedded_figures(blocks: list[Block]) -> Any:
     return Markup("{\n" + ",\n".join(entries) + "\n}")
 
 
-def render_report(result: Result | MachineResult) -> str:
+def render_report(result: Result) -> str:
     """Write a result as one self-contained HTML page.
 
     Parameters
     ----------
-    result : Result or MachineResult
+    result : Result
         What :func:`tribodyn.run` returns.
 
     Returns
@@ -201,7 +200,7 @@ def render_report(result: Result | MachineResult) -> str:
     )
 
 
-def result_content(result: Result | MachineResult) -> Tree:
+def result_content(result: Result) -> Tree:
     """Cards, tables, warnings and figures of a result of any kind for the page."""
     summary, modes = result.summary(), modes_of(result)
     tables = [["Natural modes", list(modes.head), modes.rows]] if modes.rows else []
@@ -220,14 +219,14 @@ def result_content(result: Result | MachineResult) -> Tree:
     }
 
 
-def _warnings(result: Result | MachineResult) -> list[str]:
+def _warnings(result: Result) -> list[str]:
     """Warnings of the run and of its rating."""
     with collected():
         rating = result.rating
     return [str(each) for each in (*result.warnings, *(rating.warnings if rating else ()))]
 
 
-def _rating(result: Result | MachineResult) -> Tree | None:
+def _rating(result: Result) -> Tree | None:
     """Sentences, tables and factors of the load capacity; None without ``[rating]``."""
     with collected():  # the run has raised the warnings of its models
         if (rating := result.rating) is None:
@@ -241,16 +240,15 @@ def _lines(citations: Any) -> list[str]:
     return citations.splitlines() if isinstance(citations, str) else [str(c) for c in citations]
 
 
-@report_of("Result")
-@report_of("MachineResult")
-def write_report(result: Result | MachineResult, path: str | os.PathLike[str]) -> Path:
+@report_of("ResultOfCase")
+def write_report(result: Result, path: str | os.PathLike[str]) -> Path:
     """Write the report of a result to a file.
 
     The file is written atomically: first to a temporary file, which is then renamed.
 
     Parameters
     ----------
-    result : Result or MachineResult
+    result : Result
         What :func:`tribodyn.run` returns.
     path : path
         File to write; an existing one is replaced.

@@ -27,8 +27,8 @@ if TYPE_CHECKING:
         PlanetaryLoadResult,
         PlanetaryResult,
     )
-    from tribodyn.study.pipeline.result import Result
-    from tribodyn.study.pipeline.result_of_case import ResultOfCase
+    from tribodyn.study.pipeline.result import PairResult
+    from tribodyn.study.pipeline.result_of_case import Result, ResultOfCase
     from tribodyn.study.pipeline.run import run
     from tribodyn.study.pipeline.summary import SUMMARY, summary_figure
     from tribodyn.study.pipeline.tooth_contact import loaded_contact
@@ -87,6 +87,7 @@ __all__ = [
     "MeshSpectrum",
     "NotchRating",
     "PairCase",
+    "PairResult",
     "PartsCase",
     "PeriodicSamples",
     "PlanetaryCase",
@@ -155,8 +156,8 @@ _NAMES = {
     "machine.result": "LoadResult MachineResult PlanetaryLoadResult PlanetaryResult",
     "uncertain.failure_probability": "FailureProbability failure_probability",
     "studies.levels": "MachineLevels",
+    "pipeline.result": "PairResult Result",
     "pipeline.result_of_case": "ResultOfCase",
-    "pipeline.result": "Result",
     "pipeline.run": "run",
     "pipeline.summary": "SUMMARY summary_figure",
     "pipeline.tooth_contact": "loaded_contact",

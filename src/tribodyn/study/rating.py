@@ -38,7 +38,7 @@ if TYPE_CHECKING:
 
     from tribodyn.mesh import MeshTable
     from tribodyn.study.case.pair import PairCase
-    from tribodyn.study.pipeline.result import Result
+    from tribodyn.study.pipeline.result import PairResult
 
 #: K_gamma of planetary stages by the number of planets, without a computation.
 PLANET_FACTORS = {1: 1.0, 2: 1.0, 3: 1.10, 4: 1.25, 5: 1.35, 6: 1.44, 7: 1.47}
@@ -471,7 +471,7 @@ def case_rating(meshes: Iterable[RatedMesh], parts: PartRatings | None = None) -
     return CaseRating(ratings, spectra, parts) if is_rated else None
 
 
-def rated_pair(result: Result) -> Iterator[RatedMesh]:
+def rated_pair(result: PairResult) -> Iterator[RatedMesh]:
     """The mesh of a pair, if its case has ``[rating]``."""
     case = result.case
     if case.is_rated:
@@ -491,7 +491,7 @@ def rated_pair(result: Result) -> Iterator[RatedMesh]:
                           table=None, motion=None)  # fmt: skip
 
 
-def _force_over_mean(result: Result) -> tuple[Array, Array]:
+def _force_over_mean(result: PairResult) -> tuple[Array, Array]:
     from tribodyn.study.pipeline.response_series import measured, mesh_force, one_sided_phase
 
     samples = measured(result.response)

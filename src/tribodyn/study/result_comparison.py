@@ -74,7 +74,7 @@ class ResultComparison(Record):
         Values of the cases by key, in SI, where they differ.
     figures : dict of str to tuple of float
         Figures of the summaries by name, in SI, where they differ; None where a result lacks it.
-    results : tuple of Result or of MachineResult
+    results : tuple of Result
         The results.
     """
 
@@ -124,7 +124,7 @@ def compare_results(*results: ResultOfCase, names: Sequence[str] | None = None) 
 
     Parameters
     ----------
-    *results : Result or MachineResult
+    *results : Result
         Two or more, at most twelve, all of pairs or all of machines.
     names : sequence of str, optional
         Name of each; by default the title of its case, with a number where titles are equal.

@@ -13,7 +13,7 @@ from tribodyn.errors import InputError
 from tribodyn.measurement import read
 from tribodyn.study import Case, Result
 from tribodyn.study.faults.clock import turning_clock
-from tribodyn.study.faults.motion import turning_mesh_of, turning_system
+from tribodyn.study.faults.motion import turning_mesh_of, turning_system_of
 
 CRACK = {
     "faults.crack.kind": "crack", "faults.crack.gear": "pinion", "faults.crack.tooth": 3,
@@ -181,7 +181,7 @@ def test_a_slow_motion_follows_the_error_at_rest(result: Result) -> None:
     from tribodyn.dynamics import harmonic_balance
 
     mesh = turning_mesh_of(result.case)
-    system = turning_system(result, mesh)
+    system = turning_system_of(result.case, result.mesh, result.damping, mesh)
     slow = harmonic_balance(system, 1.0, steps=256 * mesh.cycles)
     at_rest = np.interp(slow.phase, mesh.phase / mesh.cycles, mesh.transmission_error)
     # friction takes a part of the torque, so that the load is not that of the torque alone

@@ -178,7 +178,7 @@ def test_figures_are_methods(result: Any) -> None:
     assert result.plot_mesh_force().data
     with pytest.raises(AttributeError, match="plot_mesh_force"):
         result.plot_mesh_farce()
-    with pytest.raises(AttributeError, match="no attribute"):
+    with pytest.raises(AttributeError, match="has no sumary"):
         _ = result.sumary
 
 

@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from tribodyn.mesh import MeshTable
     from tribodyn.mesh.build import LoadedMesh
     from tribodyn.study.case.pair import PairCase
-    from tribodyn.study.pipeline.result import Result
+    from tribodyn.study.pipeline.result import PairResult
 
 Figures = Mapping[str, float]
 #: Takes a case, where mesh tables come from, and the arguments of the row.
@@ -166,7 +166,7 @@ def _run(case: PairCase, meshes: Meshes) -> Figures:
     }
 
 
-def _accelerations(result: Result) -> dict[str, float]:
+def _accelerations(result: PairResult) -> dict[str, float]:
     from tribodyn.analysis import alternating_rms, mesh_harmonics
     from tribodyn.study.pipeline.response_series import centre_column, measured
 

@@ -16,7 +16,7 @@ from tribodyn.cli.settings import CaseName, Flag, Force, Settings, changed_any_c
 from tribodyn.errors import InputError
 
 if TYPE_CHECKING:
-    from tribodyn.study import MachineResult, Result
+    from tribodyn.study import Result
 
 
 @Parameter(name="*")
@@ -77,7 +77,7 @@ def run(
         warnings.simplefilter("ignore", ModelWarning)
         from tribodyn.cases.load import run as compute
 
-        result: Result | MachineResult = compute(ready, progress)
+        result: Result = compute(ready, progress)
         progress.start("Report")
         result.save(target, force=force, csv=csv)
         progress.finish()

@@ -28,7 +28,7 @@ from tribodyn.types import Array
 if TYPE_CHECKING:
     from tribodyn.cases import PaperComparison
     from tribodyn.dynamics import AdaptiveSolution, Response
-    from tribodyn.study import Result, ResultComparison
+    from tribodyn.study import PairResult, ResultComparison
 
 #: Most samples in each part of a transient curve; more would only enlarge the file.
 _MAX_SAMPLES = 2000
@@ -38,7 +38,7 @@ _SETTLED = 0.01
 _JUMP = 1e-6
 
 
-def no_translation(result: Result) -> str:
+def no_translation(result: PairResult) -> str:
     """Reason why a result has no motion of the gear centres; empty if it has."""
     if response_series.centre_column(result.response.names, GEARS[0], "y") is not None:
         return ""
@@ -62,7 +62,7 @@ class Motion:
     Signals use the fine samples of the response: three per step, with both sides of a jump.
     """
 
-    def __init__(self, result: Result) -> None:
+    def __init__(self, result: PairResult) -> None:
         self._result = result
         self._response = result.response
         self._mesh = result.mesh
@@ -169,7 +169,7 @@ _DASHES = ("solid", "dash", "dot")
 
 def _motions(comparison: ResultComparison) -> list[Motion]:
     pairs = [each for each in comparison.results if each._COMPARISON == "result_comparison"]
-    return [Motion(cast("Result", each)) for each in pairs]
+    return [Motion(cast("PairResult", each)) for each in pairs]
 
 
 def _axis_mismatch(comparison: ResultComparison) -> str:

@@ -19,7 +19,7 @@ from tribodyn.study.pipeline import response_series
 
 if TYPE_CHECKING:
     from tribodyn.faults import TurningMesh
-    from tribodyn.study import Result
+    from tribodyn.study import PairResult
     from tribodyn.study.faults.motion import TurningMotion
     from tribodyn.study.faults.wear import Wear
 
@@ -35,14 +35,14 @@ _ALONG = "along the line of action"
 _LINE, _APART, _SEEN = 26, 2.0, 0.1
 
 
-def directions(result: Result) -> tuple[tuple[str, str], ...]:
+def directions(result: PairResult) -> tuple[tuple[str, str], ...]:
     """Axes of a gear's coordinates and their descriptions, for planar and spatial models."""
     names = result.response.names
     in_space = "pinion_z" in names
     return tuple(response_series.directions_of(names).values()) if in_space else DIRECTIONS
 
 
-def _along(result: Result) -> str:
+def _along(result: PairResult) -> str:
     return dict(directions(result))["y"]
 
 
@@ -51,7 +51,7 @@ def wrapped_label(quantity: str, direction: str) -> str:
     return "<br>".join([quantity_label(quantity), *wrap(direction, _LINE)])
 
 
-def _means(result: Result, quantity: str, axis: str) -> tuple[float, ...]:
+def _means(result: PairResult, quantity: str, axis: str) -> tuple[float, ...]:
     """Means of a signal of both gears where it varies little about different ones; else none."""
     motion = Motion(result)
     signals = [motion.measured(motion.of_gear(quantity, gear, axis)) for gear, _ in GEARS]
@@ -60,7 +60,7 @@ def _means(result: Result, quantity: str, axis: str) -> tuple[float, ...]:
     return means if abs(means[1] - means[0]) > _APART * swing else ()
 
 
-def _motion_panels(result: Result, quantity: str) -> list[Panel]:
+def _motion_panels(result: PairResult, quantity: str) -> list[Panel]:
     """Panels with a signal of pinion and wheel, about its means where it varies little."""
     motion, panels = Motion(result), []
     for axis, direction in directions(result):
@@ -75,7 +75,7 @@ def _motion_panels(result: Result, quantity: str) -> list[Panel]:
     return panels
 
 
-def _levels(result: Result, quantity: str) -> str:
+def _levels(result: PairResult, quantity: str) -> str:
     """Sentence on the means that the curves leave out."""
     levels = []
     for axis, direction in directions(result):
@@ -85,7 +85,7 @@ def _levels(result: Result, quantity: str) -> str:
     return f"Means that the curves leave out: {'; '.join(levels)}. " if levels else ""
 
 
-def _below_zero(result: Result) -> str:
+def _below_zero(result: PairResult) -> str:
     """Explain a negative mesh force, which the driving flanks cannot transmit."""
     fine = result.response.fine
     if np.min(response_series.mesh_force(fine)) >= 0.0:
@@ -98,7 +98,7 @@ def _below_zero(result: Result) -> str:
     return "Where it is negative, the contact damping pulls just before the flanks separate."
 
 
-def _force_caption(result: Result) -> str:
+def _force_caption(result: PairResult) -> str:
     motion = Motion(result)
     lost = result.summary().get("contact_loss_share", 0.0) > 0.0
     sentences = (
@@ -112,7 +112,7 @@ def _force_caption(result: Result) -> str:
     return " ".join(filter(None, sentences))
 
 
-def _mean_shift(result: Result, motion: Motion) -> str:
+def _mean_shift(result: PairResult, motion: Motion) -> str:
     """Sentence on the shift of the mean force from the static force by friction."""
     mean = float(result.response.fine.weight @ motion.mesh_force)
     shift = mean / result.mesh.total_normal_force - 1.0
@@ -125,7 +125,7 @@ def _mean_shift(result: Result, motion: Motion) -> str:
 
 
 @run_drawing(heading="Mesh force", caption=_force_caption)
-def mesh_force(result: Result) -> Sketch:
+def mesh_force(result: PairResult) -> Sketch:
     """Draw the dynamic and the static mesh force."""
     motion = Motion(result)
     force = motion.mesh_force
@@ -142,7 +142,7 @@ def mesh_force(result: Result) -> Sketch:
     return motion.figure(f"The mesh force varies between {low} and {high}", panels)
 
 
-def _friction_caption(result: Result) -> str:
+def _friction_caption(result: PairResult) -> str:
     split = "film_friction_force" in response_series.friction_forces(result, result.response.fine)
     parts = (
         "The parts of the oil films and of the asperities add up to the total."
@@ -163,7 +163,7 @@ def _friction_caption(result: Result) -> str:
         "" if np.any(result.mesh.friction_coefficient) else 'friction.law is "none".'
     ),
 )
-def friction_force(result: Result) -> Sketch:
+def friction_force(result: PairResult) -> Sketch:
     """Draw the friction force of all tooth pairs and its film and asperity parts."""
     motion = Motion(result)
     forces = response_series.friction_forces(result, result.response.fine)
@@ -183,7 +183,7 @@ def friction_force(result: Result) -> Sketch:
     return motion.figure(f"The friction force ranges from {low} to {high}", [panel])
 
 
-def _error_caption(result: Result) -> str:
+def _error_caption(result: PairResult) -> str:
     motion = Motion(result)
     lag = "Lag of the driven gear behind its ideal position, measured on the line of action."
     dashed = "The dashed curve is the lag at a very low speed"
@@ -198,7 +198,7 @@ def _error_caption(result: Result) -> str:
 
 
 @run_drawing(heading="Transmission error", caption=_error_caption)
-def transmission_error(result: Result) -> Sketch:
+def transmission_error(result: PairResult) -> Sketch:
     """Draw the dynamic transmission error and, for a steady state, the quasi-static one."""
     motion, unit = Motion(result), display_unit("dynamic_transmission_error")
     moving = motion.transmission_error
@@ -213,12 +213,12 @@ def transmission_error(result: Result) -> Sketch:
     return motion.figure(f"The transmission error varies by {swing} peak to peak", [panel])
 
 
-def _settling(result: Result, quantity: str) -> str:
+def _settling(result: PairResult, quantity: str) -> str:
     motion = Motion(result)
     return motion.settling(motion.of_gear(quantity, "pinion", "y"))
 
 
-def _shake_caption(result: Result) -> str:
+def _shake_caption(result: PairResult) -> str:
     planar = "The mesh force acts along the line of action; across it only friction acts" + (
         ". " if np.any(result.mesh.friction_coefficient) else ", and this case has none. "
     )
@@ -231,7 +231,7 @@ def _shake_caption(result: Result) -> str:
 
 
 @run_drawing(heading="Accelerations", caption=_shake_caption, missing=no_translation)
-def acceleration(result: Result) -> Sketch:
+def acceleration(result: PairResult) -> Sketch:
     """Draw the accelerations of the gear centres."""
     motion = Motion(result)
     strongest = np.max(np.abs(motion.measured(motion.of_gear("acceleration", "pinion", "y"))))
@@ -240,7 +240,7 @@ def acceleration(result: Result) -> Sketch:
     return motion.figure(title, _motion_panels(result, "acceleration"))
 
 
-def _bearing_caption(result: Result) -> str:
+def _bearing_caption(result: PairResult) -> str:
     planar = "Along the line of action the bearings carry the mesh force, across it the friction. "
     return (
         "The mean force loads the bearings; the variation about it excites the housing. "
@@ -251,7 +251,7 @@ def _bearing_caption(result: Result) -> str:
 
 
 @run_drawing(heading="Bearing forces", caption=_bearing_caption, missing=no_translation)
-def bearing_force(result: Result) -> Sketch:
+def bearing_force(result: PairResult) -> Sketch:
     """Draw the forces of both gears on their bearings."""
     motion = Motion(result)
     swing = np.ptp(motion.measured(motion.of_gear("bearing_force", "pinion", "y")))
@@ -262,14 +262,14 @@ def bearing_force(result: Result) -> Sketch:
     return motion.figure(title, _motion_panels(result, "bearing_force"))
 
 
-def _in_a_plane(result: Result) -> str:
+def _in_a_plane(result: PairResult) -> str:
     if "pinion_z" in result.response.names:
         return ""
     return "The tooth forces of these gears lie in a plane, along one line of action."
 
 
 @run_drawing(heading="Mesh force in space", missing=_in_a_plane)
-def tooth_force(result: Result) -> Sketch:
+def tooth_force(result: PairResult) -> Sketch:
     """Draw the three components of the tooth force.
 
     Force of the teeth on the wheel, friction included, in the axes of the pinion: x along the

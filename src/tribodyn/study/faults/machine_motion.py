@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 from fractions import Fraction
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING
 
 from tribodyn.faults import Fault, drive
 from tribodyn.interrupt import single_blas_thread
@@ -108,12 +108,8 @@ def _mesh_over_turns(
     return {**laws, "period": turning.cycles}
 
 
-class _Found(NamedTuple):
-    """A steady motion with faults."""
-
-    response: Response
-    motion: MachineMotion
-    ahead: Lead | None
+#: A steady motion with faults, and how far the rotation is ahead in it.
+_Steady = tuple["Response", MachineMotion, "Lead | None"]
 
 
 def machine_turning_motion(
@@ -128,11 +124,10 @@ def machine_turning_motion(
         seats = loose_seats(case, structure, sound.motion)
         if machine.meshes == sound.machine.meshes and not (excited or seats):
             structure, machine = sound.structure, sound.machine
-            steady = _Found(sound.response, sound.motion, None)
+            response, motion, ahead = sound.response, sound.motion, None
         else:
             find = _over_phases if over_phases else _on_clock
-            steady = find(case, sound, structure, seats, progress)
-    response, motion, ahead = steady
+            response, motion, ahead = find(case, sound, structure, seats, progress)
     clock, cycles, frequency = machine.clock, motion.cycles.max(), motion.mesh_frequency.max()
     periods = Fraction(cycles * clock.frequency / frequency)
     if motion.phase_turns is None:
@@ -160,7 +155,7 @@ def machine_turning_motion(
 def _over_phases(
     case: MachineCase, sound: LoadResult, structure: MachineStructure,
     seats: dict[str, LooseSeat], progress: Progress,
-) -> _Found:  # fmt: skip
+) -> _Steady:  # fmt: skip
     """Motion over phases of the meshes and of what turns with shafts and drives them."""
     from tribodyn.dynamics import clearance_motion, harmonic_balance
     from tribodyn.machine import system as system_of
@@ -178,13 +173,13 @@ def _over_phases(
         response = harmonic_balance(system, phases.frequency, progress=progress)
     motion = with_lifted_forces(machine_motion(structure, response, phases), response, seats)
     units = phase_units(machine, phases, [each.gear for each in excited])
-    return _Found(response, replace(motion, units=units), ahead)
+    return response, replace(motion, units=units), ahead
 
 
 def _on_clock(
     case: MachineCase, sound: LoadResult, structure: MachineStructure,
     seats: dict[str, LooseSeat], progress: Progress,
-) -> _Found:  # fmt: skip
+) -> _Steady:  # fmt: skip
     """Motion on the clock of all that repeats."""
     from tribodyn.machine import system as system_of
 
@@ -209,4 +204,4 @@ def _on_clock(
     motion = with_lifted_forces(machine_motion(structure, response), response, seats)
     longer = round(clock.frequency / frequency)
     motion = replace(motion, cycles=longer * motion.cycles, frequency=frequency)
-    return _Found(response, motion, lead_on_clock(driven, cycles / period))
+    return response, motion, lead_on_clock(driven, cycles / period)

@@ -108,8 +108,6 @@ def impact_spectrum(
         return np.asarray(position @ structure.mesh(place.part)) * structure.mesh_stiffness(
             place.part
         )
-    from tribodyn.study.machine.motion import mesh_rotation
-
     return np.asarray(position @ mesh_rotation(structure, place.part))
 
 
@@ -330,11 +328,6 @@ class MachineTurningMotion(PeriodicMotion):
         shaft = self.rotation_frequency(self.machine.bearings[bearing].shaft)
         response: ImpactResponse = self.splines[key]
         return impacts.superposed(response.at, response.duration, shaft, time, seed)
-
-    def __repr__(self) -> str:
-        """One line."""
-        turns = ", ".join(f"{shaft} {turns}" for shaft, turns in self.turns.items())
-        return f"MachineTurningMotion({self.period:.5g} s, turns of the shafts: {turns})"
 
 
 def on_mesh_cycles(system: System) -> System:

@@ -36,7 +36,7 @@ if TYPE_CHECKING:
     from tribodyn.mesh import MeshFriction, MeshTable
     from tribodyn.study.case.pair import PairCase
     from tribodyn.study.pipeline.assembly import Damping
-    from tribodyn.study.pipeline.result import Result
+    from tribodyn.study.pipeline.result import PairResult
     from tribodyn.study.pipeline.run import PreparedRun
 
 _ACCURACY = Accuracy((128, 256, 512), 1e-6)
@@ -173,14 +173,6 @@ class TurningMotion(PeriodicMotion, Record):
         assert isinstance(impacts, BearingDefect)
         return impacts.signal(self.rotation_frequency(gear), time, seed)
 
-    def __repr__(self) -> str:
-        """One line."""
-        force = self.mesh_force
-        return (
-            f"TurningMotion({self.cycles} mesh cycles at {self.mesh_frequency:.6g} Hz, mesh force "
-            f"{force.min():.5g} to {force.max():.5g} N)"
-        )
-
 
 class _Errors(NamedTuple):
     """How the transmission error follows from positions and compressions."""
@@ -206,11 +198,6 @@ def turning_mesh_of(
         return turning_table(table, bevel_gears(case, table), faults, case.gears.driver)
     settings = loaded_settings(case)
     return turning_mesh(case.gear_pair, abs(case.pinion_torque), faults, **settings)
-
-
-def turning_system(result: Result | PreparedRun, mesh: TurningMesh) -> System:
-    """The structure of a result with the mesh over whole turns as its contact."""
-    return turning_system_of(result.case, result.mesh, result.damping, mesh)
 
 
 def turning_system_of(
@@ -292,7 +279,7 @@ class _Found(NamedTuple):
     cycles: int = 0  #: of a motion that repeats with the mesh, or after more cycles of it
 
 
-def turning_motion(result: Result | PreparedRun, progress: Progress = SILENT) -> TurningMotion:
+def turning_motion(result: PairResult | PreparedRun, progress: Progress = SILENT) -> TurningMotion:
     """Compute the steady motion with faults; with equal teeth it is that of the result."""
     from tribodyn.study.case.to_models import locate_errors
 
@@ -329,7 +316,9 @@ def turning_motion(result: Result | PreparedRun, progress: Progress = SILENT) ->
     )
 
 
-def _of_run(result: Result | PreparedRun, turns: PairTurns, progress: Progress) -> _Found | None:
+def _of_run(
+    result: PairResult | PreparedRun, turns: PairTurns, progress: Progress
+) -> _Found | None:
     """Motion of a run, if its teeth are alike and its drive is steady."""
     from tribodyn.study.pipeline.response_series import film_offset, is_steady
 
@@ -346,7 +335,7 @@ def _of_run(result: Result | PreparedRun, turns: PairTurns, progress: Progress) 
 
 
 def _on_clock(
-    result: Result | PreparedRun, turns: PairTurns, mesh: TurningMesh, progress: Progress
+    result: PairResult | PreparedRun, turns: PairTurns, mesh: TurningMesh, progress: Progress
 ) -> _Found:
     """Motion on the clock of all that repeats."""
     frequency = result.mesh.mesh_frequency
@@ -359,7 +348,7 @@ def _on_clock(
 
 
 def _over_phases(
-    result: Result | PreparedRun, turns: PairTurns, mesh: TurningMesh, progress: Progress
+    result: PairResult | PreparedRun, turns: PairTurns, mesh: TurningMesh, progress: Progress
 ) -> _Found:
     """Motion over phases of the mesh and of what turns and drives it."""
     from tribodyn.dynamics import harmonic_balance

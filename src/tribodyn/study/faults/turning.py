@@ -216,6 +216,11 @@ class PeriodicMotion(ABC):
         lines = self.sensed(sensor)
         return lines.frequency, lines.amplitude
 
+    def __repr__(self) -> str:
+        """One line."""
+        turns = ", ".join(f"{shaft} {turns:g}" for shaft, turns in self.turns.items())
+        return f"{type(self).__name__}({self.period:.5g} s, turns: {turns})"
+
 
 def response_lines(
     response: Response, quantity: str, cycles: int

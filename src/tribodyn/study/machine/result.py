@@ -21,7 +21,7 @@ from tribodyn.study.machine.housing_files import HOUSING, copy_housing
 from tribodyn.study.machine.modes import MeshOrder, mesh_orders
 from tribodyn.study.machine.motion import MachineMotion, machine_motion
 from tribodyn.study.machine.summary import summary_of
-from tribodyn.study.pipeline.result_of_case import ResultOfCase
+from tribodyn.study.pipeline.result_of_case import Result
 from tribodyn.study.pipeline.stored_motion import of_passes
 from tribodyn.study.planetary.stage_result import StageResult
 
@@ -37,7 +37,7 @@ if TYPE_CHECKING:
     )
     from tribodyn.machine.structure import MachineStructure
     from tribodyn.mesh import MeshTable
-    from tribodyn.study.case.provenance import Assumption
+    from tribodyn.study.case.pair import PairCase
     from tribodyn.study.faults.machine_signals import MachineTurningMotion
     from tribodyn.study.faults.sensors import Sensors
     from tribodyn.study.heat_balance import HeatBalance
@@ -274,7 +274,7 @@ class LoadResult:
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class MachineResult(ResultOfCase):
+class MachineResult(Result, of=LoadResult):
     """What :func:`tribodyn.run` returns for a machine.
 
     Parameters
@@ -294,6 +294,8 @@ class MachineResult(ResultOfCase):
     load_cases: tuple[LoadResult, ...]
     warnings: tuple[ModelWarning, ...]
 
+    __eq__, __hash__ = object.__eq__, object.__hash__
+
     @property
     def _sensors(self) -> Sensors:
         return sensors_of(self.case)
@@ -301,15 +303,11 @@ class MachineResult(ResultOfCase):
     def _shape_figures(self) -> Mapping[str, float]:
         return shape_figures(self.case)
 
-    def _rated_meshes(self) -> Iterable[RatedMesh]:
-        from tribodyn.study.machine.rated_meshes import rated_loads, rated_meshes
+    def _rated(self) -> tuple[Iterable[RatedMesh], PartRatings]:
+        from tribodyn.study.machine.rated_meshes import rated_loads, rated_meshes, rated_parts
 
-        return rated_meshes(self.case, rated_loads(self))
-
-    def _rated_parts(self) -> PartRatings:
-        from tribodyn.study.machine.rated_meshes import rated_loads, rated_parts
-
-        return rated_parts(self.case, rated_loads(self))
+        loads = rated_loads(self)
+        return rated_meshes(self.case, loads), rated_parts(self.case, loads)
 
     @property
     def loads(self) -> Mapping[str, LoadResult]:
@@ -319,10 +317,16 @@ class MachineResult(ResultOfCase):
             named["load_cases.operation"] = same
         return {"operation": self.operation, **named}
 
-    @property
-    def tables(self) -> Mapping[str, MeshTable]:
-        """Tooth contact by the name of the mesh at the operating point."""
-        return self.operation.tables
+    def __getattr__(self, name: str) -> Any:
+        """Find what the operating point has: its motion, system, modes, power flow, stages, ..."""
+        load = vars(self).get("operation")
+        if name[0] != "_" and name in {*vars(load), *vars(type(load))}:
+            return getattr(load, name)
+        return super().__getattr__(name)
+
+    def __dir__(self) -> list[str]:
+        """Attributes, those of the operating point, and figures."""
+        return sorted({*super().__dir__(), *dir(self.operation)})
 
     @property
     def mesh(self) -> MeshTable | None:
@@ -330,44 +334,11 @@ class MachineResult(ResultOfCase):
         return next(iter(self.tables.values()), None)
 
     @property
-    def system(self) -> System:
-        """Equations of motion at the operating point."""
-        return self.operation.system
-
-    @property
-    def response(self) -> Response:
-        """Motion of all coordinates at the operating point."""
-        return self.operation.response
-
-    @property
-    def assumptions(self) -> tuple[Assumption, ...]:
-        """What was assumed because the case does not give it."""
-        return self.case.assumptions
-
-    @property
-    def machine(self) -> Machine:
-        """The machine at its operating point."""
-        return self.operation.machine
-
-    @property
-    def motion(self) -> MachineMotion:
-        """Its motion at the operating point."""
-        return self.operation.motion
-
-    @property
-    def heat(self) -> HeatBalance | None:
-        """Heat balance at the operating point, if ``lubricant.heat_transfer`` is given."""
-        return self.operation.heat
-
-    @property
-    def structure(self) -> MachineStructure:
-        """Its matrices at the operating point."""
-        return self.operation.structure
-
-    @cached_property
-    def modes(self) -> MachineModes:
-        """Natural modes at the operating point."""
-        return self.operation.modes
+    def _pair(self) -> PairCase:
+        name, load = next(iter(self.tables), ""), self.operation
+        if not name:
+            raise InputError("the machine has no mesh whose teeth are computed", "", "", "")
+        return self.case.pair(name, load.load, load.misalignment[name])
 
     @cached_property
     def campbell(self) -> MachineCampbell:

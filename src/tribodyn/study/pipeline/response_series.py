@@ -16,7 +16,7 @@ from tribodyn.types import Array
 
 if TYPE_CHECKING:
     from tribodyn.dynamics import FineSamples, Response, System
-    from tribodyn.study.pipeline.result import Result
+    from tribodyn.study.pipeline.result import PairResult
 
 
 #: Distance from an event that separates its two sides [mesh cycles].
@@ -71,13 +71,13 @@ def first_touch(system: System, samples: FineSamples) -> Array:
     return np.broadcast_to(np.asarray(values, dtype=float), samples.phase.shape)
 
 
-def transmission_error(result: Result, samples: FineSamples) -> Array:
+def transmission_error(result: PairResult, samples: FineSamples) -> Array:
     """Dynamic transmission error, counted from where perfect rigid driving flanks touch."""
     error = compression(samples) + result.static_error(samples.phase)
     return np.asarray(error - result.half_backlash - film_offset(result))
 
 
-def film_offset(result: Result) -> float:
+def film_offset(result: PairResult) -> float:
     """Distance before the flanks touch from which the compression of the mesh is counted.
 
     A force law and its tangent count from where the first oil film in series carries; a plain
@@ -90,7 +90,7 @@ def film_offset(result: Result) -> float:
     return float(mesh.grid.mean(deflection - mesh.transmission_error_at_rest))
 
 
-def tooth_force(result: Result, phase: Array, force: Array) -> Array | None:
+def tooth_force(result: PairResult, phase: Array, force: Array) -> Array | None:
     """Force of the teeth with friction in the axes of the first gear; None in a plane."""
     functions = result.mesh.functions()
     if functions.direction is None or result.mesh.direction.shape[-1] != len(SPATIAL_COORDINATES):
@@ -140,7 +140,7 @@ def _sided(samples: Any) -> Array:
     return one_sided_phase(samples) if fine else np.asarray(samples.phase)
 
 
-def friction_forces(result: Result, samples: Any) -> dict[str, tuple[Array, str, str]]:
+def friction_forces(result: PairResult, samples: Any) -> dict[str, tuple[Array, str, str]]:
     """Friction force of all pairs, and its parts from films and asperities if split."""
     from tribodyn.mesh.functions import ASPERITIES
 
@@ -164,7 +164,7 @@ def friction_forces(result: Result, samples: Any) -> dict[str, tuple[Array, str,
     return forces
 
 
-def signals(result: Result, samples: Any) -> dict[str, tuple[Array, str, str]]:
+def signals(result: PairResult, samples: Any) -> dict[str, tuple[Array, str, str]]:
     """Signals of figures on the samples: values, unit and meaning by name."""
     force, phase = mesh_force(samples), _sided(samples)
     static = result.transmission_error_at_rest(phase)

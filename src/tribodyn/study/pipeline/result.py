@@ -1,33 +1,25 @@
-"""Result of a case: summary, figures, files and citations."""
+"""Result of a pair of gears: its motion, summary and files."""
 
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
 from functools import cached_property
+from inspect import signature
 from typing import TYPE_CHECKING, NoReturn
 
-import numpy as np
-
-from tribodyn.errors import collected
-from tribodyn.record import Parts, Record, record
-from tribodyn.study.case.hypoid import mounting
-from tribodyn.study.case.provenance import Assumption, assumptions
+from tribodyn.record import Parts, record
 from tribodyn.study.coupling import Coupling
 from tribodyn.study.faults.sensors import PairSensors
 from tribodyn.study.mesh_inputs import PAIR_MESH
-from tribodyn.study.pipeline.assembly import static_error
-from tribodyn.study.pipeline.result_of_case import ResultOfCase
+from tribodyn.study.pipeline.result_of_case import Result
 from tribodyn.study.pipeline.store import MOTIONS
 from tribodyn.study.pipeline.stored_motion import parts_of, stored, to_csv
 from tribodyn.study.pipeline.summary import summarize
-from tribodyn.types import Array
 
 if TYPE_CHECKING:
     from tribodyn.dynamics import Campbell, NaturalModes, Response, System
     from tribodyn.errors import ModelWarning
-    from tribodyn.gear import ToothContact
-    from tribodyn.mesh import HypoidFriction, MeshFriction, MeshTable
-    from tribodyn.stiffness import LoadedContact
+    from tribodyn.mesh import MeshFriction, MeshTable
     from tribodyn.study.case.pair import PairCase
     from tribodyn.study.faults.motion import TurningMotion
     from tribodyn.study.heat_balance import HeatBalance
@@ -36,10 +28,8 @@ if TYPE_CHECKING:
 
 
 @record
-class Result(ResultOfCase, Record):
-    """What :func:`tribodyn.run` returns.
-
-    Every figure that draws a run is a method: ``result.plot_mesh_force()``.
+class PairResult(Result):
+    """What :func:`tribodyn.run` returns for a pair of gears.
 
     Parameters
     ----------
@@ -80,64 +70,13 @@ class Result(ResultOfCase, Record):
     coupling: Coupling | None = None
     heat: HeatBalance | None = None
 
-    @property
-    def half_backlash(self) -> float:
-        """Half of the play on the line of action [m]; zero is a linear mesh."""
-        return 0.5 * self.case.backlash
-
-    def static_error(self, phase: Array | float) -> Array:
-        """Transmission error without load: prescribed, or a column of the mesh table.
-
-        Parameters
-        ----------
-        phase : float or array
-            Mesh phase.
-
-        Returns
-        -------
-        array [m]
-        """
-        mesh_error, phase = self.mesh.functions().error, np.asarray(phase, dtype=float)
-        return static_error(self.case.dynamics, phase) + (
-            0.0 if mesh_error is None else mesh_error(phase)
-        )
-
-    def transmission_error_at_rest(self, phase: Array | float | None = None) -> Array:
-        """Lag of the driven gear under load at rest, with the prescribed error of the case.
-
-        Parameters
-        ----------
-        phase : float or array, optional
-            Mesh phase; the knots of the mesh table by default.
-
-        Returns
-        -------
-        array [m]
-        """
-        if phase is None:
-            error = static_error(self.case.dynamics, self.mesh.phase)
-            return np.asarray(self.mesh.transmission_error_at_rest + error)
-        loaded = self.mesh.at("transmission_error_at_rest", phase)
-        return np.asarray(loaded + static_error(self.case.dynamics, phase))
-
-    def loaded_contact(self) -> LoadedContact:
-        """Loaded contact at rest, without oil film: a turn of each gear whose teeth differ.
-
-        Returns
-        -------
-        LoadedContact
-        """
-        from tribodyn.study.pipeline.tooth_contact import loaded_contact, phases_of_turns
-
-        return loaded_contact(self.case, phases=phases_of_turns(self.case))
-
     @cached_property
     def figures(self) -> dict[str, float]:
         """All figures of the motion, in SI."""
         return summarize(self)
 
     @property
-    def loads(self) -> Mapping[str, Result]:
+    def loads(self) -> Mapping[str, PairResult]:
         """The result by its load, which is that of ``[operation]``."""
         return {"operation": self}
 
@@ -147,27 +86,8 @@ class Result(ResultOfCase, Record):
         return {self._MESH: self.mesh}
 
     @property
-    def assumptions(self) -> tuple[Assumption, ...]:
-        """Values that were assumed or are defaults, each with its reason."""
-        return assumptions(self.case)
-
-    @cached_property
-    def hypoid_contact(self) -> ToothContact | None:
-        """Tooth contact of a hypoid pair without load; None of other gears."""
-        from tribodyn.gear import tooth_contact
-
-        flanks = self.case.hypoid_flanks
-        return None if flanks is None else tooth_contact(flanks, mounting(self.case.gears))
-
-    @cached_property
-    def hypoid_friction(self) -> HypoidFriction | None:
-        """Load, film and friction in every cell of a hypoid pair at rest; None of other gears."""
-        from tribodyn.study.mesh_inputs import mesh_inputs
-        from tribodyn.study.pipeline.tooth_contact import hypoid_friction_of
-
-        with collected():  # The run has raised the warnings.
-            crossed = self.case.hypoid_flanks is not None
-            return hypoid_friction_of(mesh_inputs(self.case)) if crossed else None
+    def _pair(self) -> PairCase:
+        return self.case
 
     @cached_property
     def natural_modes(self) -> NaturalModes:
@@ -197,10 +117,10 @@ class Result(ResultOfCase, Record):
 
         return self.turning_motion if varies_over_turns(self.case) else None
 
-    def _rated_meshes(self) -> Iterable[RatedMesh]:
+    def _rated(self) -> tuple[Iterable[RatedMesh], None]:
         from tribodyn.study.rating import rated_pair
 
-        return rated_pair(self)
+        return rated_pair(self), None
 
     @property
     def _sensors(self) -> PairSensors:
@@ -238,3 +158,7 @@ class Result(ResultOfCase, Record):
             f"peak mesh force {figures['peak_mesh_force']:.5g} N, "
             f"transmission error {swing:.4g} um peak to peak, {len(self.warnings)} warnings"
         )
+
+
+#: What help and signature display of the class of every kind.
+Result.__signature__ = signature(PairResult)

@@ -1,4 +1,4 @@
-"""What the results of all cases share: loads, summary, sources, recordings, figures."""
+"""The result of a case of any kind: loads, summary, sources, recordings, figures."""
 
 from __future__ import annotations
 
@@ -6,13 +6,20 @@ import os
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from functools import cached_property
+from importlib import import_module
+from inspect import Signature
 from itertools import chain
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, ClassVar
 
+import numpy as np
+
 from tribodyn.drawing import FIGURES, bound_figure, figures_of
 from tribodyn.errors import collected, did_you_mean
-from tribodyn.record import Parts, default_table, html_table
+from tribodyn.record import Parts, Record, html_table
+from tribodyn.study.case.hypoid import mounting
+from tribodyn.study.mesh_inputs import mesh_inputs
+from tribodyn.study.pipeline.assembly import static_error
 from tribodyn.study.pipeline.store import MOTIONS, write_result
 from tribodyn.study.pipeline.summary_figures import (
     Figures,
@@ -28,7 +35,13 @@ if TYPE_CHECKING:
     import xarray
 
     from tribodyn.errors import ModelWarning
+    from tribodyn.gear import ToothContact
     from tribodyn.measurement import Recording
+    from tribodyn.mesh import HypoidFriction, MeshTable
+    from tribodyn.stiffness import LoadedContact
+    from tribodyn.study.case.case import Case
+    from tribodyn.study.case.pair import PairCase
+    from tribodyn.study.case.provenance import Assumption
     from tribodyn.study.faults.sensors import Sensors
     from tribodyn.study.rated_parts import PartRatings
     from tribodyn.study.rating import CaseRating, RatedMesh
@@ -37,7 +50,13 @@ if TYPE_CHECKING:
 _PLOT = "plot_"
 
 
-class ResultOfCase(ABC):
+def kind_of(name: str) -> type[Any]:
+    """Class of the results of one kind, which knows this module."""
+    kind: type[Any] = getattr(import_module("tribodyn.study"), name)
+    return kind
+
+
+class ResultOfCase(Record, ABC):
     """Base class of results: loads, summary, sources, recordings and figures."""
 
     #: Name of the only mesh, of a pair.
@@ -48,6 +67,8 @@ class ResultOfCase(ABC):
     _COMPARISON: ClassVar[str] = "machine_comparison"
 
     case: Any
+    mesh: Any
+    tables: Mapping[str, MeshTable]
     warnings: tuple[ModelWarning, ...]
     turning_motion: Any
 
@@ -71,23 +92,97 @@ class ResultOfCase(ABC):
 
     @property
     @abstractmethod
+    def _pair(self) -> PairCase:
+        """Pair of the first mesh whose teeth are computed, at the operating point."""
+
+    @property
+    def assumptions(self) -> tuple[Assumption, ...]:
+        """Values that were assumed or are defaults, each with its reason."""
+        return tuple(self.case.assumptions)
+
+    @property
+    def half_backlash(self) -> float:
+        """Half of the play on the line of action of the first mesh [m]; zero is a linear mesh."""
+        return 0.5 * self._pair.backlash
+
+    def static_error(self, phase: Array | float) -> Array:
+        """Transmission error without load: prescribed, or a column of the mesh table.
+
+        Parameters
+        ----------
+        phase : float or array
+            Phase of the first mesh.
+
+        Returns
+        -------
+        array [m]
+        """
+        mesh_error, phase = self.mesh.functions().error, np.asarray(phase, dtype=float)
+        return static_error(self._pair.dynamics, phase) + (
+            0.0 if mesh_error is None else mesh_error(phase)
+        )
+
+    def transmission_error_at_rest(self, phase: Array | float | None = None) -> Array:
+        """Lag of the driven gear under load at rest, with the prescribed error of the case.
+
+        Parameters
+        ----------
+        phase : float or array, optional
+            Phase of the first mesh; the knots of its table by default.
+
+        Returns
+        -------
+        array [m]
+        """
+        name, mesh = "transmission_error_at_rest", self.mesh
+        loaded = getattr(mesh, name) if phase is None else mesh.at(name, phase)
+        error = static_error(self._pair.dynamics, mesh.phase if phase is None else phase)
+        return np.asarray(loaded + error)
+
+    def loaded_contact(self) -> LoadedContact:
+        """Loaded contact at rest, without oil film: a turn of each gear whose teeth differ.
+
+        Returns
+        -------
+        LoadedContact
+            Of the first mesh.
+        """
+        from tribodyn.study.pipeline.tooth_contact import loaded_contact, phases_of_turns
+
+        return loaded_contact(self._pair, phases=phases_of_turns(self._pair))
+
+    @cached_property
+    def hypoid_contact(self) -> ToothContact | None:
+        """Tooth contact of the first mesh without load, of hypoid gears; None of other gears."""
+        from tribodyn.gear import tooth_contact
+
+        flanks = self._pair.hypoid_flanks
+        return None if flanks is None else tooth_contact(flanks, mounting(self._pair.gears))
+
+    @cached_property
+    def hypoid_friction(self) -> HypoidFriction | None:
+        """Load, film and friction in the cells of the first mesh, of hypoid gears, at rest."""
+        from tribodyn.study.pipeline.tooth_contact import hypoid_friction_of
+
+        with collected():  # The run has raised the warnings.
+            crossed = self._pair.hypoid_flanks is not None
+            return hypoid_friction_of(mesh_inputs(self._pair)) if crossed else None
+
+    @property
+    @abstractmethod
     def _sensors(self) -> Sensors:
         """What there is to sense."""
 
     @abstractmethod
-    def _rated_meshes(self) -> Iterable[RatedMesh]:
-        """Meshes under their loads whose load capacity is asked for by ``[rating]``."""
-
-    def _rated_parts(self) -> PartRatings | None:
-        """Bearings and shafts of a machine, if its case has ``[rating]``."""
-        return None
+    def _rated(self) -> tuple[Iterable[RatedMesh], PartRatings | None]:
+        """Meshes, bearings and shafts under the loads that they have to last by ``[rating]``."""
 
     @cached_property
     def rating(self) -> CaseRating | None:
         """Load capacity of gears, bearings and shafts; None without ``[rating]``."""
         from tribodyn.study.rating import case_rating
 
-        return case_rating(self._rated_meshes(), self._rated_parts())
+        return case_rating(*self._rated())
 
     def _shape_figures(self) -> Mapping[str, float]:
         """Figures of the gears of a machine, which all loads share."""
@@ -144,29 +239,6 @@ class ResultOfCase(ABC):
         rows = [(n, self._summary[n], figure_of(n).unit, figure_of(n).meaning) for n in names]
         return pandas.DataFrame(rows, columns=["name", "value", "unit", "meaning"])
 
-    def to_dataframe(self, over: str = "") -> pandas.DataFrame:
-        """Return the motion at the operating point as a table over time or order.
-
-        Parameters
-        ----------
-        over : str
-            Dimension, such as ``"time"``, ``"order"`` or ``"clock"``; by default the one that most
-            signals begin with.
-
-        Returns
-        -------
-        pandas.DataFrame
-            A column for each signal over that dimension, or for each of its values over further
-            dimensions: ``mesh_force[first]``. ``attrs`` has the ``"units"`` by column, and in
-            ``"left_out"`` the signals over other dimensions, which :meth:`to_xarray` has.
-
-        Raises
-        ------
-        InputError
-            If no signal begins with the dimension.
-        """
-        return default_table(self.to_xarray(), over)
-
     def to_xarray(self) -> xarray.Dataset:
         """Return the motion at the operating point as labelled arrays with units.
 
@@ -221,7 +293,7 @@ class ResultOfCase(ABC):
 
     def __repr__(self) -> str:
         """One line."""
-        return f'{type(self).__name__}("{self.case.title}": {self._headline})'
+        return f'Result("{self.case.title}": {self._headline})'
 
     def cite(self, style: str = "text") -> str:
         """Name the papers behind this result.
@@ -325,20 +397,59 @@ class ResultOfCase(ABC):
         return recording_of(motion, defects_of(self.case), sensor, duration, sample_rate, scatter)
 
     def __getattr__(self, name: str) -> Any:
-        """Find ``plot_<name>`` among the figures that draw a run."""
+        """Find ``plot_<name>`` among the figures that draw a run; else say who has the name."""
+        kind = "a result" if name[0] == "_" else f"the result of a {self.case.kind.lower()}"
+        what = f"{kind} has no {name}"
         if not name.startswith(_PLOT):
-            raise AttributeError(f"{type(self).__name__} has no attribute {name!r}")
+            kind_of("MachineResult")  # shows its members
+            other = "a machine" if type(self) is kind_of("PairResult") else "a pair of gears"
+            shown = f": that is of {other}" * (name in Result.__annotations__)
+            raise AttributeError(what + shown)
         figure, figures = name.removeprefix(_PLOT), figures_of(self)
         if figure in figures:
             return bound_figure(self, figure)
         if figure in FIGURES:
             other: Any = FIGURES[figure]
-            raise AttributeError(f"{type(self).__name__} has no {name}. {other.missing(self)}")
+            raise AttributeError(f"{what}. {other.missing(self)}")
         methods = [f"{_PLOT}{each}" for each in figures]
         remedy = did_you_mean(name, methods, "")
-        what = f"{type(self).__name__} has no figure {name!r}. {remedy}".strip()
+        what = f"{kind} has no figure {name!r}. {remedy}".strip()
         raise AttributeError(f"{what} It has {', '.join(methods)}")
 
     def __dir__(self) -> list[str]:
         """Attributes and figures."""
         return sorted({*super().__dir__(), *(f"{_PLOT}{name}" for name in figures_of(self))})
+
+
+class Result(ResultOfCase):
+    """What :func:`tribodyn.run` returns: loads, summary, sources, recordings and figures.
+
+    The result of a pair of gears is a :class:`tribodyn.study.PairResult`, which the arguments are
+    of; that of a machine or a planetary stage a :class:`tribodyn.study.MachineResult`. Every
+    figure that draws a run is a method: ``result.plot_mesh_force()``.
+
+    Examples
+    --------
+    >>> import tribodyn as td
+    >>> result = td.run("time-varying-friction")
+    >>> isinstance(result, td.Result), list(result.loads)
+    (True, ['operation'])
+    """
+
+    __signature__: ClassVar[Signature | None]
+
+    def __new__(cls, *parts: object, **more: object) -> Result:
+        """Return the unset result of a pair, where no kind is named."""
+        return object.__new__(kind_of("PairResult") if cls is Result else cls)
+
+    if TYPE_CHECKING:
+
+        def __init__(self, case: Case, *parts: Any, **more: Any) -> None: ...
+
+    def __init_subclass__(cls, of: type = object) -> None:
+        """Show the members of a kind of result, and of what it is of, on this class too."""
+        super().__init_subclass__()
+        cls.__signature__ = None  # its own
+        names = (*vars(cls), *cls.__annotations__, *vars(of), *getattr(of, "__annotations__", ()))
+        members = {name: "Any" for name in names if name[0] != "_" and not hasattr(Result, name)}
+        Result.__annotations__ = {**members, **Result.__annotations__}

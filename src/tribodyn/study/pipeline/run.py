@@ -28,7 +28,7 @@ from tribodyn.study.pipeline.cautions import (
 )
 from tribodyn.study.pipeline.motion import motion_of, motions_of, steps_of
 from tribodyn.study.pipeline.response_series import measured, mesh_force
-from tribodyn.study.pipeline.result import Result
+from tribodyn.study.pipeline.result import PairResult
 from tribodyn.study.pipeline.store import Stored
 from tribodyn.study.pipeline.stored_motion import NOMINAL, read_friction, read_passes, read_response
 from tribodyn.study.pipeline.tooth_contact import (
@@ -54,7 +54,7 @@ def run(
     *,
     stacklevel: int = 2,
     follow: Follow | None = None,
-) -> Result:
+) -> PairResult:
     """Compute a case.
 
     Parameters
@@ -120,7 +120,7 @@ def computed(
     progress: Progress = SILENT,
     mesh_source: Callable[[], MeshTable] | None = None,
     follow: Follow | None = None,
-) -> Result:
+) -> PairResult:
     """Compute a case without raising the warnings of the models, which the result holds.
 
     ``mesh_source`` returns its mesh table if a study has already computed loads and films.
@@ -147,7 +147,7 @@ class PreparedRun:
         """Newly sampled motion, if it was found in a batch."""
         return None if self.motion is None else self.motion()
 
-    def result(self, progress: Progress = SILENT) -> Result:
+    def result(self, progress: Progress = SILENT) -> PairResult:
         """Return the result, after computing the motion if no batch has found it."""
         case, mesh, response, compared = self.case, self.mesh, self.response, None
         with unchanged_files(case), locate_errors(case), collected() as model_warnings:
@@ -171,7 +171,7 @@ class PreparedRun:
         )
         unique_warnings = tuple({str(warning): warning for warning in everything}.values())
         parts = case, mesh, self.system, response, self.damping, unique_warnings
-        return Result(*parts, self.friction, compared, self.coupling, self.heat)
+        return PairResult(*parts, self.friction, compared, self.coupling, self.heat)
 
 
 def prepare_run(
@@ -197,7 +197,7 @@ def prepare_run(
     return PreparedRun(*parts, model_warnings)
 
 
-def restored(case: PairCase, stored: Stored) -> Result:
+def restored(case: PairCase, stored: Stored) -> PairResult:
     """Result from its folder; the forces along its motion are computed again."""
     (load,) = stored.loads
     data, (mesh,) = load.data, load.tables.values()
@@ -211,7 +211,7 @@ def restored(case: PairCase, stored: Stored) -> Result:
             compared = read_response(system_of(case, mesh, damping), data, NOMINAL)
     passes = [read_passes(name, mesh, data) for name in ("coupling", "heat")]
     parts = case, mesh, system, response, damping, stored.warnings
-    result = Result(*parts, friction, compared, *passes)
+    result = PairResult(*parts, friction, compared, *passes)
     vars(result)["figures"] = stored.summary
     return result
 

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
     from tribodyn.dynamics import Response, System
     from tribodyn.mesh import MeshFriction, MeshTable
-    from tribodyn.study.pipeline.result import Result
+    from tribodyn.study.pipeline.result import PairResult
 
 #: Largest size of the series of a motion in a file [bytes].
 LARGEST = 64_000_000
@@ -38,7 +38,7 @@ def _attributes_of(unit: str, meaning: str) -> dict[str, str]:
     return {"units": unit, "long_name": meaning}
 
 
-def parts_of(result: Result) -> Parts:
+def parts_of(result: PairResult) -> Parts:
     """Variables, coordinates and attributes of the data set of a result."""
     response = result.response
     turns = np.array(["theta" in name for name in response.names])
@@ -87,7 +87,7 @@ def _contacts(response: Response) -> tuple[Array, Array]:
     return pressed[:, :1], force.sum(axis=1, keepdims=True)
 
 
-def _spectra(result: Result) -> Tree:
+def _spectra(result: PairResult) -> Tree:
     """Amplitudes of the mesh harmonics of every signal."""
     from tribodyn.analysis import amplitude_spectrum
 
@@ -206,7 +206,7 @@ def _stored_cycles(response: Response) -> int:
     return int(min(response.periods, max(1, LARGEST // cycle)))
 
 
-def stored(result: Result) -> Parts:
+def stored(result: PairResult) -> Parts:
     """Return the parts of a result that are saved: of a long run, the last mesh cycles."""
     parts, response, nominal = result._parts(), result.response, result.nominal_friction_response
     periods, cycles = int(response.periods), _stored_cycles(response)

@@ -36,7 +36,7 @@ from tribodyn.units import format_quantity
 if TYPE_CHECKING:
     from tribodyn.dynamics import FineSamples
     from tribodyn.mesh import MeshTable
-    from tribodyn.study.pipeline.result import Result
+    from tribodyn.study.pipeline.result import PairResult
 
 
 #: Computes a figure in SI of a result, or of a load and the name of a part; None leaves it out.
@@ -144,7 +144,7 @@ def summary_figure(
 _HARMONICS = 5
 
 
-def summarize(result: Result) -> dict[str, float]:
+def summarize(result: PairResult) -> dict[str, float]:
     """Compute all figures of a result."""
     moving = _motion_figures(result, measured(result.response))
     values: Tree = {
@@ -235,7 +235,7 @@ def _pressure(mesh: MeshTable) -> Tree:
     return {"maximum_hertz_pressure": greatest} if np.isfinite(greatest) else {}
 
 
-def _static_error_figures(result: Result) -> Tree:
+def _static_error_figures(result: PairResult) -> Tree:
     """Transmission error at rest: of the mesh cycle, or of all teeth where they differ."""
     name = "static_transmission_error"
     figures: tuple[Any, Any, Any]
@@ -288,7 +288,7 @@ def _film_figures(mesh: MeshTable) -> Tree:
     return figures | {name: value for name, value in at_pitch_point.items() if value is not None}
 
 
-def _motion_figures(result: Result, samples: FineSamples) -> Tree:
+def _motion_figures(result: PairResult, samples: FineSamples) -> Tree:
     """Figures of all signals of a motion, averaged in one pass."""
     from tribodyn.signals.indicators import extremes, mesh_harmonics, moments
 
@@ -322,7 +322,7 @@ def _motion_figures(result: Result, samples: FineSamples) -> Tree:
 _OF_CENTRES = ("bearing_force_", "acceleration_", "torque_shaft")
 
 
-def _signals(result: Result, samples: FineSamples) -> Iterator[tuple[str, Array]]:
+def _signals(result: PairResult, samples: FineSamples) -> Iterator[tuple[str, Array]]:
     force, touch = mesh_force(samples), first_touch(result.system, samples)
     yield "mesh_force", force
     separated = (compression(samples) <= touch) & (touch > 0.0)
@@ -339,7 +339,7 @@ def _signals(result: Result, samples: FineSamples) -> Iterator[tuple[str, Array]
     yield from _support_signals(result, samples)
 
 
-def _friction_power(result: Result, phase: Array, force: Array) -> Array:
+def _friction_power(result: PairResult, phase: Array, force: Array) -> Array:
     from tribodyn.mesh.grid import PhaseFunction
 
     mesh = result.mesh
@@ -359,7 +359,7 @@ def _power_difference(speeds: tuple[float, float], moments: Iterable[Array]) -> 
     return pinion - wheel
 
 
-def _support_signals(result: Result, samples: FineSamples) -> Iterator[tuple[str, Array]]:
+def _support_signals(result: PairResult, samples: FineSamples) -> Iterator[tuple[str, Array]]:
     """Forces on the supports, accelerations of the gear centres and torque in both shafts."""
     names = result.response.names
     supports: dict[str, int] = {}
@@ -375,7 +375,7 @@ def _support_signals(result: Result, samples: FineSamples) -> Iterator[tuple[str
     yield from zip(supports, forces, strict=True)
 
 
-def _hypoid_figures(result: Result, in_space: bool) -> Tree:
+def _hypoid_figures(result: PairResult, in_space: bool) -> Tree:
     """Unloaded and loaded transmission error of gears in space, on the line of action."""
     error = result.mesh.unloaded_transmission_error
     if not in_space or error is None:
@@ -386,7 +386,7 @@ def _hypoid_figures(result: Result, in_space: bool) -> Tree:
     }
 
 
-def _comparison(result: Result) -> Tree:
+def _comparison(result: PairResult) -> Tree:
     """Figures of the same motion with the friction of the nominal load."""
     if result.friction is None or result.nominal_friction_response is None:
         return {}

@@ -22,7 +22,7 @@ from tribodyn.uncertainty import Band, bootstrap_band
 if TYPE_CHECKING:
     from tribodyn.study.case.pair import PairCase
     from tribodyn.study.machine.case import AnyCase, MachineCase
-    from tribodyn.study.pipeline.result import Result
+    from tribodyn.study.pipeline.result import PairResult
     from tribodyn.study.studies.sweep_result import SweepPoint
 
 
@@ -153,7 +153,7 @@ class CaseEnsemble(Record):
     case: PairCase | None = None
 
     @cached_property
-    def results(self) -> tuple[Result, ...]:
+    def results(self) -> tuple[PairResult, ...]:
         """Full results at the median of all inputs, and of up to 32 variants evenly among all.
 
         Raises

@@ -1,0 +1,62 @@
+"""One class holds the result of a case of any kind: what all results have, and what they do not."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+import tribodyn as td
+from tribodyn.study import MachineResult, PairResult
+
+pytestmark = pytest.mark.filterwarnings("ignore::tribodyn.errors.ModelWarning")
+
+KINDS = {"pair": PairResult, "machine": MachineResult, "hypoid": PairResult}
+
+
+@pytest.fixture(scope="module", params=KINDS)
+def kind(request: pytest.FixtureRequest) -> str:
+    return str(request.param)
+
+
+@pytest.fixture(scope="module")
+def result(kind: str) -> Any:
+    if kind == "machine":
+        return td.run("two-stage-spur")
+    return td.run("fzg-stiffness" if kind == "pair" else "hypoid-mixed-ehl")
+
+
+def test_a_result_of_any_kind_is_of_the_one_class(kind: str, result: Any, tmp_path: Path) -> None:
+    for each in (result, td.load_result(result.save(tmp_path / "result"))):
+        assert type(each) is KINDS[kind]
+        assert isinstance(each, td.Result)
+        assert repr(each).startswith('Result("')
+        assert each.assumptions == tuple(each.case.assumptions)
+
+
+def test_the_first_mesh_of_every_kind_has_its_errors_at_rest(result: Any) -> None:
+    assert result.mesh is next(iter(result.tables.values()))
+    at_rest = result.mesh.transmission_error_at_rest
+    np.testing.assert_array_equal(result.transmission_error_at_rest(), at_rest)
+    phase = result.mesh.phase[3:5]
+    np.testing.assert_allclose(result.transmission_error_at_rest(phase), at_rest[3:5], rtol=1e-9)
+    assert result.half_backlash >= 0.0
+    if result.mesh.gears is not None:
+        loaded = result.loaded_contact()
+        assert loaded.torque == pytest.approx(result.mesh.pinion_torque)
+
+
+def test_an_attribute_of_another_kind_is_named(kind: str, result: Any) -> None:
+    name, owner = ("damping", "a pair of gears") if kind == "machine" else ("machine", "a machine")
+    assert not hasattr(result, name)
+    with pytest.raises(AttributeError, match=f"has no {name}: that is of {owner}$"):
+        getattr(result, name)
+    with pytest.raises(AttributeError, match=r"has no nonsense$"):
+        result.nonsense  # noqa: B018
+
+
+def test_the_class_shows_the_members_of_every_kind() -> None:
+    for member in ("damping", "natural_modes", "operation", "load_cases", "mounting_study"):
+        assert member in td.Result.__annotations__
