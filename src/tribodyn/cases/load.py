@@ -139,10 +139,6 @@ def run(case: AnyCase | str | os.PathLike[str], progress: Progress = SILENT) -> 
     from tribodyn.study import run as compute
 
     ready: Any = load_case(case) if isinstance(case, (str, os.PathLike)) else case
-    if not ready.lumped:
-        from tribodyn.study.machine.run import run_machine
-
-        return run_machine(ready, progress, stacklevel=3)
     return compute(ready, progress, stacklevel=3)
 
 

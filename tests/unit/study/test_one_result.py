@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 import tribodyn as td
-from tribodyn.study import MachineResult, PairResult
+from tribodyn.study import MachineResult, PairResult, run
 
 pytestmark = pytest.mark.filterwarnings("ignore::tribodyn.errors.ModelWarning")
 
@@ -60,3 +60,19 @@ def test_an_attribute_of_another_kind_is_named(kind: str, result: Any) -> None:
 def test_the_class_shows_the_members_of_every_kind() -> None:
     for member in ("damping", "natural_modes", "operation", "load_cases", "mounting_study"):
         assert member in td.Result.__annotations__
+
+
+@pytest.mark.filterwarnings("default::tribodyn.errors.ModelWarning")
+@pytest.mark.parametrize("name", ["time-varying-friction", "two-stage-spur"])
+def test_one_function_runs_a_case_of_any_kind(name: str) -> None:
+    case = td.load_case(name).replace({"operation.torque": "5 N*m"})
+    with pytest.warns(td.ModelWarning) as caught:
+        result = run(case)
+    assert isinstance(result, td.Result)
+    assert [str(each.message) for each in caught] == [str(each) for each in result.warnings]
+    assert {each.filename for each in caught} == {__file__}
+
+
+def test_what_follows_a_pair_is_refused_for_a_machine() -> None:
+    with pytest.raises(td.InputError, match="follow"):
+        run(td.load_case("two-stage-spur"), follow=lambda case, mesh: case)

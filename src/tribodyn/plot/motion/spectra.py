@@ -21,7 +21,7 @@ from tribodyn.plot.theme.style import TOP, Trace, bars, button_row
 from tribodyn.types import Array
 
 if TYPE_CHECKING:
-    from tribodyn.study import Result
+    from tribodyn.study import PairResult
 
 #: Highest mesh harmonic drawn.
 _HIGHEST = 80
@@ -39,7 +39,7 @@ _REACHED, _MARKED = 0.01, 8
 _NAMES = 30
 
 
-def _no_harmonics(result: Result) -> str:
+def _no_harmonics(result: PairResult) -> str:
     """Reason why a result has no mesh harmonics; empty if it has."""
     if Motion(result).periodic:
         return ""
@@ -49,14 +49,14 @@ def _no_harmonics(result: Result) -> str:
     )
 
 
-def _spectrum(result: Result, signal: Array) -> Spectrum:
+def _spectrum(result: PairResult, signal: Array) -> Spectrum:
     """Spectrum up to the order that eight steps per period resolve, at most 80."""
     steps = result.response.time.size // result.response.periods
     return amplitude_spectrum(result.response, signal, highest=min(_HIGHEST, steps // 8))
 
 
 def _panel(
-    result: Result, quantity: str, label: str, signals: Sequence[tuple[str, str, Array]]
+    result: PairResult, quantity: str, label: str, signals: Sequence[tuple[str, str, Array]]
 ) -> Panel:
     """Panel with the harmonics of one or two signals as grouped bars."""
     hertz, unit = display_unit("frequency"), display_unit(quantity)
@@ -70,7 +70,7 @@ def _panel(
     return Panel(axis_label(quantity, label), traces)
 
 
-def _gear_panels(result: Result, quantity: str) -> list[Panel]:
+def _gear_panels(result: PairResult, quantity: str) -> list[Panel]:
     """Panels with the mesh harmonics of a signal of both gears."""
     if no_translation(result):
         return []
@@ -94,7 +94,7 @@ def _strongest(panels: Iterable[Panel]) -> str:
     return f"{tallest['x'][top]:g} ({frequency} {display_unit('frequency')})"
 
 
-def _natural(result: Result, last: float) -> tuple[Trace, list[Trace]]:
+def _natural(result: PairResult, last: float) -> tuple[Trace, list[Trace]]:
     """Mark the natural frequencies in the range of the harmonics and list them in the legend."""
     # Numbers of close frequencies share one label above the panels.
     modes, places = result.natural_modes, list[tuple[str, float]]()
@@ -121,7 +121,7 @@ def _natural(result: Result, last: float) -> tuple[Trace, list[Trace]]:
     return lines, legend
 
 
-def _harmonic_figure(title: str, result: Result, panels: list[Panel]) -> Sketch:
+def _harmonic_figure(title: str, result: PairResult, panels: list[Panel]) -> Sketch:
     """Draw a figure of harmonics, with buttons for a linear and a logarithmic scale."""
     layout, legend = _harmonic_layout(result, panels)
     panels[0] = replace(panels[0], traces=[*panels[0].traces, *legend])
@@ -131,7 +131,7 @@ def _harmonic_figure(title: str, result: Result, panels: list[Panel]) -> Sketch:
     return sketch
 
 
-def _harmonic_layout(result: Result, panels: Sequence[Panel]) -> tuple[Trace, list[Trace]]:
+def _harmonic_layout(result: PairResult, panels: Sequence[Panel]) -> tuple[Trace, list[Trace]]:
     ends = [_last_order(panels, decades) + 0.6 for decades in (_SEEN, _DECADES)]
     linear: Trace = {"xaxis.range": [_FIRST, ends[0]]}
     logarithmic: Trace = {"xaxis.range": [_FIRST, ends[1]]}
@@ -171,7 +171,7 @@ def _decades(panel: Panel) -> list[float]:
 
 
 @run_drawing(heading="Spectra", missing=_no_harmonics)
-def spectrum(result: Result) -> Sketch:
+def spectrum(result: PairResult) -> Sketch:
     """Draw the mesh harmonics of the transmission error and of the accelerations.
 
     Amplitude of each mesh harmonic. Harmonic 1 is the mesh frequency, the number of teeth that
@@ -189,12 +189,12 @@ def spectrum(result: Result) -> Sketch:
     return _harmonic_figure(title, result, panels)
 
 
-def _no_bearing_harmonics(result: Result) -> str:
+def _no_bearing_harmonics(result: PairResult) -> str:
     return no_translation(result) or _no_harmonics(result)
 
 
 @run_drawing(heading="Spectra of the bearing forces", missing=_no_bearing_harmonics)
-def bearing_spectrum(result: Result) -> Sketch:
+def bearing_spectrum(result: PairResult) -> Sketch:
     """Draw the mesh harmonics of the bearing forces.
 
     Forces that the bearings transmit to the housing, by mesh harmonic. A harmonic close to a

@@ -171,7 +171,7 @@ class RingPlace(NamedTuple):
     window: float | Callable[[Array], Array] | None = None  #: as of ``ring_sensor_signal``
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class MachineTurningMotion(PeriodicMotion):
     """Motion of a machine with faults, and what its sensors receive."""
 

@@ -375,29 +375,24 @@ class MachineResult(Result, of=LoadResult):
         from tribodyn.study.machine.pair_cases import inputs_under
         from tribodyn.study.mesh_inputs import HypoidTeeth
 
-        if mesh in self._mounting_studies:
-            return self._mounting_studies[mesh]
-        loads = (self.operation, *self.load_cases)
-        if not isinstance(self.operation.misalignment.get(mesh), Misalignment):
-            names = [
-                n for n, m in self.operation.misalignment.items() if isinstance(m, Misalignment)
-            ]
+        studies: dict[str, MisalignmentStudy] = vars(self).setdefault("_mounting_studies", {})
+        if mesh in studies:
+            return studies[mesh]
+        by_mesh = self.operation.misalignment
+        if not isinstance(by_mesh.get(mesh), Misalignment):
+            names = [n for n, m in by_mesh.items() if isinstance(m, Misalignment)]
             why = f"Hypoid meshes with computed teeth: {', '.join(names) or 'none'}"
             raise InputError(f'mesh "{mesh}" has no mounting errors', Argument("mesh"), why, "")
         nominal = inputs_under(self.case, mesh, self.operation.load).teeth
         assert isinstance(nominal, HypoidTeeth)
         displaced: list[Any] = [
             inputs_under(self.case, mesh, each.load, each.misalignment[mesh]).teeth
-            for each in loads
+            for each in (self.operation, *self.load_cases)
         ]
         cases = [teeth.mounting for teeth in displaced if teeth.gears.side == nominal.gears.side]
         errors = list(dict.fromkeys((nominal.mounting, *cases)))
-        self._mounting_studies[mesh] = study = misalignment_study(nominal.flanks, errors)
-        return study
-
-    @cached_property
-    def _mounting_studies(self) -> dict[str, MisalignmentStudy]:
-        return {}
+        studies[mesh] = misalignment_study(nominal.flanks, errors)
+        return studies[mesh]
 
     def mesh_spectra(self, mesh: str | None = None) -> Any:
         """Peak amplitudes of all signals at the operating point over the order of one mesh.
@@ -447,7 +442,7 @@ class MachineResult(Result, of=LoadResult):
         return str(self.to_xarray().mesh_force.to_pandas().to_csv())
 
     def _parts(self) -> Parts:
-        return self.motion._parts()
+        return self.operation.motion._parts()
 
     def _case_in(self, place: Path) -> MachineCase:
         return copy_housing(self.case, place, HOUSING)

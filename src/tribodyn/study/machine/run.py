@@ -3,8 +3,6 @@
 from __future__ import annotations
 
 import json
-import sys
-import warnings
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
@@ -19,7 +17,6 @@ from tribodyn.errors import (
     InputError,
     ModelWarning,
     collected,
-    frames,
 )
 from tribodyn.gear import Misalignment
 from tribodyn.interrupt import in_threads, processors, single_blas_thread
@@ -103,10 +100,8 @@ class Balanced(NamedTuple):
         return self.static.machine
 
 
-def run_machine(
-    case: MachineCase, progress: Progress = SILENT, *, stacklevel: int = 2
-) -> MachineResult:
-    """Compute a machine at its operating point and under its load cases."""
+def run_machine(case: MachineCase, progress: Progress = SILENT) -> MachineResult:
+    """Compute a machine under all its loads without raising the warnings, which the result has."""
     # The matrices of a machine are small: threads of the linear algebra only wait for each other.
     with collected() as caught, single_blas_thread():
         warn_of_motion(case.solver, case.machine())
@@ -121,10 +116,7 @@ def run_machine(
             same = replace(computed.load, name=load.name, share=load.share)
             results.append(replace(computed, load=same))
         warn_of_meshes(of_meshes)
-    unique = {str(warning): warning for warning in caught}
-    for warning in unique.values():
-        warnings.warn(warning, stacklevel=frames(stacklevel, sys._getframe()))
-    return MachineResult(case, results[0], tuple(results[1:]), tuple(unique.values()))
+    return MachineResult(case, results[0], tuple(results[1:]), tuple(caught))
 
 
 def run_load(

@@ -39,7 +39,6 @@ if TYPE_CHECKING:
     from tribodyn.measurement import Recording
     from tribodyn.mesh import HypoidFriction, MeshTable
     from tribodyn.stiffness import LoadedContact
-    from tribodyn.study.case.case import Case
     from tribodyn.study.case.pair import PairCase
     from tribodyn.study.case.provenance import Assumption
     from tribodyn.study.faults.sensors import Sensors
@@ -52,8 +51,7 @@ _PLOT = "plot_"
 
 def kind_of(name: str) -> type[Any]:
     """Class of the results of one kind, which knows this module."""
-    kind: type[Any] = getattr(import_module("tribodyn.study"), name)
-    return kind
+    return getattr(import_module("tribodyn.study"), name)  # type: ignore[no-any-return]
 
 
 class ResultOfCase(Record, ABC):
@@ -68,7 +66,6 @@ class ResultOfCase(Record, ABC):
 
     case: Any
     mesh: Any
-    tables: Mapping[str, MeshTable]
     warnings: tuple[ModelWarning, ...]
     turning_motion: Any
 
@@ -89,6 +86,11 @@ class ResultOfCase(Record, ABC):
     @abstractmethod
     def loads(self) -> ByName:
         """Results by load; ``"operation"`` is the operating point."""
+
+    @property
+    def tables(self) -> Mapping[str, MeshTable]:
+        """Tooth contact at the operating point by the name of the mesh, ``"mesh"`` of a pair."""
+        return self.loads["operation"].tables  # type: ignore[no-any-return]
 
     @property
     @abstractmethod
@@ -402,8 +404,8 @@ class ResultOfCase(Record, ABC):
         what = f"{kind} has no {name}"
         if not name.startswith(_PLOT):
             kind_of("MachineResult")  # shows its members
-            other = "a machine" if type(self) is kind_of("PairResult") else "a pair of gears"
-            shown = f": that is of {other}" * (name in Result.__annotations__)
+            owner = "a machine" if type(self) is kind_of("PairResult") else "a pair of gears"
+            shown = f": that is of {owner}" * (name in Result.__annotations__)
             raise AttributeError(what + shown)
         figure, figures = name.removeprefix(_PLOT), figures_of(self)
         if figure in figures:
@@ -441,10 +443,6 @@ class Result(ResultOfCase):
     def __new__(cls, *parts: object, **more: object) -> Result:
         """Return the unset result of a pair, where no kind is named."""
         return object.__new__(kind_of("PairResult") if cls is Result else cls)
-
-    if TYPE_CHECKING:
-
-        def __init__(self, case: Case, *parts: Any, **more: Any) -> None: ...
 
     def __init_subclass__(cls, of: type = object) -> None:
         """Show the members of a kind of result, and of what it is of, on this class too."""

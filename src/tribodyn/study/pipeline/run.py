@@ -9,7 +9,7 @@ from contextlib import nullcontext
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, NamedTuple
 
-from tribodyn.errors import ModelWarning, collected, frames
+from tribodyn.errors import Argument, InputError, ModelWarning, collected, frames
 from tribodyn.progress import SILENT, Progress
 from tribodyn.study.case.read import unchanged_files
 from tribodyn.study.case.to_models import locate_errors
@@ -29,6 +29,7 @@ from tribodyn.study.pipeline.cautions import (
 from tribodyn.study.pipeline.motion import motion_of, motions_of, steps_of
 from tribodyn.study.pipeline.response_series import measured, mesh_force
 from tribodyn.study.pipeline.result import PairResult
+from tribodyn.study.pipeline.result_of_case import Result
 from tribodyn.study.pipeline.store import Stored
 from tribodyn.study.pipeline.stored_motion import NOMINAL, read_friction, read_passes, read_response
 from tribodyn.study.pipeline.tooth_contact import (
@@ -45,21 +46,22 @@ if TYPE_CHECKING:
     from tribodyn.mesh import MeshFriction, MeshTable
     from tribodyn.study.case.pair import PairCase
     from tribodyn.study.heat_balance import HeatBalance
+    from tribodyn.study.machine.case import AnyCase
     from tribodyn.study.pipeline.assembly import Damping
 
 
 def run(
-    case: PairCase,
+    case: AnyCase,
     progress: Progress = SILENT,
     *,
     stacklevel: int = 2,
     follow: Follow | None = None,
-) -> PairResult:
-    """Compute a case.
+) -> Result:
+    """Compute a case of any kind.
 
     Parameters
     ----------
-    case : PairCase
+    case : Case
         From :func:`tribodyn.load_case`.
     progress : Progress
         Receives the progress of the run; silent by default.
@@ -67,7 +69,11 @@ def run(
         Frames to skip in warnings, as in :func:`warnings.warn`.
     follow : callable, optional
         Called with the case and its mesh in every pass of ``solver.coupling``; returns the case
-        with the values that follow from them, such as oil at another temperature.
+        with the values that follow from them, such as oil at another temperature. Of pairs.
+
+    Returns
+    -------
+    Result
 
     Raises
     ------
@@ -87,8 +93,17 @@ def run(
     >>> case = tribodyn.load_case("fzg-roughness")
     >>> result = run(case)  # doctest: +SKIP
     """
-    with nullcontext() if _has_marched() else compile_in_parallel(case):
-        result = computed(case, progress, follow=follow)
+    from tribodyn.study.machine.run import run_machine
+
+    result: Result
+    if not case.lumped:
+        if follow is not None:
+            why = "It takes a pair of gears and the table of its mesh"
+            raise InputError("follow is given", Argument("follow"), why, "Leave it out")
+        result = run_machine(case, progress)
+    else:
+        with nullcontext() if _has_marched() else compile_in_parallel(case):
+            result = computed(case, progress, follow=follow)
     for warning in result.warnings:
         warnings.warn(warning, stacklevel=frames(stacklevel, sys._getframe()))
     return result

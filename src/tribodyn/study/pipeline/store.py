@@ -29,7 +29,7 @@ if TYPE_CHECKING:
 
     from tribodyn.mesh import MeshTable
     from tribodyn.study.case.case import Case
-    from tribodyn.study.pipeline.result_of_case import Result
+    from tribodyn.study.pipeline.result_of_case import ResultOfCase
 
 #: Names of the files of a motion: of parts by name, and of a pair.
 MOTIONS = ("motion", "response")
@@ -63,7 +63,7 @@ def _of_load(load: int, sep: str = "-") -> str:
 
 
 def write_result(
-    result: Result, directory: str | os.PathLike[str], *, force: bool, csv: bool
+    result: ResultOfCase, directory: str | os.PathLike[str], *, force: bool, csv: bool
 ) -> Path:
     """Write case, summary, mesh tables, motions and report into a new directory."""
     import tribodyn
