@@ -170,7 +170,7 @@ def _others(
 ) -> dict[str, Call]:
     """Calls whose arguments are files, or what no example leaves behind."""
     of = {kind.__name__: instances for kind, instances in objects.items()}
-    case, result, film = of["PairCase"][0], of["Result"][0], of["LineContactSolution"][0]
+    case, result, film = of["PairCase"][0], of["PairResult"][0], of["LineContactSolution"][0]
     functions = result.mesh.functions()
     build, pair = calls["mesh.build"]
     mesh = build(**pair | {"film_model": "newton", "film_options": {"nodes": 65}, "steps": 16})

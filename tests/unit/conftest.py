@@ -35,7 +35,7 @@ class Computed(SimpleNamespace):
         return getattr(self.mesh, error) if phase is None else self.mesh.at(error, phase)
 
 
-class Result(Computed):
+class PairResult(Computed):
     """Stand-in for the result of a run, drawn by the figures of its class."""
 
     rating = None  # its case has no [rating]
@@ -120,7 +120,7 @@ def drawable() -> Any:
     ) -> Any:
         case = load_case("fzg-roughness").replace({"gears.driver": driver, **(changes or {})})
         mesh = mesh_of(case, film_model)
-        return Result(
+        return PairResult(
             coupling=None,
             friction=None,
             case=case,

@@ -39,6 +39,7 @@ if TYPE_CHECKING:
     from tribodyn.measurement import Recording
     from tribodyn.mesh import HypoidFriction, MeshTable
     from tribodyn.stiffness import LoadedContact
+    from tribodyn.study.case.case import Case
     from tribodyn.study.case.pair import PairCase
     from tribodyn.study.case.provenance import Assumption
     from tribodyn.study.faults.sensors import Sensors
@@ -49,7 +50,7 @@ if TYPE_CHECKING:
 _PLOT = "plot_"
 
 
-def kind_of(name: str) -> type[Any]:
+def kind_of(name: str) -> type:
     """Class of the results of one kind, which knows this module."""
     return getattr(import_module("tribodyn.study"), name)  # type: ignore[no-any-return]
 
@@ -65,7 +66,6 @@ class ResultOfCase(Record, ABC):
     _COMPARISON: ClassVar[str] = "machine_comparison"
 
     case: Any
-    mesh: Any
     warnings: tuple[ModelWarning, ...]
     turning_motion: Any
 
@@ -258,9 +258,9 @@ class ResultOfCase(Record, ABC):
         """Signals at the operating point with units, as :meth:`to_xarray`."""
         return self.to_xarray()
 
-    def _case_in(self, place: Path) -> Any:
+    def _case_in(self, place: Path) -> Case:
         """Case whose files lie in a folder, copied there."""
-        return self.case
+        return self.case  # type: ignore[no-any-return]
 
     def save(
         self, directory: str | os.PathLike[str], *, force: bool = False, csv: bool = False
