@@ -119,7 +119,6 @@ __all__ = ["ANY", "FILES", "LINES", "import_circles", "lines_of_code", "measures
 #: dynamics: smooth searches of motions over phases
 #: model: runs and help start sooner, as the installed packages are searched once
 #: study: starts of machines chosen by their time, long studies refused before teeth
-#: x
 LINES: dict[str, int] = {
     "__init__": 105,
     "__main__": 3,
