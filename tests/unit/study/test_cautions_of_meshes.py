@@ -8,7 +8,7 @@ from typing import Any
 import pytest
 
 import tribodyn as td
-from tribodyn.errors import collected
+from tribodyn.errors import InputError, collected
 from tribodyn.model import NO_OPTIONS
 from tribodyn.study import Case, MachineCase
 from tribodyn.study.machine.run import balanced_machine, rehearse_machine
@@ -143,7 +143,27 @@ def test_the_gears_of_a_stage_are_warned_of_once_for_all_planets() -> None:
     (undercut,) = [each.message for each in checked if each.code == "undercut"]
     assert undercut.startswith("mesh low_sun1: the sun is undercut")
     (fillet,) = [each.message for each in checked if each.code == "fillet-contact"]
-    assert "planet's flank" in fillet
+    assert "the planet's flank" in fillet
+
+
+def test_a_gear_with_a_name_of_its_own_has_no_article() -> None:
+    def case(teeth: int) -> MachineCase:
+        gears = {"z1": {"shaft": "in", "teeth": 16, **GEAR}}
+        gears["wheel"] = {"shaft": "out", "teeth": teeth, **GEAR}
+        meshes = {"m": {"gears": ["z1", "wheel"], "normal_module": "3 mm"}}
+        operation = {"input": "in", "output": "out", **POINT}
+        return MachineCase(gears=gears, meshes=meshes, **MODELS, lubricant=OIL, operation=operation)
+
+    with collected() as checked:
+        rehearse_machine(case(17))
+    said = [each.message for each in checked if each.code == "undercut"]
+    starts = [f"mesh m: {name} is undercut" for name in ("z1", "the wheel")]
+    assert all(text.startswith(start) for text, start in zip(said, starts, strict=True))
+    with pytest.raises(InputError) as error:
+        case(90)
+    (problem,) = error.value.problems
+    assert "tip diameter of the wheel" in problem.what
+    assert "shift z1 outwards" in problem.remedy
 
 
 def test_a_check_of_a_machine_warns_of_its_load_as_that_of_a_pair_does() -> None:

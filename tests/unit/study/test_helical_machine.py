@@ -296,7 +296,7 @@ def test_the_hand_of_a_gear_is_that_of_its_mesh(stated: dict[str, str], hand: st
 
 
 def test_gears_whose_hands_do_not_mesh_are_refused() -> None:
-    with pytest.raises(td.InputError, match=r"z2\.hand: the pinion is left-handed"):
+    with pytest.raises(td.InputError, match=r"z2\.hand: z1 is left-handed, z2 left-handed"):
         machine(gears={"z1.hand": "left", "z2.hand": "left"}, meshes={"first.hand": "left"})
     with pytest.raises(td.InputError, match=r"hand = .right. and hand = .left. are both given"):
         machine(gears={"z1.hand": "left"})

@@ -204,6 +204,10 @@ class Source:
         """Key of the file for a key of the case."""
         return key
 
+    def named(self, text: str) -> str:
+        """Text about the gears of a case with their names."""
+        return text
+
     def line(self, key: str) -> int:
         """Return the line of a key, or of its first inner key or enclosing table; zero if none."""
         while key and key not in self.lines:

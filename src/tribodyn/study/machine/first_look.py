@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-import re
 from collections.abc import Iterator, Sequence
 from typing import TYPE_CHECKING, Any, NamedTuple
 
@@ -131,11 +130,9 @@ def warn_of_motion(solver: SolverTable, machine: Machine) -> PhaseCost | None:
 def warn_of_gears(case: MachineCase) -> None:
     """Warn of gears whose teeth are computed, as those of a pair are warned of, by their names."""
     listed: dict[str, MeshWarning] = {}
-    for name, pair, under in computed_pairs(case):
-        names = dict(zip(("pinion", "wheel"), under.names, strict=True))
+    for name, pair, _ in computed_pairs(case):
         for each in (*case_cautions(pair, case), *teeth_cautions(pair)):
-            pieces = re.split(r"(?<![\w.])(pinion|wheel)\b", each.message)
-            text = "".join(names.get(piece, piece) for piece in pieces)
+            text = pair.source.named(each.message)
             listed.setdefault(text, MeshWarning(name, "", ModelWarning(each.code, text)))
     warn_of_meshes(listed.values())
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from itertools import product
@@ -47,6 +48,8 @@ _OF_MACHINE = (*HEAT, *PartRating.fields, *HISTORY)
 #: The machine is what vibrates: its pairs have no supports of their own.
 _WITHOUT_SUPPORTS = {"model": "torsional"}
 _ROLES = ("pinion", "wheel")
+#: Names of gears that are words, which have an article.
+_WORDS = (*_ROLES, "sun", "planet", "ring")
 #: Torque of a mesh that is rounding [N*m].
 _IDLE = 1e-9
 
@@ -87,7 +90,20 @@ class PairSource(Source):
             else (key, problem)
             for key, problem in problems
         ]
-        return super().place(named)
+        texts = ("what", "why", "remedy")
+        return super().place(
+            (key, replace(each, **{name: self.named(getattr(each, name)) for name in texts}))
+            for key, each in named
+        )
+
+    def named(self, text: str) -> str:
+        """Text about a pair with the names of its gears in the machine."""
+
+        def gear(match: re.Match[str]) -> str:
+            name = self.gears[_ROLES.index(match[2])]
+            return (match[1] or "") * (name in _WORDS) + name
+
+        return re.sub(r"(?<![\w.])([Tt]he )?(pinion|wheel)\b", gear, text)
 
     def where(self, key: str) -> str:
         """Format the location of a key of the pair."""
