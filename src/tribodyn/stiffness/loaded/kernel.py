@@ -20,13 +20,14 @@ import numpy as np
 
 from tribodyn.compiled import announced, source_digest
 from tribodyn.compiled.cache import cached_njit
-from tribodyn.compiled.jit import INNER_OPTIONS
+from tribodyn.compiled.jit import INNER_OPTIONS, LEAN_OPTIONS
 from tribodyn.interrupt import STOPPED
 from tribodyn.types import Array, Index, Tree
 
 #: NaN stays detectable: neither "nnan" nor "ninf".
 _JIT: Tree = {"nogil": True, "fastmath": {"contract", "nsz"}, "error_model": "numpy"}
 _INNER: Tree = {**_JIT, **INNER_OPTIONS}
+_LEAN: Tree = {**_JIT, **LEAN_OPTIONS}
 
 #: Residual of a pair over the approach that counts as zero.
 _TIGHT = 1e-13
@@ -62,7 +63,7 @@ def _work(n: int) -> Work:
     return Work(np.empty((n, n)), np.empty(n), np.empty(n), np.empty(2))
 
 
-@nb.njit(**_INNER)
+@nb.njit(**_LEAN)
 def _eliminate(m: int, a: Array, b: Array) -> None:
     """Solve in place; the matrix is symmetric and positive definite, so nothing is pivoted."""
     for k in range(m):
@@ -78,7 +79,7 @@ def _eliminate(m: int, a: Array, b: Array) -> None:
         b[k] /= a[k, k]
 
 
-@nb.njit(**_INNER)
+@nb.njit(**_LEAN)
 def _touching_system(teeth: Teeth, gaps: Array, delta: float, f: Array, work: Work) -> int:
     """Tangent compliances and residuals of the pairs that carry; their number, -2 out of range."""
     (C, A, B), (a, b, place, _), m = teeth, work, 0
@@ -102,7 +103,7 @@ def _touching_system(teeth: Teeth, gaps: Array, delta: float, f: Array, work: Wo
     return m
 
 
-@nb.njit(**_INNER)
+@nb.njit(**_LEAN)
 def _residual(teeth: Teeth, gap: float, delta: float, f: Array, i: int) -> float:
     C, A, B = teeth
     total = gap - delta
@@ -113,7 +114,7 @@ def _residual(teeth: Teeth, gap: float, delta: float, f: Array, i: int) -> float
     return total
 
 
-@nb.njit(**_INNER)
+@nb.njit(**_LEAN)
 def _slice(teeth: Teeth, gaps: Array, delta: float, f: Array, work: Work) -> int:
     """Loads ``f`` of one slice at an approach, from the loads that it holds.
 
@@ -166,7 +167,7 @@ def _slice(teeth: Teeth, gaps: Array, delta: float, f: Array, work: Work) -> int
     return -1
 
 
-@nb.njit(**_INNER)
+@nb.njit(**_LEAN)
 def _total_force(
     teeth: Teeth, gaps: Array, width: Array, delta: float, f: Array, work: Work
 ) -> int:
@@ -188,7 +189,7 @@ def _total_force(
     return 0
 
 
-@nb.njit(**_INNER)
+@nb.njit(**_LEAN)
 def _least(gaps: Array) -> float:
     """Smallest gap of all slices; NaN if there is one."""
     # Sums and minima of NumPy are slow to compile, and bring SciPy where compiled code is loaded.
@@ -200,7 +201,7 @@ def _least(gaps: Array) -> float:
     return float(least)
 
 
-@nb.njit(**_INNER)
+@nb.njit(**_LEAN)
 def _approach(
     teeth: Teeth, gaps: Array, width: Array, total: float, start: float, f: Array, work: Work
 ) -> tuple[float, int]:
