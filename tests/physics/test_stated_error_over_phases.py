@@ -103,3 +103,16 @@ def test_of_flanks_that_separate(points):
     error = true_error(system, frequencies, motion, 96)
     assert error < 1.2 * motion.step_error
     assert motion.step_error < 4.0 * error
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(("seed", "load"), [(106, 0.3), (301, 0.25)])
+def test_an_automatic_choice_refines_flanks_that_separate(seed, load):
+    system, frequencies = drawn(seed, 2, load=load)
+    motion = harmonic_balance(system, frequencies)
+    assert np.mean(motion.fine.contact_force <= 0.0) > 0.02
+    assert motion.converged
+    assert motion.step_error < 1e-3
+    error = true_error(system, frequencies, motion, 144)
+    assert error < 2.0 * motion.step_error
+    assert motion.step_error < 3.0 * error

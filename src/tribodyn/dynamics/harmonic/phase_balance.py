@@ -54,7 +54,7 @@ _SEARCHED, _STATED, _SUMMED = 1e-4, 6e-5, 8e-8
 #: Step error that causes a warning; part of the largest change with which a phase is refined too.
 _LIMIT, _WORST = 1e-2, 0.2
 #: Part of the step error that the error of a motion on the way to finer grids may have.
-_NEARLY = 1e-3
+_NEARLY = 0.05
 #: Part of the largest change below which that with twice the points is not estimated again.
 _AGAIN = 1e-3
 #: Damping added at first where Newton's method does not converge, over the critical damping at
@@ -63,7 +63,7 @@ _ADDED, _TRIES = (0.3, 0.1, 0.03, 0.01, 0.003), 12
 #: Growth in a cycle of the fastest phase that is warned of; logarithm of the largest stated one.
 _GROWS, _HIGH = 1.001, 50.0
 #: Accuracy of the linear motion, and Newton steps in which the error halves if points suffice.
-_ROUGH, _PATIENCE = 0.1, 5
+_ROUGH, _PATIENCE = 0.1, 8
 
 
 class Follower(NamedTuple):

@@ -31,9 +31,8 @@ from tribodyn.types import Array, Index, Mask
 if TYPE_CHECKING:
     from scipy.sparse import csr_matrix
 
-#: Points of Gauss's rule over a piece, fewest of those over a short one, and steps of the grid in
-#: a piece without breaks.
-_GAUSS, _FEWEST, _STEPS = 8, 3, 3
+#: Points of Gauss's rule over a piece, and steps of the grid in a piece without breaks.
+_GAUSS, _STEPS = 8, 3
 #: Refinement of a grid along a phase between whose points motions are interpolated, and points of
 #: the polynomial.
 _REFINED, _POINTS = 4, 12
@@ -80,7 +79,7 @@ class Pieces:
         end = np.roll(begin.place, -1)
         end[last] = 1.0 + begin.place[np.roll(last, 1)]
         width = end - begin.place
-        return cls(grid, axis, begin, width, *_gauss(begin, width, np.full(width.size, _GAUSS)))
+        return cls(grid, axis, begin, width, *_gauss(begin, width))
 
     def cut(self, piece: Index, inside: Array) -> Pieces:
         """The same with pieces cut at distances from their begins: its last points, no weight."""
@@ -92,9 +91,8 @@ class Pieces:
         end[last], end[middle] = self.width[chosen], inside[np.lexsort((inside, piece))]
         begin[np.flatnonzero(middle) + 1] = end[middle]
         width = end - begin
-        part = np.minimum(width * -(-self.grid.shape[self.axis] // _STEPS), 1.0)
         starts = Cut(self.begin.line[owner], self.begin.place[owner] + begin)
-        at, weight = _gauss(starts, width, np.ceil(_FEWEST + (_GAUSS - _FEWEST) * part))
+        at, weight = _gauss(starts, width)
         ends = Cut(self.begin.line[piece], (self.begin.place[piece] + inside) % 1.0)
         uncut = self.weight.copy()
         uncut.reshape(-1, _GAUSS)[chosen] = 0.0
@@ -158,17 +156,12 @@ class Pieces:
         return np.asarray(coarse.reshape(self.grid.size, -1))
 
 
-def _gauss(begin: Cut, width: Array, points: Array) -> tuple[Cut, Array]:
+def _gauss(begin: Cut, width: Array) -> tuple[Cut, Array]:
     """Gauss's points of pieces, and their weights."""
-    parts, weights = [], []
-    for number in np.unique(points).astype(int):
-        chosen = np.flatnonzero(points == number)
-        node, share = legendre.leggauss(number)
-        half = 0.5 * width[chosen, None]
-        place = (begin.place[chosen, None] + half * (1.0 + node)) % 1.0
-        parts.append(Cut(np.repeat(begin.line[chosen], number), place.reshape(-1)))
-        weights.append((half * share).reshape(-1))
-    return Cut.joined(parts), np.concatenate(weights)
+    node, share = legendre.leggauss(_GAUSS)
+    half = 0.5 * width[:, None]
+    place = (begin.place[:, None] + half * (1.0 + node)) % 1.0
+    return Cut(np.repeat(begin.line, _GAUSS), place.reshape(-1)), (half * share).reshape(-1)
 
 
 class Cell(NamedTuple):
