@@ -158,12 +158,12 @@ _ARGUMENTS: dict[str, Callable[[_Place, str], list[str]]] = {
     ],
     "friction-from-loss": lambda p, n: ["fzg-wheel-driven", "--case", p.file(n), *_mesh(n)],
     "bifurcation": lambda p, n: [
-        p.file(n), f"operation.speed={_range(n)}:3", "--cycles", "8", "--transient", "8",
+        p.file(n), f"operation.speed={_range(n)}:2", "--cycles", "4", "--transient", "2",
         *_followed(n),
     ],
     "continuation": lambda p, n: [p.file(n), f"operation.speed={_range(n)}", *_followed(n)],
     "basins": lambda p, n: [p.file(n), "--points", "3", *_followed(n)],
-    "lyapunov": lambda p, n: [p.file(n), "--cycles", "8", "--transient", "8"],
+    "lyapunov": lambda p, n: [p.file(n), "--cycles", "2", "--transient", "1"],
     "experiment": lambda p, n: [
         "friction", p.file(n), "--roughness", "0.3,0.5 um", "--laws", "xu-2007"
     ],

@@ -14,8 +14,8 @@ from tribodyn.study import Case
 
 README = (ROOT / "README.md").read_text("utf-8")
 INDEX = (ROOT / "docs" / "index.md").read_text("utf-8")
-# Their examples solve films and compile what few others need.
-SLOW = {"film.md", "stiffness.md", "dynamics.md", "hypoid.md"}
+# Their examples solve films, move faulty gears, and compile what few others need.
+SLOW = {"film.md", "stiffness.md", "dynamics.md", "hypoid.md", "faults.md"}
 # Those of the cookbook run in test_cookbook.py.
 WITH_PYTHON = [
     path

@@ -193,6 +193,7 @@ def test_the_stated_error_is_that_against_a_fine_solution(options, points, fine)
 
 
 @pytest.mark.filterwarnings("ignore:.*step-size")
+@pytest.mark.slow
 def test_flanks_that_separate_are_solved_with_second_order():
     with pytest.warns(ModelWarning, match="unstable-orbit"):
         clock = harmonic_balance(two_meshes((5, 3), gap=0.1, amplitude=0.12), 0.05)
