@@ -15,97 +15,16 @@ from __future__ import annotations
 
 import sys
 from importlib import import_module
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
-if TYPE_CHECKING:
-    from tribodyn.cases import cases, load_case, load_result, run, warm_up
-    from tribodyn.errors import ComputationError, InputError, ModelWarning
-    from tribodyn.study import (
-        Case,
-        Result,
-        basins,
-        bifurcation,
-        build_system,
-        campbell,
-        compare_results,
-        comprehensive_stiffness,
-        continuation,
-        ensemble,
-        film_over_operation,
-        friction_experiment,
-        harris_map,
-        kinematic_frequencies,
-        loaded_contact,
-        loss_map,
-        lyapunov_exponents,
-        natural_modes,
-        operating_data,
-        optimize_lead,
-        optimize_tip_relief,
-        rig_power_flow,
-        run_up,
-        sobol_indices,
-        speed_sweep,
-        sweep,
-        vibration_data,
-    )
-    from tribodyn.variants import open_study, run_study
+from tribodyn.lazy import names_of_stub
 
 __version__ = "0.2.0"
 
-__all__ = [
-    "Case",
-    "ComputationError",
-    "InputError",
-    "ModelWarning",
-    "Result",
-    "__version__",
-    "basins",
-    "bifurcation",
-    "build_system",
-    "campbell",
-    "cases",
-    "compare_results",
-    "comprehensive_stiffness",
-    "continuation",
-    "ensemble",
-    "film_over_operation",
-    "friction_experiment",
-    "harris_map",
-    "kinematic_frequencies",
-    "load_case",
-    "load_result",
-    "loaded_contact",
-    "loss_map",
-    "lyapunov_exponents",
-    "natural_modes",
-    "open_study",
-    "operating_data",
-    "optimize_lead",
-    "optimize_tip_relief",
-    "rig_power_flow",
-    "run",
-    "run_study",
-    "run_up",
-    "sobol_indices",
-    "speed_sweep",
-    "sweep",
-    "vibration_data",
-    "warm_up",
-]
+#: Packages that define the public names.
+_HOMES = names_of_stub(__file__)
 
-#: Package that defines a public name, if not ``study``.
-_ELSEWHERE = {
-    "ComputationError": "errors",
-    "InputError": "errors",
-    "ModelWarning": "errors",
-    "load_case": "cases",
-    "load_result": "cases",
-    "open_study": "variants",
-    "run": "cases",
-    "run_study": "variants",
-    "warm_up": "cases",
-}
+__all__ = sorted(["__version__", *_HOMES])
 
 _PACKAGES = (
     "analysis", "cases", "contact", "cookbook", "dynamics", "ehl", "errors", "exchange",
@@ -119,8 +38,8 @@ def __getattr__(name: str) -> Any:
     """Load a public name or a package when it is first used."""
     if name in _PACKAGES:
         return import_module(f"{__name__}.{name}")
-    if name in __all__:
-        return getattr(import_module(f"{__name__}.{_ELSEWHERE.get(name, 'study')}"), name)
+    if name in _HOMES:
+        return getattr(import_module(_HOMES[name]), name)
     raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
 
 

@@ -41,7 +41,21 @@ _FILES = (
     "CONTRIBUTING.md", "LICENSE", "README.md", "SECURITY.md", "noxfile.py", "pyproject.toml",
 )  # fmt: skip
 _GENERATED = {"__pycache__", "_generated"}
-_TEXT = {".py", ".toml", ".md", ".cff", ".yml", ".yaml", ".j2", ".html", ".css", ".js", ".txt", ""}
+_TEXT = {
+    ".py",
+    ".pyi",
+    ".toml",
+    ".md",
+    ".cff",
+    ".yml",
+    ".yaml",
+    ".j2",
+    ".html",
+    ".css",
+    ".js",
+    ".txt",
+    "",
+}
 
 FunctionNode = ast.FunctionDef | ast.AsyncFunctionDef
 
@@ -187,7 +201,7 @@ def listed_names(tree: ast.Module) -> list[str] | None:
 def _surfaces() -> dict[str, set[str]]:
     """Names that the pages of public names take from each module."""
     names: dict[str, set[str]] = {}
-    for page in PACKAGE.rglob("__init__.py"):
+    for page in PACKAGE.rglob("__init__.py*"):
         for node in ast.walk(ast.parse(page.read_text("utf-8"))):
             if isinstance(node, ast.ImportFrom) and node.module:
                 names.setdefault(node.module, set()).update(alias.name for alias in node.names)

@@ -44,3 +44,11 @@ def test_unknown_public_name_is_an_attribute_error() -> None:
     with pytest.raises(AttributeError, match="no_such_name"):
         _ = tribodyn.no_such_name
     assert set(tribodyn.__all__) <= set(dir(tribodyn))
+
+
+def test_classes_come_with_their_subclasses() -> None:
+    modules = ["tribodyn.study.machine.case", "tribodyn.study.pipeline.result"]
+    code = "import sys\nfrom tribodyn.study import Case, Result\n"
+    code += f"print(*(m for m in {modules!r} if m in sys.modules))"
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert done.stdout.split() == modules
