@@ -256,7 +256,10 @@ def test_the_centre_distance_that_is_advised_leaves_the_backlash(distance: float
     assert pair.gear_pair.backlash == pytest.approx(5e-5, abs=2e-6)
 
 
-@pytest.mark.parametrize("name", ["fzg-roughness", "hypoid-mixed-ehl"])
+@pytest.mark.parametrize(
+    "name",
+    ["fzg-roughness", "hypoid-mixed-ehl", "two-stage-helical", "planetary-stage", "hypoid-axle"],
+)
 def test_numbers_in_the_place_of_numbers_make_the_case_that_reading_it_anew_makes(
     name: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:

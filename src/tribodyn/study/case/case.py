@@ -16,6 +16,7 @@ from tribodyn.errors import InputError, Problem
 from tribodyn.model import NO_OPTIONS
 from tribodyn.study.case.provenance import (
     Assumption,
+    changed_after,
     provenance,
     read_stated,
     settled,
@@ -40,7 +41,13 @@ from tribodyn.study.case.user_input import (
     with_values,
     without_spread,
 )
-from tribodyn.study.case.values import KeyedProblems, correct_keys
+from tribodyn.study.case.values import (
+    FaultError,
+    KeyedProblems,
+    Plain,
+    correct_keys,
+    read_value,
+)
 from tribodyn.study.case.write import case_rows, case_table, case_text
 from tribodyn.types import ByName, Tree
 
@@ -219,8 +226,41 @@ class Case(CaseTables):
         return iter(self._all_values().items())
 
     def _with_numbers(self, changes: ByName) -> Self | None:
-        """Copy with changed numbers by a fast path; None where that does not apply."""
-        return None
+        """Return a copy with changed numbers, checked by a fast path; None if that does not apply.
+
+        It applies where numbers replace numbers without other effects: which keys are present
+        decides the rest of a case.
+        """
+        base, numbers = self._stated.base, {}
+        if not base or self.origin not in (None, base.get("origin")):
+            return None
+        # Convert NumPy floats.
+        changes = {key: float(v) if isinstance(v, float) else v for key, v in changes.items()}
+        for key, value in changes.items():
+            spec, old = self.option_of(key), self._user_input.get(key)
+            if type(value) is not float or spec is None or spec.kind != "number" or old is None:
+                return None
+            if key in self._spread or key in self._assumed or self._effective.get(key) is None:
+                return None
+            try:
+                numbers[key] = read_value(spec, key.rpartition(".")[2], Plain(value))
+            except FaultError:
+                return None
+        changed: Self = object.__new__(type(self))
+        state: Any = self.__getstate__()
+        vars(changed).update(state)
+        changed._effective, changed._changed = self._effective | numbers, None
+        changed._user_input = self._user_input.with_numbers(changes)
+        vars(changed)["data"] = without_records(changed._user_input.data)
+        changed._source = self._source.with_replaced(changes, "replace:")
+        if not changed._take_numbers(self, numbers):
+            return None
+        changed_after(self, changed, numbers)
+        return changed
+
+    @abstractmethod
+    def _take_numbers(self, before: Self, numbers: ByName) -> bool:
+        """Take numbers in place of those of the case before; False where that takes a new one."""
 
     def replace(self, changes: ByName, *, by: str = "") -> Self:
         """Return a new case with some values changed; it is checked as a whole.

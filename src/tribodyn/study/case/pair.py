@@ -18,12 +18,10 @@ from tribodyn.study.case.hypoid import hypoid_flanks, torque_problem
 from tribodyn.study.case.provenance import (
     Assumption,
     assumptions,
-    changed_after,
     default_of,
     derived_values,
     effective_values,
     reason_faults,
-    without_records,
 )
 from tribodyn.study.case.rating_tables import Materials, RatingTable
 from tribodyn.study.case.section import Section, choices, flat, section_at, signature_of, table
@@ -40,10 +38,7 @@ from tribodyn.study.case.sections import (
 )
 from tribodyn.study.case.user_input import Source, UserInput
 from tribodyn.study.case.values import (
-    FaultError,
-    Plain,
     read_fields,
-    read_value,
     unknown_key,
     with_typed_keys,
 )
@@ -274,42 +269,14 @@ class PairCase(Case):
         """Return the state without derived attributes."""
         return {key: value for key, value in vars(self).items() if key not in _DERIVED}
 
-    def _with_numbers(self, changes: ByName) -> Self | None:
-        """Return a copy with changed numbers, checked by a fast path; None if that does not apply.
-
-        It applies where numbers replace numbers outside ``[gears]`` without other effects: which
-        keys are present decides the rest of a case.
-        """
-        base = self._stated.base
-        if not base or self.origin not in (None, base.get("origin")):
-            return None
-        changed: Self = object.__new__(type(self))
-        vars(changed).update(self.__getstate__(), _shared=vars(self).setdefault("_shared", {}))
-        numbers = {}
-        # Convert NumPy floats.
-        changes = {key: float(v) if isinstance(v, float) else v for key, v in changes.items()}
-        for key, value in changes.items():
+    def _take_numbers(self, before: Self, numbers: ByName) -> bool:
+        vars(self)["_shared"] = vars(before).setdefault("_shared", {})
+        for key, number in numbers.items():
             table, _, name = key.partition(".")
-            spec, old = self.option_of(key), self._user_input.get(key)
-            numeric = type(value) is float and spec is not None and spec.kind == "number"
-            indirect = table in ("gears", "faults") or key in self._spread or key in self._assumed
-            if not numeric or indirect or old is None or self._effective.get(key) is None:
-                return None
-            try:
-                numbers[key] = read_value(spec, name, Plain(value)) if spec else value
-            except FaultError:
-                return None
-            section = copy(getattr(changed, table))
-            vars(section)[name] = numbers[key]
-            vars(changed)[table] = section
-        if to_models.case_problems(changed):
-            return None
-        changed._effective, changed._changed = self._effective | numbers, None
-        changed._user_input = self._user_input.with_numbers(changes)
-        vars(changed)["data"] = without_records(changed._user_input.data)
-        changed._source = self._source.with_replaced(changes, "replace:")
-        changed_after(self, changed, numbers)
-        return changed
+            vars(self)[table] = section = copy(getattr(self, table))
+            vars(section)[name] = number
+        indirect = any(key.startswith(("gears.", "faults.")) for key in numbers)
+        return not (indirect or to_models.case_problems(self))
 
     def _unknown_key(self, key: str) -> Problem:
         path = tuple(key.split("."))

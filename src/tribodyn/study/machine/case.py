@@ -35,15 +35,15 @@ from tribodyn.study.faults.machine_section import impossible_faults, machine_fau
 from tribodyn.study.machine.assumptions import default_assumptions, stated_assumptions
 from tribodyn.study.machine.housing_files import read_housing
 from tribodyn.study.machine.pair_cases import (
+    check_loads,
     constant_law,
-    inputs_under,
     mesh_hand,
     pair_case,
     pinion_and_wheel,
     read_blanks,
     read_pair,
     read_teeth,
-    refuse_idle_loads,
+    take_loads,
     teeth_under,
     with_forms,
 )
@@ -165,9 +165,7 @@ class MachineCase(Case):
             self._checked_machine(self.operating_point)
             self._add_forms()
             self._machines.clear()
-            for name in self.meshes_with_teeth:
-                inputs_under(self, name, self.operating_point)
-            refuse_idle_loads(self)
+            check_loads(self)
         except InputError as error:
             raise InputError(self._located(error)) from None
         if problems := [*self._impossible(), *faults]:
@@ -183,6 +181,7 @@ class MachineCase(Case):
         return [*impossible_faults(self), *loss_problems(self), *self._spread_faults()]
 
     _changed_tables = staticmethod(changed_machine)
+    _take_numbers = take_loads
 
     @cached_property
     def _effective(self) -> dict[str, Any]:  # type: ignore[override]

@@ -22,7 +22,7 @@ from tribodyn.study.case.sections import Operation
 from tribodyn.study.case.to_models import usual_backlash
 from tribodyn.study.case.user_input import Source
 from tribodyn.study.case.values import FaultError, KeyedProblems, Plain, read_value
-from tribodyn.study.machine.read_parts import is_faulty
+from tribodyn.study.machine.read_parts import completed, is_faulty, parts_of, read_loads
 from tribodyn.study.machine.tables import (
     HEAT,
     MESH_KEYS,
@@ -303,11 +303,32 @@ def _key_of(case: MachineCase, load: LoadCase, name: str) -> str:
     return f"operation.{name}"
 
 
-def refuse_idle_loads(case: MachineCase) -> None:
-    """Refuse loads without torque, under which no mesh with computed teeth carries any."""
+def check_loads(case: MachineCase) -> None:
+    """Refuse loads that computed teeth cannot carry, or under which they carry none."""
+    for mesh in case.meshes_with_teeth:
+        inputs_under(case, mesh, case.operating_point)
     for load, mesh in product(case.load_cases, list(case.meshes_with_teeth)[:1]):
         key = _key_of(case, load, "torque")
         refuse_idle(case.data, mesh, abs(load.torque), case.source, key)
+
+
+def take_loads(case: MachineCase, before: MachineCase, numbers: Mapping[str, float]) -> bool:
+    """Take another speed or torque in its sense, to which parts and teeth do not respond."""
+    senses = {f"operation.{n}": getattr(case.operating_point, n) for n in ("speed", "torque")}
+    if any(key not in senses or number * senses[key] <= 0.0 for key, number in numbers.items()):
+        return False
+    problems: KeyedProblems = []
+    tables = case._read_tables(completed(case.data), problems)
+    loads = read_loads(case.data, tables, parts_of(tables, "load_cases"), problems)
+    if loads is None or problems:
+        return False
+    kept = {"_teeth": before._teeth, "_machines": dict(before._machines)}
+    vars(case).update(kept, operating_point=loads.operating_point, load_cases=loads.load_cases)
+    try:
+        check_loads(case)
+    except InputError:  # whose message says what was replaced
+        return False
+    return not case._impossible()
 
 
 def refuse_idle(
