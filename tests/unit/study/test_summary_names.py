@@ -228,3 +228,19 @@ def test_a_mesh_of_constant_stiffness_has_its_place_without_teeth() -> None:
     for name, value in kinematic_figures(reduced).items():
         if name.endswith(("center_distance", "pressure_angle")):
             assert summary[name] == value
+
+
+def test_a_mesh_of_a_machine_has_the_dynamic_transmission_error_of_pairs() -> None:
+    """Without damping the force of a constant stiffness is proportional to it."""
+    case = td.load_case("two-stage-spur")
+    constant = {f"meshes.{name}.stiffness": 4e8 for name in case.meshes}
+    constant |= {f"meshes.{name}.mesh_damping_ratio": 0.0 for name in case.meshes}
+    result = td.run(case.replace({**constant, "meshes.second.transmission_error_amplitude": 2e-6}))
+    figures, key = result.summary(), "meshes.first."
+    rms = figures[f"{key}rms_dynamic_transmission_error"]
+    assert rms == pytest.approx(figures[f"{key}alternating_rms_mesh_force"] / 4e8, rel=1e-9)
+    sizes = [figures[f"{key}dynamic_transmission_error_harmonic_{n}"] for n in range(1, 6)]
+    force = result.mesh_spectra("first")["meshes.first.mesh_force_spectrum"]
+    harmonics = force.sel(order=np.arange(1.0, 6.0), method="nearest").to_numpy()
+    assert sizes == pytest.approx(harmonics / 4e8, rel=1e-9)
+    assert "meshes.second.rms_dynamic_transmission_error" not in figures

@@ -11,7 +11,7 @@ import numpy as np
 
 from tribodyn.machine.graph.directions import center_distance, working_pressure_angle
 from tribodyn.machine.plane_law import mean_in_space
-from tribodyn.study.pipeline.summary import MEASURES, mesh_figures
+from tribodyn.study.pipeline.summary import HARMONICS, MEASURES, mesh_figures
 from tribodyn.study.pipeline.summary_figures import Figures, figure_of, split_key
 from tribodyn.study.planetary.machine_stages import stage_figures
 
@@ -101,12 +101,26 @@ def _of_mesh(result: LoadResult, name: str) -> Mapping[str, float | None]:
         "dynamic_factor_rms": math.hypot(mean, alternating) / mean if mean > 0.0 else None,
         "contact_loss_share": float(motion.mean(motion.open[:, column])),
         "transmission_error_peak_to_peak": float(np.ptp(error)),
+        **_dynamic_error(result, name),
         **_mounting(balance),
         "face_load_factor": balance.face_load_factor,
         **geometry_figures(result.machine, name, mean, _contact_ratio(table)),
         **_of_table(result, name, table),
         "friction_power": result.friction_power.get(name),
     }
+
+
+def _dynamic_error(result: LoadResult, name: str) -> dict[str, float]:
+    """Compression of a mesh without a prescribed error, which is its dynamic transmission error."""
+    motion, mesh = result.motion, result.machine.meshes[name]
+    errors = [each.error for each in mesh.contacts or (mesh,)]
+    if mesh.turning or any(callable(each) or each != 0.0 for each in errors):
+        return {}
+    column, key = motion.mesh.index(name), "dynamic_transmission_error"
+    compression, cycles = motion.compression[:, column], int(motion.cycles[column])
+    sizes = np.abs(motion.harmonics(compression, cycles * np.arange(1.0, HARMONICS + 1)))
+    harmonics = {f"{key}_harmonic_{order}": float(s) for order, s in enumerate(sizes, 1)}
+    return {f"rms_{key}": float(motion.rms(compression)), **harmonics}
 
 
 def peak_over_mean(force: np.ndarray, mean: np.ndarray | float) -> float | None:

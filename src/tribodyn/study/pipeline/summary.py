@@ -141,7 +141,8 @@ def summary_figure(
     return keep
 
 
-_HARMONICS = 5
+#: Mesh harmonics of transmission errors among the figures.
+HARMONICS = 5
 
 
 def summarize(result: PairResult) -> dict[str, float]:
@@ -247,11 +248,11 @@ def _static_error_figures(result: PairResult) -> Tree:
         figures = (
             loaded.mean_transmission_error,
             loaded.peak_to_peak_transmission_error,
-            loaded.transmission_error_harmonics(_HARMONICS),
+            loaded.transmission_error_harmonics(HARMONICS),
         )
     else:
         error, grid = result.transmission_error_at_rest(), result.mesh.grid
-        figures = (grid.mean(error), np.ptp(error), grid._harmonics(error, _HARMONICS))
+        figures = (grid.mean(error), np.ptp(error), grid._harmonics(error, HARMONICS))
     mean, most, amplitudes = figures
     parts = _error_parts(result.mesh)
     if parts and pair is not None and pair.teeth_differ:
@@ -299,7 +300,7 @@ def _motion_figures(result: PairResult, samples: FineSamples) -> Tree:
     (least, lowest), (greatest, highest) = extremes(np.array(motions).T)
     figures |= {"peak_mesh_force": greatest, "minimum_mesh_force": least}
     figures[f"peak_to_peak_{name}"] = highest - lowest
-    for order, size in enumerate(np.abs(mesh_harmonics(samples, motions[1], _HARMONICS)), 1):
+    for order, size in enumerate(np.abs(mesh_harmonics(samples, motions[1], HARMONICS)), 1):
         figures[f"{name}_harmonic_{order}"] = size
     for signal, mean, swing in zip(signals, *averages, strict=True):
         if signal == name:
