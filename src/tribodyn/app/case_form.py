@@ -163,7 +163,7 @@ class CaseForm:
     def __init__(self, case: Any, typed: Typed, units: Mapping[str, str]) -> None:
         self.case, self.typed, self.units = case, typed, units
         self._effective, self._derived = effective(case), case._derived_values()
-        self._origins = provenance(case)
+        self._origins, self._meanings = provenance(case), choice_meanings()
         pairs = () if case.lumped else case.mesh_pairs()
         #: Pair of gears whose models stand for those of all meshes.
         self._pair = case if case.lumped else next((pair for _, pair, _ in pairs), None)
@@ -280,9 +280,8 @@ class CaseForm:
         """Meaning and sources of the chosen name."""
         name = str(self._chosen(key))
         sources = sources_of(key.partition(".")[0], name)
-        return " ".join(
-            filter(None, (f"{name}: {choice_meanings().get(name, '')}".rstrip(": "), *sources))
-        )
+        text = f"{name}: {self._meanings.get(name, '')}".rstrip(": ")
+        return " ".join(filter(None, (text, *sources)))
 
 
 def _is_filled(group: Mapping[str, object]) -> bool:
