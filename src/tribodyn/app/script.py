@@ -77,8 +77,7 @@ def _opening(session: TabSession, state: Edited) -> str:
             except TribodynError:
                 continue
     tables = tomllib.loads(state.opened.to_toml())
-    kind = "td.Case" if state.opened.lumped else "td.study.MachineCase"
-    return f"{kind}(**{_literal(tables, len(kind) + 10)})"
+    return f"td.Case(**{_literal(tables, 17)})"
 
 
 def _literal(value: object, indent: int) -> str:
