@@ -24,6 +24,8 @@ __all__ = ["GEARS", "QUANTITIES", "Quantity", "find", "lookup"]
 #: Names of both gears of a pair, the smaller one first.
 GEARS: Final = ("pinion", "wheel")
 GearName = Literal["pinion", "wheel"]
+#: Name of the mesh of a pair of gears.
+PAIR_MESH: Final = "mesh"
 
 
 class UnknownQuantityError(InputError, KeyError):

@@ -11,10 +11,9 @@ from tribodyn.app.case_form import field_of
 from tribodyn.app.study_functions import FUNCTIONS, MEASURED, RANGE, WRITERS, Shown, Values, write
 from tribodyn.errors import InputError
 from tribodyn.model import REQUIRED, Option, choice, file_path, integer, number, text
-from tribodyn.nomenclature import GEARS
+from tribodyn.nomenclature import GEARS, PAIR_MESH
 from tribodyn.report.study_report_data import MEASUREMENT
 from tribodyn.study.case.values import FaultError, Plain, read_value
-from tribodyn.study.mesh_inputs import PAIR_MESH
 from tribodyn.study.studies.needs import STUDIES as NEEDS
 from tribodyn.study.studies.needs import study_meshes, takes
 from tribodyn.study.studies.study_axes import toml_value

@@ -15,11 +15,11 @@ import numpy as np
 
 from tribodyn.errors import ComputationError
 from tribodyn.mesh.gears import column_of
-from tribodyn.nomenclature import GEARS
+from tribodyn.nomenclature import GEARS, PAIR_MESH
 from tribodyn.progress import SILENT, Progress
 from tribodyn.record import Record, fact, quantity, record
 from tribodyn.study.heat_balance import Temperatures
-from tribodyn.study.mesh_inputs import PAIR_MESH, MeshInputs, mesh_inputs
+from tribodyn.study.mesh_inputs import MeshInputs, mesh_inputs
 from tribodyn.study.pipeline.assembly import geometry, whole_system
 from tribodyn.study.pipeline.motion import motion_of
 from tribodyn.study.pipeline.preview import gearbox_losses_of

@@ -15,10 +15,9 @@ from tribodyn.analysis.part_frequencies import (
     stage_frequencies,
 )
 from tribodyn.faults import BearingImpacts
-from tribodyn.nomenclature import require_whole
+from tribodyn.nomenclature import PAIR_MESH, require_whole
 from tribodyn.record import Record, fact, quantity, record
 from tribodyn.study.faults.machine_section import defects_of
-from tribodyn.study.mesh_inputs import PAIR_MESH
 from tribodyn.study.studies.needs import PAIRS, kind_of
 from tribodyn.types import Array
 

@@ -25,8 +25,6 @@ if TYPE_CHECKING:
     from tribodyn.study.case.pair import PairCase
     from tribodyn.study.case.sections import Dynamics
 
-#: Name of the mesh of a pair of gears.
-PAIR_MESH = "mesh"
 #: Tables of a case that its tooth contact depends on, in addition to speed and load.
 _OF_CONTACT = ("gears", "material", "lubricant", "film", "stiffness", "friction")
 

@@ -7,10 +7,10 @@ from functools import cached_property
 from inspect import signature
 from typing import TYPE_CHECKING, NoReturn
 
+from tribodyn.nomenclature import PAIR_MESH
 from tribodyn.record import Parts, record
 from tribodyn.study.coupling import Coupling
 from tribodyn.study.faults.sensors import PairSensors
-from tribodyn.study.mesh_inputs import PAIR_MESH
 from tribodyn.study.pipeline.result_of_case import Result
 from tribodyn.study.pipeline.store import MOTIONS
 from tribodyn.study.pipeline.stored_motion import parts_of, stored, to_csv

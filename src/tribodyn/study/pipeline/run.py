@@ -10,12 +10,13 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from tribodyn.errors import Argument, InputError, ModelWarning, collected, frames
+from tribodyn.nomenclature import PAIR_MESH
 from tribodyn.progress import SILENT, Progress
 from tribodyn.study.case.read import unchanged_files
 from tribodyn.study.case.to_models import locate_errors
 from tribodyn.study.coupling import Coupling, Follow, PairTeeth, coupling_of
 from tribodyn.study.first_use import compile_in_parallel
-from tribodyn.study.mesh_inputs import PAIR_MESH, mesh_inputs
+from tribodyn.study.mesh_inputs import mesh_inputs
 from tribodyn.study.pipeline.assembly import damping_of, system_of, whole_system
 from tribodyn.study.pipeline.cautions import (
     case_cautions,

@@ -11,7 +11,7 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from tribodyn.errors import Argument, InputError, did_you_mean
-from tribodyn.study.mesh_inputs import PAIR_MESH
+from tribodyn.nomenclature import PAIR_MESH
 
 if TYPE_CHECKING:
     from tribodyn.study.case.pair import PairCase
