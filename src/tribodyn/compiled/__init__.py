@@ -27,7 +27,7 @@ kernels: list[Any] = []
 def source_digest(folder: str | Path, names: Sequence[str]) -> str:
     """Hash of the source files of a kernel and of everything that it calls."""
     # Numba looks at the file of the cached function alone, and would load a stale one after a
-    # change in a file that it calls. As a closure variable the hash is part of the cache key.
+    # change in a file that it calls. Hence this hash is a part of the cache key.
     content = [(Path(folder) / f"{name}.py").read_bytes() for name in names]
     return hashlib.sha256(b"".join(content)).hexdigest()
 
@@ -44,9 +44,8 @@ def announced(kernel: Kernel, description: str, time: str) -> Kernel:
 
 def _announce_kernel(kernel: object) -> None:
     """Announce the compilation of a kernel once."""
-    text = _texts.pop(kernel, None)
-    if text is not None:
-        announce(text)
+    if kernel in _texts:
+        announce(_texts.pop(kernel))
 
 
 @cache

@@ -9,41 +9,50 @@ from typing import Any
 import numba as nb
 from numba.core.runtime import rtsys
 
-from tribodyn.compiled import announce
+from tribodyn.compiled import announce, announced, cache_lock
+
+#: What turns a function into a kernel.
+Compile = Callable[[Any], Any]
 
 
-def cached_njit(**options: object) -> Callable[[Any], Any]:
+def cached_njit(digest: str = "", text: str = "", time: str = "", **options: object) -> Compile:
     """Compile a function at its first call, and cache the code on disk if that is possible."""
+    # digest: of all sources that end up in the code, see source_digest; text and time announce a
+    # compilation that would otherwise look like a hang.
 
     def compile_kernel(function: object) -> Any:
         try:
             kernel = nb.njit(cache=True, **options)(function)
-            _ignore_outdated_index(kernel)
-            _load_code_alone(kernel)
-            return kernel
+            if cache_lock.has_disk_cache(kernel):  # for example not with NUMBA_DISABLE_JIT
+                _ignore_outdated_index(kernel._cache._cache_file)
+                _load_code_alone(kernel)
+                _tell_sources_apart(kernel._cache, digest)
         except RuntimeError as error:
             # Neither the source folder nor the home directory can be written: a container perhaps.
             if "no locator" not in str(error):
                 raise
             _announce_missing_cache()
-            return nb.njit(**options)(function)
+            kernel = nb.njit(**options)(function)
+        return announced(kernel, text, time) if text else kernel
 
     return compile_kernel
 
 
-def _ignore_outdated_index(kernel: object) -> None:
+def _tell_sources_apart(cached: Any, digest: str) -> None:
+    """Let the key of cached code hold a digest: Numba looks at the file of the kernel alone."""
+    key = cached._index_key
+    cached._index_key = lambda *call: (*key(*call), digest)
+
+
+def _ignore_outdated_index(cache_file: Any) -> None:
     """Treat an index of another version, whose classes have moved since, as an empty one."""
-    cache_file = getattr(getattr(kernel, "_cache", None), "_cache_file", None)
-    if cache_file is None:  # nothing is compiled, for example with NUMBA_DISABLE_JIT
-        return
     load = cache_file._load_index
 
     def load_index() -> dict[Any, str]:
         try:
-            index: dict[Any, str] = load()
+            return dict(load())
         except (ImportError, AttributeError):  # Numba unpickles before it compares the sources
             return {}
-        return index
 
     cache_file._load_index = load_index
 

@@ -62,10 +62,8 @@ class CacheLock:
         """Create a marker file unless it exists; a folder that cannot be written locks nothing."""
         try:
             marker.touch(exist_ok=False)
-        except FileExistsError:
-            return False
-        except OSError:
-            pass
+        except OSError as error:
+            return not isinstance(error, FileExistsError)
         return True
 
 

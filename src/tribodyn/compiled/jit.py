@@ -59,8 +59,7 @@ class _InnerLowering(NativeLowering):  # type: ignore[misc]
     def run_pass(self, state: StateDict) -> bool:
         codegen = state.targetctx.codegen()
         state.library = _InnerLibrary(codegen, state.func_id.func_qualname)
-        changed: bool = super().run_pass(state)
-        return changed
+        return bool(super().run_pass(state))
 
 
 class _InnerCompiler(CompilerBase):  # type: ignore[misc]

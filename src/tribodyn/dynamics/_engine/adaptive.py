@@ -10,13 +10,11 @@ so that it is the same in any ensemble and on any number of threads.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
 from typing import NamedTuple
 
 import numba as nb
 import numpy as np
 
-from tribodyn.compiled import announced
 from tribodyn.compiled.cache import cached_njit
 from tribodyn.dynamics._engine.contact_forces import (
     I64,
@@ -398,97 +396,90 @@ def _end_segment(block: Block, course: Course, lane: int, cycles: int) -> None:
         _put(block, lane)
 
 
-def _build(digest: str) -> Callable[..., int]:
-    @cached_njit(**JIT)
-    def march_adaptive(
-        lanes: Lanes,
-        program: Program,
-        tables: JoinedTables,
-        load: Array,
-        states: tuple[Array, Array],
-        tolerance: Array,
-        queue: np.recarray,
-        cycles: int,
-        output: Output,
-        stop: Index,
-    ) -> int:
-        """Integrate trajectories over ``cycles`` mesh cycles; after a failure to its step.
+@cached_njit(kernel_digest(), "the adaptive engine", "ten seconds", **JIT)
+def march_adaptive(
+    lanes: Lanes,
+    program: Program,
+    tables: JoinedTables,
+    load: Array,
+    states: tuple[Array, Array],
+    tolerance: Array,
+    queue: np.recarray,
+    cycles: int,
+    output: Output,
+    stop: Index,
+) -> int:
+    """Integrate trajectories over ``cycles`` mesh cycles; after a failure to its step.
 
-        ``load`` (c, n + 6) is that of each with its factors; ``states`` the states (c, 2 n) and
-        the largest size of each so far, both overwritten; ``tolerance`` (c, 2 n + 1) absolute
-        ones and the relative one; ``queue`` (c,) the courses. Returns :data:`STOPPED` after an
-        interruption, else 0.
-        """
-        digest  # noqa: B018  # a closure variable, hence part of the key of the disk cache
-        width, code, columns = len(lanes), program.code, program.code[2]
-        n, s, o = code[0], slots_of(code), adaptive_slots(code)
-        scratch_size = WIDTH * (s.contacts + 1)
-        work = np.zeros(o.end * (width + 1) + 8)
-        search = np.zeros(scratch_size * width)
-        w = on_line(address(work))
-        single = ahead(w, o.end * width)
-        rows = Rows(
-            address(tables.events), address(tables.first), address(tables.varying),
-            address(tables.powers),
-        )  # fmt: skip
-        law = Law(address(code), address(program.reads), (ahead(w, o.row * width),))
-        alone = Law(law.code, law.reads, (ahead(single, o.row),))
-        block = Block(width, law, alone, rows, w, single, address(search))
-        switching = has_dead_zones(alone)
-        courses, number, following = np.zeros(width, COURSE), np.full(width, -1), 0
-        while stop[0] == 0:
-            active = 0
-            for lane in range(width):
-                course = courses[lane]
-                if number[lane] < 0 and following < queue.size:
-                    c = following
-                    courses[lane], number[lane] = queue[c], c
-                    for slot in range(o.end):
-                        single[slot] = 0.0
-                    set_up(1, law.code, queue.period[c:], load[c:], states[0][c:], single)
-                    for i in range(2 * n):
-                        single[o.size + i] = states[1][c, i]
-                    for i in range(2 * n + 1):
-                        single[o.allowed + i] = tolerance[c, i]
-                    for column in range(columns):
-                        single[o.row + column] = tables.rows[course.row + column]
-                    set_scale(SINGLE, law.code, single)
-                    _begin_segment(block, course)
-                    _put(block, lane)
-                    following += 1
-                if number[lane] >= 0:
-                    active += 1
-                    _plan_step(block, course, lane)
-            if active == 0:
-                break
-            try_step(lanes, law, rows, courses, w)
-            for lane in range(width):
-                total = w[o.error * width + lane]
-                courses[lane].new_error = math.sqrt(total) if math.isfinite(total) else math.inf
-            if switching:
-                _tabulate_distances(lanes, block, courses)
-            for lane in range(width):
-                c, course = number[lane], courses[lane]
-                if c < 0:
-                    continue
-                _end_step(block, course, lane, switching, output, c)
-                if course.reason == 0:
-                    _end_segment(block, course, lane, cycles)
-                if course.reason != 0 or course.cycle == cycles:
-                    _take(block, lane)
-                    for i in range(2 * n):
-                        states[0][c, i] = single[i]
-                        states[1][c, i] = max(single[o.size + i], abs(single[i]))
-                        if output.record.shape[1] > 0:
-                            output.record[c, cycles * output.points.size, i] = single[i]
-                    queue[c] = course
-                    course.width, number[lane], w[s.h * width + lane] = 0.0, -1, 0.0
-            set_scale(lanes, law.code, w)
-        # The addresses hold only as long as their owners are in use.
-        search[0] = work[0]
-        return STOPPED if stop[0] != 0 else 0
-
-    return march_adaptive
-
-
-march_adaptive = announced(_build(kernel_digest()), "the adaptive engine", "ten seconds")
+    ``load`` (c, n + 6) is that of each with its factors; ``states`` the states (c, 2 n) and
+    the largest size of each so far, both overwritten; ``tolerance`` (c, 2 n + 1) absolute
+    ones and the relative one; ``queue`` (c,) the courses. Returns :data:`STOPPED` after an
+    interruption, else 0.
+    """
+    width, code, columns = len(lanes), program.code, program.code[2]
+    n, s, o = code[0], slots_of(code), adaptive_slots(code)
+    scratch_size = WIDTH * (s.contacts + 1)
+    work = np.zeros(o.end * (width + 1) + 8)
+    search = np.zeros(scratch_size * width)
+    w = on_line(address(work))
+    single = ahead(w, o.end * width)
+    rows = Rows(
+        address(tables.events), address(tables.first), address(tables.varying),
+        address(tables.powers),
+    )  # fmt: skip
+    law = Law(address(code), address(program.reads), (ahead(w, o.row * width),))
+    alone = Law(law.code, law.reads, (ahead(single, o.row),))
+    block = Block(width, law, alone, rows, w, single, address(search))
+    switching = has_dead_zones(alone)
+    courses, number, following = np.zeros(width, COURSE), np.full(width, -1), 0
+    while stop[0] == 0:
+        active = 0
+        for lane in range(width):
+            course = courses[lane]
+            if number[lane] < 0 and following < queue.size:
+                c = following
+                courses[lane], number[lane] = queue[c], c
+                for slot in range(o.end):
+                    single[slot] = 0.0
+                set_up(1, law.code, queue.period[c:], load[c:], states[0][c:], single)
+                for i in range(2 * n):
+                    single[o.size + i] = states[1][c, i]
+                for i in range(2 * n + 1):
+                    single[o.allowed + i] = tolerance[c, i]
+                for column in range(columns):
+                    single[o.row + column] = tables.rows[course.row + column]
+                set_scale(SINGLE, law.code, single)
+                _begin_segment(block, course)
+                _put(block, lane)
+                following += 1
+            if number[lane] >= 0:
+                active += 1
+                _plan_step(block, course, lane)
+        if active == 0:
+            break
+        try_step(lanes, law, rows, courses, w)
+        for lane in range(width):
+            total = w[o.error * width + lane]
+            courses[lane].new_error = math.sqrt(total) if math.isfinite(total) else math.inf
+        if switching:
+            _tabulate_distances(lanes, block, courses)
+        for lane in range(width):
+            c, course = number[lane], courses[lane]
+            if c < 0:
+                continue
+            _end_step(block, course, lane, switching, output, c)
+            if course.reason == 0:
+                _end_segment(block, course, lane, cycles)
+            if course.reason != 0 or course.cycle == cycles:
+                _take(block, lane)
+                for i in range(2 * n):
+                    states[0][c, i] = single[i]
+                    states[1][c, i] = max(single[o.size + i], abs(single[i]))
+                    if output.record.shape[1] > 0:
+                        output.record[c, cycles * output.points.size, i] = single[i]
+                queue[c] = course
+                course.width, number[lane], w[s.h * width + lane] = 0.0, -1, 0.0
+        set_scale(lanes, law.code, w)
+    # The addresses hold only as long as their owners are in use.
+    search[0] = work[0]
+    return STOPPED if stop[0] != 0 else 0

@@ -12,11 +12,13 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from tribodyn.compiled import announced, source_digest
+from tribodyn.compiled import source_digest
 from tribodyn.compiled.cache import cached_njit
 from tribodyn.dynamics.harmonic.newton import tangents
 from tribodyn.errors import warn
 from tribodyn.types import Array
+
+_DIGEST = source_digest(__file__.rpartition("/")[0], ["tangent_march"])
 
 if TYPE_CHECKING:
     from tribodyn.dynamics.harmonic.newton import State
@@ -127,64 +129,53 @@ def warn_of_growth(what: str, size: float, limit: float) -> None:
         )
 
 
-def _build(digest: str) -> Any:
-    @cached_njit(**_OPTIONS)
-    def march_tangent(
-        decay: Array, output: Array, push: Array, direct: Array, tangents: Array, right: Array,
-        z: Array, lead: int,
-    ) -> Array:  # fmt: skip
-        """Motion at the contacts (steps, r), after ``lead`` samples; modes ``z`` go to the end."""
-        digest  # noqa: B018  # a closure variable, hence part of the key of the disk cache
-        steps, wide = right.shape
-        m, s, r = decay.shape[1], push.shape[0], wide // 2
-        motion = np.zeros((steps, r))
-        signal, force, a = np.empty(wide), np.empty(s), np.empty((s, s))
-        for step in range(steps - lead, 2 * steps):
-            row = step % steps
+@cached_njit(_DIGEST, "the linearized equations of long periods", "ten seconds", **_OPTIONS)
+def march_tangent(
+    decay: Array, output: Array, push: Array, direct: Array, tangents: Array, right: Array,
+    z: Array, lead: int,
+) -> Array:  # fmt: skip
+    """Motion at the contacts (steps, r), after ``lead`` samples; modes ``z`` go to the end."""
+    steps, wide = right.shape
+    m, s, r = decay.shape[1], push.shape[0], wide // 2
+    motion = np.zeros((steps, r))
+    signal, force, a = np.empty(wide), np.empty(s), np.empty((s, s))
+    for step in range(steps - lead, 2 * steps):
+        row = step % steps
+        for o in range(wide):
+            total = 0.0
+            for i in range(2 * m):
+                total += output[o, i] * z[i]
+            signal[o] = total
+        for j in range(s):
+            total = 0.0
             for o in range(wide):
-                total = 0.0
-                for i in range(2 * m):
-                    total += output[o, i] * z[i]
-                signal[o] = total
-            for j in range(s):
-                total = 0.0
+                total += tangents[row, j, o] * (signal[o] + right[row, o])
+            force[j] = total
+            for i in range(s):
+                total = 1.0 if i == j else 0.0
                 for o in range(wide):
-                    total += tangents[row, j, o] * (signal[o] + right[row, o])
-                force[j] = total
-                for i in range(s):
-                    total = 1.0 if i == j else 0.0
-                    for o in range(wide):
-                        total -= tangents[row, j, o] * direct[o, i]
-                    a[j, i] = total
-            # Forces change motions within a step little: the matrix is near the unit matrix.
-            for k in range(s):
-                for j in range(s):
-                    if j != k:
-                        factor = a[j, k] / a[k, k]
-                        for i in range(k, s):
-                            a[j, i] -= factor * a[k, i]
-                        force[j] -= factor * force[k]
+                    total -= tangents[row, j, o] * direct[o, i]
+                a[j, i] = total
+        # Forces change motions within a step little: the matrix is near the unit matrix.
+        for k in range(s):
             for j in range(s):
-                force[j] /= a[j, j]
-            for o in range(r):
-                total = signal[o]
-                for j in range(s):
-                    total += direct[o, j] * force[j]
-                motion[row, o] = total
-            for i in range(m):
-                real, imaginary = z[i], z[m + i]
-                z[i] = decay[0, i] * real - decay[1, i] * imaginary
-                z[m + i] = decay[0, i] * imaginary + decay[1, i] * real
+                if j != k:
+                    factor = a[j, k] / a[k, k]
+                    for i in range(k, s):
+                        a[j, i] -= factor * a[k, i]
+                    force[j] -= factor * force[k]
+        for j in range(s):
+            force[j] /= a[j, j]
+        for o in range(r):
+            total = signal[o]
             for j in range(s):
-                for i in range(2 * m):
-                    z[i] += push[j, i] * force[j]
-        return motion
-
-    return march_tangent
-
-
-march_tangent = announced(
-    _build(source_digest(__file__.rpartition("/")[0], ["tangent_march"])),
-    "the linearized equations of long periods",
-    "ten seconds",
-)
+                total += direct[o, j] * force[j]
+            motion[row, o] = total
+        for i in range(m):
+            real, imaginary = z[i], z[m + i]
+            z[i] = decay[0, i] * real - decay[1, i] * imaginary
+            z[m + i] = decay[0, i] * imaginary + decay[1, i] * real
+        for j in range(s):
+            for i in range(2 * m):
+                z[i] += push[j, i] * force[j]
+    return motion

@@ -7,12 +7,12 @@ through clearances and their rates at the nodes vanishes, then by Newton's metho
 
 from __future__ import annotations
 
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numba as nb
 import numpy as np
 
-from tribodyn.compiled import announced, source_digest
+from tribodyn.compiled import source_digest
 from tribodyn.compiled.cache import cached_njit
 from tribodyn.dynamics._engine.method import INNER, JIT
 from tribodyn.dynamics.modal.modal_step import (
@@ -28,6 +28,8 @@ from tribodyn.dynamics.modal.modal_step import (
     try_part,
 )
 from tribodyn.types import Array, Index
+
+_DIGEST = source_digest(__file__.rpartition("/")[0], ["modal_kernel", "modal_step"])
 
 #: Changes of side in a step, trials and bisections of a crossing.
 _CHANGES, _TRIALS, _BISECTIONS = 64, 60, 48
@@ -195,105 +197,89 @@ def _divide(
     return CHATTER
 
 
-def _build(digest: str) -> Any:
-    @cached_njit(**JIT)
-    def march_modes(
-        modes: Modes,
-        contacts: Contacts,
-        table: Array,
-        widths: Array,
-        kind: Index,
-        restart: Index,
-        start: Array,
-        z: Array,
-        cycles: int,
-        trace: Trace,
-    ) -> Array:
-        """Integrate modes (2, m) over periods of the clock; returns the sums of the forces."""
-        # table (steps, 3, row): entries; widths [s], of which kind (steps,) selects one; restart
-        # (steps,): steps after an event; start (2 r,): motion at the contacts and its rate.
-        digest  # noqa: B018  # a closure variable, hence part of the key of the disk cache
-        s, r2, m = modes.input.shape[1], modes.output.shape[2], modes.values.size
-        (count, springs), steps, length = contacts.dead.shape, table.shape[0], table.shape[2]
-        of_modes = np.empty((widths.size + 1, 2, 4, 2, m))
-        direct = np.empty((widths.size, 2 * s, 2 * r2))
-        for k in range(widths.size):
-            fill_modes(modes.values, widths[k], of_modes[k])
-            fill_direct(modes, Weights(of_modes[k], direct[k]))
-        partial = Weights(of_modes[widths.size], np.empty((0, 2 * r2)))
-        w = Buffers(
-            z, np.empty((3, length)), np.empty((3, s)), np.empty((3, 2, m)), np.empty((4, 2, m)),
-            np.empty(2 * r2), np.empty(2 * r2), np.empty(2 * r2), np.empty(count),
-            np.ones((count, springs)), np.empty((3, count)), np.empty((3, count)),
-        )  # fmt: skip
-        sums, worst = np.zeros((2, s)), np.zeros(2, dtype=np.int64)
-        switching, scale, reach = False, 0.0, 0.0
-        for o in range(r2 // 2):
-            scale = max(scale, abs(start[o]))
-        for j in range(count):
-            for k in range(springs):
-                switching |= contacts.dead[j, k] != 0
-        recorded = trace.modes.shape[0] > 0
-        if recorded:
-            trace.modes[0], trace.sums[0] = w.z, sums
-        for cycle in range(cycles):
-            for step in range(steps):
-                weights = Weights(of_modes[kind[step]], direct[kind[step]])
-                width = widths[kind[step]]
-                w.rows[:] = table[step]
-                trace.report[1] = cycle * steps + step
+@cached_njit(_DIGEST, "the modal engine", "half a minute", **JIT)
+def march_modes(
+    modes: Modes,
+    contacts: Contacts,
+    table: Array,
+    widths: Array,
+    kind: Index,
+    restart: Index,
+    start: Array,
+    z: Array,
+    cycles: int,
+    trace: Trace,
+) -> Array:
+    """Integrate modes (2, m) over periods of the clock; returns the sums of the forces."""
+    # table (steps, 3, row): entries; widths [s], of which kind (steps,) selects one; restart
+    # (steps,): steps after an event; start (2 r,): motion at the contacts and its rate.
+    s, r2, m = modes.input.shape[1], modes.output.shape[2], modes.values.size
+    (count, springs), steps, length = contacts.dead.shape, table.shape[0], table.shape[2]
+    of_modes = np.empty((widths.size + 1, 2, 4, 2, m))
+    direct = np.empty((widths.size, 2 * s, 2 * r2))
+    for k in range(widths.size):
+        fill_modes(modes.values, widths[k], of_modes[k])
+        fill_direct(modes, Weights(of_modes[k], direct[k]))
+    partial = Weights(of_modes[widths.size], np.empty((0, 2 * r2)))
+    w = Buffers(
+        z, np.empty((3, length)), np.empty((3, s)), np.empty((3, 2, m)), np.empty((4, 2, m)),
+        np.empty(2 * r2), np.empty(2 * r2), np.empty(2 * r2), np.empty(count),
+        np.ones((count, springs)), np.empty((3, count)), np.empty((3, count)),
+    )  # fmt: skip
+    sums, worst = np.zeros((2, s)), np.zeros(2, dtype=np.int64)
+    switching, scale, reach = False, 0.0, 0.0
+    for o in range(r2 // 2):
+        scale = max(scale, abs(start[o]))
+    for j in range(count):
+        for k in range(springs):
+            switching |= contacts.dead[j, k] != 0
+    recorded = trace.modes.shape[0] > 0
+    if recorded:
+        trace.modes[0], trace.sums[0] = w.z, sums
+    for cycle in range(cycles):
+        for step in range(steps):
+            weights = Weights(of_modes[kind[step]], direct[kind[step]])
+            width = widths[kind[step]]
+            w.rows[:] = table[step]
+            trace.report[1] = cycle * steps + step
+            begin_step(modes, contacts, w, start)
+            if switching and restart[step]:
+                for j in range(count):
+                    d = w.deflection[0, j]
+                    reach = max(reach, abs(d), w.rows[0, (springs + 3) * count + j * springs])
+                    for k in range(springs):
+                        gap = w.rows[0, (springs + 3) * count + j * springs + k]
+                        if contacts.dead[j, k]:
+                            side = 1.0 if d > gap else (-1.0 if d < -gap else 0.0)
+                            if side != w.side[j, k]:
+                                _change(trace, 0.0, j, k, side, start, w)
                 begin_step(modes, contacts, w, start)
-                if switching and restart[step]:
-                    for j in range(count):
-                        d = w.deflection[0, j]
-                        reach = max(reach, abs(d), w.rows[0, (springs + 3) * count + j * springs])
-                        for k in range(springs):
-                            gap = w.rows[0, (springs + 3) * count + j * springs + k]
-                            if contacts.dead[j, k]:
-                                side = 1.0 if d > gap else (-1.0 if d < -gap else 0.0)
-                                if side != w.side[j, k]:
-                                    _change(trace, 0.0, j, k, side, start, w)
-                    begin_step(modes, contacts, w, start)
-                iterations = settle(modes, contacts, weights, w, scale)
-                trace.report[4] += iterations
-                failure = 0 if iterations else UNSETTLED
-                crossing = (
-                    iterations > 0
-                    and switching
-                    and (
-                        _beyond(contacts, w, 1, reach, worst)
-                        or _beyond(contacts, w, 2, reach, worst)
-                    )
-                )
-                trace.contacts[step, 0] = w.motion[:r2]
-                if crossing:
-                    failure = _divide(
-                        modes, contacts, table[step], width, partial, w, start, scale, reach,
-                        trace, sums,
-                    )  # fmt: skip
-                elif not failure:
-                    accept(modes, weights, w, width, sums)
-                    start[:] = w.motion[r2:]
-                trace.contacts[step, 1] = start
-                for o in range(r2 // 2):
-                    scale = max(scale, abs(start[o]))
-                if not scale < _LARGEST:
-                    failure = GROWING
-                if failure:
-                    trace.report[0] = failure
-                    return sums
-                if recorded:
-                    row = cycle * steps + step + 1
-                    trace.modes[row], trace.sums[row] = w.z, sums
-        return sums
-
-    return march_modes
-
-
-def _digest() -> str:
-    from pathlib import Path
-
-    return source_digest(Path(__file__).parent, ["modal_kernel", "modal_step"])
-
-
-march_modes = announced(_build(_digest()), "the modal engine", "half a minute")
+            iterations = settle(modes, contacts, weights, w, scale)
+            trace.report[4] += iterations
+            failure = 0 if iterations else UNSETTLED
+            crossing = (
+                iterations > 0
+                and switching
+                and (_beyond(contacts, w, 1, reach, worst) or _beyond(contacts, w, 2, reach, worst))
+            )
+            trace.contacts[step, 0] = w.motion[:r2]
+            if crossing:
+                failure = _divide(
+                    modes, contacts, table[step], width, partial, w, start, scale, reach,
+                    trace, sums,
+                )  # fmt: skip
+            elif not failure:
+                accept(modes, weights, w, width, sums)
+                start[:] = w.motion[r2:]
+            trace.contacts[step, 1] = start
+            for o in range(r2 // 2):
+                scale = max(scale, abs(start[o]))
+            if not scale < _LARGEST:
+                failure = GROWING
+            if failure:
+                trace.report[0] = failure
+                return sums
+            if recorded:
+                row = cycle * steps + step + 1
+                trace.modes[row], trace.sums[row] = w.z, sums
+    return sums

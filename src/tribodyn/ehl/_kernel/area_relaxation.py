@@ -8,15 +8,16 @@ of second order along both axes; all lengths in the half width of the dry contac
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Any
 
 import numba as nb
 import numpy as np
 
-from tribodyn.compiled import announced, source_digest
+from tribodyn.compiled import source_digest
 from tribodyn.compiled.cache import cached_njit
 from tribodyn.ehl._kernel.elementary import INNER, JIT, exp_, log_
 from tribodyn.types import Array
+
+_DIGEST = source_digest(Path(__file__).parent, ("elementary", "area_relaxation"))
 
 #: Least film in the mobility, and share of Roelands' pole below which a pressure is cut.
 _THINNEST, _LOWEST = 1e-9, -0.3
@@ -52,47 +53,43 @@ def _oil_fields(lam: float, oil: Array, P: Array, H: Array, fields: Array) -> No
             grow[j, i] = drho[j, i] / density - slope
 
 
-def _build_residual(digest: str) -> Any:
-    @cached_njit(**JIT)
-    def residual(
-        hx: float, hy: float, ux: float, uy: float, lam: float, oil: Array, P: Array, H: Array,
-        f: Array, fields: Array, r: Array,
-    ) -> float:  # fmt: skip
-        """Residual ``f - L`` of the inner nodes, and the mean of the Couette terms' size."""
-        digest  # noqa: B018  # a closure variable, hence part of the key of the disk cache
-        _oil_fields(lam, oil, P, H, fields)
-        rho, eps = fields[0], fields[2]
-        ax, ay, bx, by = 0.5 / hx**2, 0.5 / hy**2, ux / hx, uy / hy
-        rows, nodes = P.shape
-        size = 0.0
-        for j in range(1, rows - 1):
-            for i in range(1, nodes - 1):
-                e = eps[j, i]
-                flow = ax * (
-                    (e + eps[j, i + 1]) * (P[j, i + 1] - P[j, i])
-                    - (e + eps[j, i - 1]) * (P[j, i] - P[j, i - 1])
-                ) + ay * (
-                    (e + eps[j + 1, i]) * (P[j + 1, i] - P[j, i])
-                    - (e + eps[j - 1, i]) * (P[j, i] - P[j - 1, i])
-                )
-                m = rho[j, i] * H[j, i]
-                left = rho[j, i - 1] * H[j, i - 1]
-                if i > 1:
-                    moved = bx * (1.5 * m - 2.0 * left + 0.5 * rho[j, i - 2] * H[j, i - 2])
+@cached_njit(_DIGEST, "films of point contacts", "five seconds", **JIT)
+def residual(
+    hx: float, hy: float, ux: float, uy: float, lam: float, oil: Array, P: Array, H: Array,
+    f: Array, fields: Array, r: Array,
+) -> float:  # fmt: skip
+    """Residual ``f - L`` of the inner nodes, and the mean of the Couette terms' size."""
+    _oil_fields(lam, oil, P, H, fields)
+    rho, eps = fields[0], fields[2]
+    ax, ay, bx, by = 0.5 / hx**2, 0.5 / hy**2, ux / hx, uy / hy
+    rows, nodes = P.shape
+    size = 0.0
+    for j in range(1, rows - 1):
+        for i in range(1, nodes - 1):
+            e = eps[j, i]
+            flow = ax * (
+                (e + eps[j, i + 1]) * (P[j, i + 1] - P[j, i])
+                - (e + eps[j, i - 1]) * (P[j, i] - P[j, i - 1])
+            ) + ay * (
+                (e + eps[j + 1, i]) * (P[j + 1, i] - P[j, i])
+                - (e + eps[j - 1, i]) * (P[j, i] - P[j - 1, i])
+            )
+            m = rho[j, i] * H[j, i]
+            left = rho[j, i - 1] * H[j, i - 1]
+            if i > 1:
+                moved = bx * (1.5 * m - 2.0 * left + 0.5 * rho[j, i - 2] * H[j, i - 2])
+            else:
+                moved = bx * (m - left)
+            if by != 0.0:
+                below = rho[j - 1, i] * H[j - 1, i]
+                if j > 1:
+                    moved += by * (1.5 * m - 2.0 * below + 0.5 * rho[j - 2, i] * H[j - 2, i])
                 else:
-                    moved = bx * (m - left)
-                if by != 0.0:
-                    below = rho[j - 1, i] * H[j - 1, i]
-                    if j > 1:
-                        moved += by * (1.5 * m - 2.0 * below + 0.5 * rho[j - 2, i] * H[j - 2, i])
-                    else:
-                        moved += by * (m - below)
-                # Bodies that overlap in an iterate press each other apart.
-                r[j, i] = f[j, i] - flow + moved + _APART * bx * min(H[j, i], 0.0)
-                size += abs(moved)
-        return size / ((rows - 2) * (nodes - 2))
-
-    return residual
+                    moved += by * (m - below)
+            # Bodies that overlap in an iterate press each other apart.
+            r[j, i] = f[j, i] - flow + moved + _APART * bx * min(H[j, i], 0.0)
+            size += abs(moved)
+    return size / ((rows - 2) * (nodes - 2))
 
 
 @nb.njit(**INNER)
@@ -155,137 +152,123 @@ def _solve_band(n: int, A: Array, b: Array) -> None:
         b[k] = total / A[k, BAND]
 
 
-def _build_relax(digest: str) -> Any:
-    @cached_njit(**JIT)
-    def relax(
-        hx: float, hy: float, ux: float, uy: float, switch: float, damping: Array, K: Array,
-        P: Array, H: Array, fields: Array, r: Array, change: Array,
-    ) -> None:  # fmt: skip
-        """One sweep of distributive line relaxation, with film and residual of its beginning."""
-        # A node whose mobility exceeds ``switch`` changes alone, another one as a dipole: itself,
-        # less its share of the four neighbours.
-        digest  # noqa: B018  # a closure variable, hence part of the key of the disk cache
-        rows, nodes = P.shape
-        eps = fields[2]
-        steps = np.array([0.5 / hx**2, 0.5 / hy**2, ux / hx, uy / hy])
-        wx = 0.5 * hy**2 / (hx**2 + hy**2)
-        wy = 0.5 * hx**2 / (hx**2 + hy**2)
-        cH, cP = np.empty(7), np.empty(7)
-        A, b = np.zeros((nodes, 2 * BAND + 1)), np.zeros(nodes)
-        dipole = np.zeros(nodes, dtype=np.bool_)
-        # Influence at the signed distance, of a single node and of a dipole, in three rows.
-        single, double = np.zeros((3, 2 * REACH + 1)), np.zeros((3, 2 * REACH + 1))
-        for row in range(3):
-            for d in range(-REACH, REACH + 1):
-                single[row, d + REACH] = K[row, abs(d)]
-                double[row, d + REACH] = (
-                    K[row, abs(d)]
-                    - wx * (K[row, abs(d - 1)] + K[row, abs(d + 1)])
-                    - wy * (K[abs(row - 1), abs(d)] + K[row + 1, abs(d)])
-                )
-        before = np.zeros(nodes)
-        change[:] = 0.0
-        for j in range(1, rows - 1):
-            for i in range(1, nodes - 1):
-                dipole[i] = eps[j, i] < switch
-            n = nodes - 2
-            for i in range(1, nodes - 1):
-                k = i - 1
-                for c in range(2 * BAND + 1):
-                    A[k, c] = 0.0
-                if P[j, i] <= 0.0 and r[j, i] >= 0.0:
-                    A[k, BAND] = 1.0
-                    b[k] = 0.0
-                    continue
-                _tangent_row(j, i, steps, P, H, fields, cH, cP)
-                b[k] = r[j, i] - cP[4] * before[i]
-                for m in range(max(1, i - BAND), min(nodes - 2, i + BAND) + 1):
-                    d = i - m + REACH
-                    t = double if dipole[m] else single
-                    A[k, m - k - 1 + BAND] = (
-                        cH[0] * t[0, d] + cH[1] * t[0, d - 1] + cH[2] * t[0, d - 2]
-                        + cH[3] * t[0, d + 1] + (cH[4] + cH[6]) * t[1, d] + cH[5] * t[2, d]
-                    )  # fmt: skip
-                # Direct slopes by pressure: nodes i-2..i+1 of the line, and its neighbours.
-                for q in range(4):
-                    at, value = (i, cP[0]) if q == 0 else (i + 1, cP[3])
-                    if q == 1 or q == 2:
-                        at, value = i - q, cP[q]
-                    for side in range(-1, 2):
-                        m = at + side
-                        if m < 1 or m > nodes - 2:
-                            continue
-                        if side == 0:
-                            A[k, m - i + BAND] += value
-                        elif dipole[m]:
-                            A[k, m - i + BAND] -= wx * value
-                if dipole[i]:
-                    A[k, BAND] -= wy * (cP[4] + cP[6])
-                largest = 1.0 / abs(A[k, BAND])
-                for c in range(2 * BAND + 1):
-                    A[k, c] *= largest
-                b[k] *= largest
-            _solve_band(n, A, b)
-            before[:] = 0.0
-            for i in range(1, nodes - 1):
-                delta = b[i - 1]
-                if dipole[i]:
-                    delta = min(max(delta * damping[1], -damping[2]), damping[2])
-                    change[j, i] += delta
-                    change[j, i - 1] -= wx * delta
-                    change[j, i + 1] -= wx * delta
-                    change[j - 1, i] -= wy * delta
-                    change[j + 1, i] -= wy * delta
-                else:
-                    delta = min(max(delta * damping[0], -damping[2]), damping[2])
-                    change[j, i] += delta
-                    before[i] = delta
-        for j in range(1, rows - 1):
-            for i in range(1, nodes - 1):
-                P[j, i] = max(P[j, i] + change[j, i], 0.0)
-
-    return relax
+@cached_njit(_DIGEST, "the solver of point contacts", "ten seconds", **JIT)
+def relax(
+    hx: float, hy: float, ux: float, uy: float, switch: float, damping: Array, K: Array,
+    P: Array, H: Array, fields: Array, r: Array, change: Array,
+) -> None:  # fmt: skip
+    """One sweep of distributive line relaxation, with film and residual of its beginning."""
+    # A node whose mobility exceeds ``switch`` changes alone, another one as a dipole: itself,
+    # less its share of the four neighbours.
+    rows, nodes = P.shape
+    eps = fields[2]
+    steps = np.array([0.5 / hx**2, 0.5 / hy**2, ux / hx, uy / hy])
+    wx = 0.5 * hy**2 / (hx**2 + hy**2)
+    wy = 0.5 * hx**2 / (hx**2 + hy**2)
+    cH, cP = np.empty(7), np.empty(7)
+    A, b = np.zeros((nodes, 2 * BAND + 1)), np.zeros(nodes)
+    dipole = np.zeros(nodes, dtype=np.bool_)
+    # Influence at the signed distance, of a single node and of a dipole, in three rows.
+    single, double = np.zeros((3, 2 * REACH + 1)), np.zeros((3, 2 * REACH + 1))
+    for row in range(3):
+        for d in range(-REACH, REACH + 1):
+            single[row, d + REACH] = K[row, abs(d)]
+            double[row, d + REACH] = (
+                K[row, abs(d)]
+                - wx * (K[row, abs(d - 1)] + K[row, abs(d + 1)])
+                - wy * (K[abs(row - 1), abs(d)] + K[row + 1, abs(d)])
+            )
+    before = np.zeros(nodes)
+    change[:] = 0.0
+    for j in range(1, rows - 1):
+        for i in range(1, nodes - 1):
+            dipole[i] = eps[j, i] < switch
+        n = nodes - 2
+        for i in range(1, nodes - 1):
+            k = i - 1
+            for c in range(2 * BAND + 1):
+                A[k, c] = 0.0
+            if P[j, i] <= 0.0 and r[j, i] >= 0.0:
+                A[k, BAND] = 1.0
+                b[k] = 0.0
+                continue
+            _tangent_row(j, i, steps, P, H, fields, cH, cP)
+            b[k] = r[j, i] - cP[4] * before[i]
+            for m in range(max(1, i - BAND), min(nodes - 2, i + BAND) + 1):
+                d = i - m + REACH
+                t = double if dipole[m] else single
+                A[k, m - k - 1 + BAND] = (
+                    cH[0] * t[0, d] + cH[1] * t[0, d - 1] + cH[2] * t[0, d - 2]
+                    + cH[3] * t[0, d + 1] + (cH[4] + cH[6]) * t[1, d] + cH[5] * t[2, d]
+                )  # fmt: skip
+            # Direct slopes by pressure: nodes i-2..i+1 of the line, and its neighbours.
+            for q in range(4):
+                at, value = (i, cP[0]) if q == 0 else (i + 1, cP[3])
+                if q == 1 or q == 2:
+                    at, value = i - q, cP[q]
+                for side in range(-1, 2):
+                    m = at + side
+                    if m < 1 or m > nodes - 2:
+                        continue
+                    if side == 0:
+                        A[k, m - i + BAND] += value
+                    elif dipole[m]:
+                        A[k, m - i + BAND] -= wx * value
+            if dipole[i]:
+                A[k, BAND] -= wy * (cP[4] + cP[6])
+            largest = 1.0 / abs(A[k, BAND])
+            for c in range(2 * BAND + 1):
+                A[k, c] *= largest
+            b[k] *= largest
+        _solve_band(n, A, b)
+        before[:] = 0.0
+        for i in range(1, nodes - 1):
+            delta = b[i - 1]
+            if dipole[i]:
+                delta = min(max(delta * damping[1], -damping[2]), damping[2])
+                change[j, i] += delta
+                change[j, i - 1] -= wx * delta
+                change[j, i + 1] -= wx * delta
+                change[j - 1, i] -= wy * delta
+                change[j + 1, i] -= wy * delta
+            else:
+                delta = min(max(delta * damping[0], -damping[2]), damping[2])
+                change[j, i] += delta
+                before[i] = delta
+    for j in range(1, rows - 1):
+        for i in range(1, nodes - 1):
+            P[j, i] = max(P[j, i] + change[j, i], 0.0)
 
 
-def _build_tangent(digest: str) -> Any:
-    @cached_njit(**JIT)
-    def dense_tangent(
-        hx: float, hy: float, ux: float, uy: float, K: Array, P: Array, H: Array, fields: Array,
-        r: Array, J: Array, b: Array,
-    ) -> None:  # fmt: skip
-        """Dense tangent of all inner nodes, then of the load by the rigid gap; right-hand side."""
-        digest  # noqa: B018  # a closure variable, hence part of the key of the disk cache
-        rows, nodes = P.shape
-        steps = np.array([0.5 / hx**2, 0.5 / hy**2, ux / hx, uy / hy])
-        cH, cP = np.empty(7), np.empty(7)
-        width = nodes - 2
-        n = (rows - 2) * width
-        dj, di = (0, 0, 0, 0, -1, -2, 1), (0, -1, -2, 1, 0, 0, 0)
-        J[:] = 0.0
-        for j in range(1, rows - 1):
-            for i in range(1, nodes - 1):
-                k = (j - 1) * width + i - 1
-                J[n, k] = 1.0
-                if P[j, i] <= 0.0 and r[j, i] >= 0.0:
-                    J[k, k], b[k] = 1.0, 0.0
-                    continue
-                _tangent_row(j, i, steps, P, H, fields, cH, cP)
-                b[k] = r[j, i]
-                for q in range(7):
-                    jj, ii = j + dj[q], i + di[q]
-                    J[k, n] += cH[q]
-                    if cH[q] != 0.0:
-                        for row in range(1, rows - 1):
-                            for m in range(1, nodes - 1):
-                                at = (row - 1) * width + m - 1
-                                J[k, at] += cH[q] * K[abs(jj - row), abs(ii - m)]
-                    if 1 <= jj < rows - 1 and 1 <= ii < nodes - 1:
-                        J[k, (jj - 1) * width + ii - 1] += cP[q]
-
-    return dense_tangent
-
-
-_DIGEST = source_digest(Path(__file__).parent, ("elementary", "area_relaxation"))
-residual = announced(_build_residual(_DIGEST), "films of point contacts", "five seconds")
-relax = announced(_build_relax(_DIGEST), "the solver of point contacts", "ten seconds")
-dense_tangent = announced(_build_tangent(_DIGEST), "the tangent of point contacts", "five seconds")
+@cached_njit(_DIGEST, "the tangent of point contacts", "five seconds", **JIT)
+def dense_tangent(
+    hx: float, hy: float, ux: float, uy: float, K: Array, P: Array, H: Array, fields: Array,
+    r: Array, J: Array, b: Array,
+) -> None:  # fmt: skip
+    """Dense tangent of all inner nodes, then of the load by the rigid gap; right-hand side."""
+    rows, nodes = P.shape
+    steps = np.array([0.5 / hx**2, 0.5 / hy**2, ux / hx, uy / hy])
+    cH, cP = np.empty(7), np.empty(7)
+    width = nodes - 2
+    n = (rows - 2) * width
+    dj, di = (0, 0, 0, 0, -1, -2, 1), (0, -1, -2, 1, 0, 0, 0)
+    J[:] = 0.0
+    for j in range(1, rows - 1):
+        for i in range(1, nodes - 1):
+            k = (j - 1) * width + i - 1
+            J[n, k] = 1.0
+            if P[j, i] <= 0.0 and r[j, i] >= 0.0:
+                J[k, k], b[k] = 1.0, 0.0
+                continue
+            _tangent_row(j, i, steps, P, H, fields, cH, cP)
+            b[k] = r[j, i]
+            for q in range(7):
+                jj, ii = j + dj[q], i + di[q]
+                J[k, n] += cH[q]
+                if cH[q] != 0.0:
+                    for row in range(1, rows - 1):
+                        for m in range(1, nodes - 1):
+                            at = (row - 1) * width + m - 1
+                            J[k, at] += cH[q] * K[abs(jj - row), abs(ii - m)]
+                if 1 <= jj < rows - 1 and 1 <= ii < nodes - 1:
+                    J[k, (jj - 1) * width + ii - 1] += cP[q]

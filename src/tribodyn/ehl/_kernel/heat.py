@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numba as nb
 import numpy as np
 
-from tribodyn.compiled import announced, source_digest
+from tribodyn.compiled import source_digest
 from tribodyn.compiled.cache import cached_njit
 from tribodyn.ehl._kernel.elementary import JIT
 from tribodyn.ehl._kernel.heated_shear import (
@@ -21,6 +21,8 @@ from tribodyn.ehl._kernel.heated_shear import (
 )
 from tribodyn.ehl._kernel.reynolds import PLAIN, oil_state
 from tribodyn.types import Array
+
+_DIGEST = source_digest(Path(__file__).parent, ("elementary", "reynolds", "heated_shear", "heat"))
 
 #: Largest change of a temperature in a step [K].
 _CAP = 60.0
@@ -373,22 +375,18 @@ def _heat(
     return largest
 
 
-def _build(digest: str) -> Any:
-    @cached_njit(**JIT)
-    def heat_film(
-        k: int, oil: Array, s: Stations, o: Sheared, st: Storage, a: Across, b: Along,
-        sweeps: int, balance: Array,
-    ) -> float:  # fmt: skip
-        """Temperatures up to column k, and the balance of heat; change in the last sweep."""
-        digest  # noqa: B018  # a closure variable, hence part of the key of the disk cache
-        count, across = s.film.size, a.temperature.shape[1]
-        lneta, dlneta, rho, drho = np.empty((4, count))
-        oil_state(count - 1, s.pressure, oil[:PLAIN], lneta, dlneta, rho, drho)
-        rows, earlier = np.empty((14, across)), np.empty((count, across))
-        c = Column(rows[0], rows[1], rows[2], rows[3], rows[4], rows[5], rows[6], rows[7], rows[8])
-        return _heat(k, s, o, st, a, b, c, lneta, rho, sweeps, earlier, rows[9:], balance)
-
-    return heat_film
+@cached_njit(_DIGEST, "the heated film", "fifteen seconds", **JIT)
+def heat_film(
+    k: int, oil: Array, s: Stations, o: Sheared, st: Storage, a: Across, b: Along,
+    sweeps: int, balance: Array,
+) -> float:  # fmt: skip
+    """Temperatures up to column k, and the balance of heat; change in the last sweep."""
+    count, across = s.film.size, a.temperature.shape[1]
+    lneta, dlneta, rho, drho = np.empty((4, count))
+    oil_state(count - 1, s.pressure, oil[:PLAIN], lneta, dlneta, rho, drho)
+    rows, earlier = np.empty((14, across)), np.empty((count, across))
+    c = Column(rows[0], rows[1], rows[2], rows[3], rows[4], rows[5], rows[6], rows[7], rows[8])
+    return _heat(k, s, o, st, a, b, c, lneta, rho, sweeps, earlier, rows[9:], balance)
 
 
 @nb.njit(**LEAN)
@@ -416,7 +414,3 @@ def _count(
             balance[4] += east[j] * o.capacity * (leaving - o.temperature)
     balance[2] += b.heat[0, i] * dx
     balance[3] += b.heat[1, i] * dx
-
-
-_DIGEST = source_digest(Path(__file__).parent, ("elementary", "reynolds", "heated_shear", "heat"))
-heat_film = announced(_build(_DIGEST), "the heated film", "fifteen seconds")

@@ -8,12 +8,12 @@ integration. The rigid offset of the film is changed on the coarsest grid alone.
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numba as nb
 import numpy as np
 
-from tribodyn.compiled import announced, source_digest
+from tribodyn.compiled import source_digest
 from tribodyn.compiled.cache import cached_njit
 from tribodyn.ehl._kernel.elementary import INNER, JIT, SOURCES
 from tribodyn.ehl._kernel.film_sum import Grid, film_plan, film_sum, film_work_size, influence
@@ -39,6 +39,9 @@ from tribodyn.ehl._kernel.newton import CONVERGED, NOT_FINITE, ROUNDED, STALLED
 from tribodyn.ehl._kernel.steady import SteadyContact
 from tribodyn.interrupt import STOPPED
 from tribodyn.types import Array, Index
+
+_FILES = (*SOURCES, "steady", "multigrid_levels", "multigrid")
+_DIGEST = source_digest(Path(__file__).parent, _FILES)
 
 #: Columns of the record of cycles: intervals, change of pressure, flux error, load error, least
 #: residual of the cavity per length, last free node.
@@ -250,87 +253,78 @@ def _check(level: Level, k: int, load: float, work: LevelWork, line: Array) -> N
     line[3] = abs(dx * (total - 0.5 * P[0]) / load - 1.0)
 
 
-def _build(digest: str) -> Any:
-    @cached_njit(**JIT)
-    def multigrid_solve(
-        n: int, count: int, first: int, contact: SteadyContact, limits: MultigridLimits,
-        offset: float, free: int, P: Array, H: Array, shape: Array, films: Array, record: Array,
-        flag: Index,
-    ) -> Cycled:  # fmt: skip
-        """Solve a steady contact by full multigrid, from a pressure on the grid ``first``."""
-        digest  # noqa: B018  # a closure variable, hence part of the key of the disk cache
-        grids = _make_grids(n, count, contact)
-        last, load = count - 1, contact.load
-        work = level_work(n, n >> last, contact.lam, contact.oil)
-        streak, line = np.zeros(1, np.int64), np.zeros(RECORD)
-        g = nb.int64(0)
-        while n >> g > first:
-            g += 1
+@cached_njit(_DIGEST, "the multigrid film solver", "half a minute", **JIT)
+def multigrid_solve(
+    n: int, count: int, first: int, contact: SteadyContact, limits: MultigridLimits,
+    offset: float, free: int, P: Array, H: Array, shape: Array, films: Array, record: Array,
+    flag: Index,
+) -> Cycled:  # fmt: skip
+    """Solve a steady contact by full multigrid, from a pressure on the grid ``first``."""
+    grids = _make_grids(n, count, contact)
+    last, load = count - 1, contact.load
+    work = level_work(n, n >> last, contact.lam, contact.oil)
+    streak, line = np.zeros(1, np.int64), np.zeros(RECORD)
+    g = nb.int64(0)
+    while n >> g > first:
+        g += 1
+    level = _level(grids, g)
+    for i in range(level.grid.n + 1):
+        level.P[i] = P[i]
+    grids.free[g], work.offset[0] = free, offset
+    used, lines, status = nb.int64(0), nb.int64(0), nb.int64(CONVERGED)
+    while True:
         level = _level(grids, g)
-        for i in range(level.grid.n + 1):
-            level.P[i] = P[i]
-        grids.free[g], work.offset[0] = free, offset
-        used, lines, status = nb.int64(0), nb.int64(0), nb.int64(CONVERGED)
-        while True:
-            level = _level(grids, g)
-            m = level.grid.n
-            for i in range(m + 1):
-                level.excess[i] = level.target[i] = 0.0
-            work.coarsest.factored[0] = 0
-            best, since, cycles = np.inf, nb.int64(0), nb.int64(0)
-            fill_film(level, work.offset[0], work)
-            while g < last:
-                if flag[0] != 0:
-                    status = nb.int64(STOPPED)
-                    break
-                for i in range(m + 1):
-                    work.before[i] = level.P[i]
-                k = grids.free[g]
-                status = nb.int64(_cycle(g, load, grids, work, streak))
-                if status != CONVERGED:
-                    break
-                cycles += 1
-                _check(level, grids.free[g], load, work, line)
-                if lines < record.shape[0]:
-                    record[lines] = line
-                    lines += 1
-                change, flux = line[1], line[2]
-                still = grids.free[g] == k and line[3] < limits.load and line[4] >= _CAVITY
-                if not np.isfinite(change + flux):
-                    status = nb.int64(NOT_FINITE)
-                elif still and change < limits.pressure and flux < limits.flux:
-                    break
-                elif g > 0 and limits.film == 0.0:
-                    if cycles >= _PASSING_CYCLES or (
-                        change < limits.pressure and flux < max(limits.flux, _PASSING_FLUX)
-                    ):
-                        break
-                elif still and change < _ROUNDING:
-                    status = nb.int64(ROUNDED)
-                else:
-                    best, since = (change, 0) if change < best else (best, since + 1)
-                    if cycles >= limits.cycles or since >= _PATIENCE:
-                        status = nb.int64(STALLED)
-                if status != CONVERGED:
-                    break
-            films[used] = central(m, contact.start, level.grid.dx, level.H)
-            error = abs(films[used] - films[used - 1]) / 3.0 if used > 0 else np.inf
-            if status != CONVERGED or g == 0 or error < limits.film * films[used]:
-                break
-            used += 1
-            g -= 1
-            grids.free[g] = refine(
-                m, level.grid.dx, level.P, grids.free[g + 1], load, contact.tail, _level(grids, g).P
-            )
+        m = level.grid.n
         for i in range(m + 1):
-            P[i], H[i], shape[i] = level.P[i], level.H[i], level.shape[i]
-        return Cycled(
-            status, work.offset[0], grids.free[g], cycles, line[1], line[2], m, used + 1, lines
+            level.excess[i] = level.target[i] = 0.0
+        work.coarsest.factored[0] = 0
+        best, since, cycles = np.inf, nb.int64(0), nb.int64(0)
+        fill_film(level, work.offset[0], work)
+        while g < last:
+            if flag[0] != 0:
+                status = nb.int64(STOPPED)
+                break
+            for i in range(m + 1):
+                work.before[i] = level.P[i]
+            k = grids.free[g]
+            status = nb.int64(_cycle(g, load, grids, work, streak))
+            if status != CONVERGED:
+                break
+            cycles += 1
+            _check(level, grids.free[g], load, work, line)
+            if lines < record.shape[0]:
+                record[lines] = line
+                lines += 1
+            change, flux = line[1], line[2]
+            still = grids.free[g] == k and line[3] < limits.load and line[4] >= _CAVITY
+            if not np.isfinite(change + flux):
+                status = nb.int64(NOT_FINITE)
+            elif still and change < limits.pressure and flux < limits.flux:
+                break
+            elif g > 0 and limits.film == 0.0:
+                if cycles >= _PASSING_CYCLES or (
+                    change < limits.pressure and flux < max(limits.flux, _PASSING_FLUX)
+                ):
+                    break
+            elif still and change < _ROUNDING:
+                status = nb.int64(ROUNDED)
+            else:
+                best, since = (change, 0) if change < best else (best, since + 1)
+                if cycles >= limits.cycles or since >= _PATIENCE:
+                    status = nb.int64(STALLED)
+            if status != CONVERGED:
+                break
+        films[used] = central(m, contact.start, level.grid.dx, level.H)
+        error = abs(films[used] - films[used - 1]) / 3.0 if used > 0 else np.inf
+        if status != CONVERGED or g == 0 or error < limits.film * films[used]:
+            break
+        used += 1
+        g -= 1
+        grids.free[g] = refine(
+            m, level.grid.dx, level.P, grids.free[g + 1], load, contact.tail, _level(grids, g).P
         )
-
-    return multigrid_solve
-
-
-_FILES = (*SOURCES, "steady", "multigrid_levels", "multigrid")
-multigrid_solve = _build(source_digest(Path(__file__).parent, _FILES))
-multigrid_solve = announced(multigrid_solve, "the multigrid film solver", "half a minute")
+    for i in range(m + 1):
+        P[i], H[i], shape[i] = level.P[i], level.H[i], level.shape[i]
+    return Cycled(
+        status, work.offset[0], grids.free[g], cycles, line[1], line[2], m, used + 1, lines
+    )

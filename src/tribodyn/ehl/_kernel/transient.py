@@ -7,12 +7,12 @@ fails is halved. The first step is of first order, which keeps the second order 
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numba as nb
 import numpy as np
 
-from tribodyn.compiled import announced, source_digest
+from tribodyn.compiled import source_digest
 from tribodyn.compiled.cache import cached_njit
 from tribodyn.ehl._kernel.elementary import INNER, JIT, SOURCES
 from tribodyn.ehl._kernel.film_sum import Grid, film_plan, influence
@@ -30,6 +30,8 @@ from tribodyn.ehl._kernel.newton import (
 )
 from tribodyn.ehl._kernel.reynolds import oil_state
 from tribodyn.types import Array, Index
+
+_DIGEST = source_digest(Path(__file__).parent, (*SOURCES, "transient"))
 
 # What calls the solver is inlined: every layer of calls would be optimised again as a whole.
 
@@ -326,26 +328,18 @@ def _follow(
     return nb.int64(CONVERGED), time.size - 1, state
 
 
-def _build(digest: str) -> Any:
-    @cached_njit(**JIT)
-    def follow_contact(
-        contact: TransientContact, ratio: float, time: Array, table: Array, halvings: int,
-        every: int, past: Array, P: Array, H: Array, state: Instant, records: Array,
-        pressures: Array, films: Array, flag: Index,
-    ) -> tuple[int, int, Instant]:  # fmt: skip
-        """Follow a contact over time or, without any, carry a steady one to other inputs."""
-        # A single step may have its squeeze term imposed: `past` is its factor and its history.
-        digest  # noqa: B018  # a closure variable, hence part of the key of the disk cache
-        setting = _setting(contact, flag)
-        if time.size == 0:
-            status, final_state = _carry(setting, ratio, table, P, H, state)
-            return status, nb.int64(0), final_state
-        return _follow(
-            setting, time, table, halvings, every, past, P, H, state, records, pressures, films
-        )
-
-    return follow_contact
-
-
-follow_contact = _build(source_digest(Path(__file__).parent, (*SOURCES, "transient")))
-follow_contact = announced(follow_contact, "the transient film solver", "one to two minutes")
+@cached_njit(_DIGEST, "the transient film solver", "one to two minutes", **JIT)
+def follow_contact(
+    contact: TransientContact, ratio: float, time: Array, table: Array, halvings: int,
+    every: int, past: Array, P: Array, H: Array, state: Instant, records: Array,
+    pressures: Array, films: Array, flag: Index,
+) -> tuple[int, int, Instant]:  # fmt: skip
+    """Follow a contact over time or, without any, carry a steady one to other inputs."""
+    # A single step may have its squeeze term imposed: `past` is its factor and its history.
+    setting = _setting(contact, flag)
+    if time.size == 0:
+        status, final_state = _carry(setting, ratio, table, P, H, state)
+        return status, nb.int64(0), final_state
+    return _follow(
+        setting, time, table, halvings, every, past, P, H, state, records, pressures, films
+    )

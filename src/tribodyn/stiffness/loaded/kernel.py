@@ -11,18 +11,19 @@ compression has left its range.
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from pathlib import Path
 from typing import NamedTuple
 
 import numba as nb
 import numpy as np
 
-from tribodyn.compiled import announced, source_digest
+from tribodyn.compiled import source_digest
 from tribodyn.compiled.cache import cached_njit
 from tribodyn.compiled.jit import INNER_OPTIONS, LEAN_OPTIONS
 from tribodyn.interrupt import STOPPED
 from tribodyn.types import Array, Index, Tree
+
+_DIGEST = source_digest(Path(__file__).parent, [Path(__file__).stem])
 
 #: NaN stays detectable: neither "nnan" nor "ninf".
 _JIT: Tree = {"nogil": True, "fastmath": {"contract", "nsz"}, "error_model": "numpy"}
@@ -242,119 +243,105 @@ def _approach(
     return delta, 1
 
 
-def _build(digest: str) -> tuple[Callable[..., int], ...]:
-    """Make the kernels; the content of the sources is part of their cache key."""
-
-    @cached_njit(**_JIT)
-    def solve_loads(
-        C: Array,
-        A: Array,
-        B: float,
-        gaps: Array,
-        width: Array,
-        totals: Array,
-        delta: Array,
-        force: Array,
-        tangent: Array,
-        flag: Index,
-    ) -> int:
-        """Solve every phase at every total load, in the order of the loads."""
-        digest  # noqa: B018  # a closure variable, hence part of the key of the disk cache
-        n, slices = A.shape[1], width.shape[1]
-        work = _work(n)
-        f = np.empty((slices, n))
-        for p in range(A.shape[0]):
-            teeth = Teeth(C[p], A[p], B)
-            f[:] = 0.0
-            start = -np.inf
-            for t in range(totals.shape[0]):
-                if flag[0] != 0:
-                    return STOPPED
-                total = totals[t, p]
-                start, status = _approach(teeth, gaps[p], width[p], total, start, f, work)
-                if status != 0:
-                    return status
-                delta[t, p] = start
-                tangent[t, p] = work.sums[1]
-                # One by one: the copy of arrays brings its error messages, slow to compile.
-                for s in range(slices):
-                    for i in range(n):
-                        force[t, p, s, i] = f[s, i]
-        return 0
-
-    @cached_njit(**_JIT)
-    def solve_deflections(
-        C: Array,
-        A: Array,
-        B: float,
-        gaps: Array,
-        width: Array,
-        delta: Array,
-        total: Array,
-        tangent: Array,
-        flag: Index,
-    ) -> int:
-        """Force and tangent stiffness (D, P) of every phase at every approach ``delta`` (D, P)."""
-        digest  # noqa: B018  # a closure variable, hence part of the key of the disk cache
-        n, slices = A.shape[1], width.shape[1]
-        work = _work(n)
-        f = np.empty((slices, n))
-        for p in range(A.shape[0]):
-            teeth = Teeth(C[p], A[p], B)
-            f[:] = 0.0
-            for d in range(delta.shape[0]):
-                if flag[0] != 0:
-                    return STOPPED
-                status = _total_force(teeth, gaps[p], width[p], delta[d, p], f, work)
-                if status != 0:
-                    return status
-                total[d, p] = work.sums[0]
-                tangent[d, p] = work.sums[1]
-        return 0
-
-    @cached_njit(**_JIT)
-    def pickups(
-        C: Array, A: Array, B: float, gaps: Array, most: Array, pickup: Array, flag: Index
-    ) -> int:
-        """Approach (P, n) at which each pair of a single slice begins to carry, up to ``most``."""
-        digest  # noqa: B018  # a closure variable, hence part of the key of the disk cache
-        n = A.shape[1]
-        work = _work(n)
-        f, alone = np.empty(n), np.empty(n)
-        for p in range(A.shape[0]):
+@cached_njit(_DIGEST, "the loads of tooth pairs", "ten seconds", **_JIT)
+def solve_loads(
+    C: Array,
+    A: Array,
+    B: float,
+    gaps: Array,
+    width: Array,
+    totals: Array,
+    delta: Array,
+    force: Array,
+    tangent: Array,
+    flag: Index,
+) -> int:
+    """Solve every phase at every total load, in the order of the loads."""
+    n, slices = A.shape[1], width.shape[1]
+    work = _work(n)
+    f = np.empty((slices, n))
+    for p in range(A.shape[0]):
+        teeth = Teeth(C[p], A[p], B)
+        f[:] = 0.0
+        start = -np.inf
+        for t in range(totals.shape[0]):
             if flag[0] != 0:
                 return STOPPED
-            teeth = Teeth(C[p], A[p], B)
-            for i in range(n):
-                # The pair itself stays separated; neighbours may pull its teeth together.
-                for j in range(n):
-                    alone[j] = gaps[p, 0, j]
-                alone[i] = _APART
-                low, high = _least(gaps[p]), most[p]
-                pickup[p, i] = min(low, high)
-                if not low < high or low == gaps[p, 0, i]:
-                    continue
-                f[:] = 0.0
-                while high - low > 1e-14 * high:
-                    middle = 0.5 * (low + high)
-                    if middle <= low or middle >= high:
-                        break
-                    status = _slice(teeth, alone, middle, f, work)
-                    if status < 0:
-                        return -status
-                    if _residual(teeth, gaps[p, 0, i], middle, f, i) < 0.0:
-                        high = middle
-                    else:
-                        low = middle
-                pickup[p, i] = high
-        return 0
-
-    kernels = solve_loads, solve_deflections, pickups
-    names = (f"the {what} of tooth pairs" for what in ("loads", "forces", "first touch"))
-    loads, forces, touch = map(announced, kernels, names, ["ten seconds"] * 3)
-    return loads, forces, touch
+            total = totals[t, p]
+            start, status = _approach(teeth, gaps[p], width[p], total, start, f, work)
+            if status != 0:
+                return status
+            delta[t, p] = start
+            tangent[t, p] = work.sums[1]
+            # One by one: the copy of arrays brings its error messages, slow to compile.
+            for s in range(slices):
+                for i in range(n):
+                    force[t, p, s, i] = f[s, i]
+    return 0
 
 
-solve_loads, solve_deflections, pickups = _build(
-    source_digest(Path(__file__).parent, [Path(__file__).stem])
-)
+@cached_njit(_DIGEST, "the forces of tooth pairs", "ten seconds", **_JIT)
+def solve_deflections(
+    C: Array,
+    A: Array,
+    B: float,
+    gaps: Array,
+    width: Array,
+    delta: Array,
+    total: Array,
+    tangent: Array,
+    flag: Index,
+) -> int:
+    """Force and tangent stiffness (D, P) of every phase at every approach ``delta`` (D, P)."""
+    n, slices = A.shape[1], width.shape[1]
+    work = _work(n)
+    f = np.empty((slices, n))
+    for p in range(A.shape[0]):
+        teeth = Teeth(C[p], A[p], B)
+        f[:] = 0.0
+        for d in range(delta.shape[0]):
+            if flag[0] != 0:
+                return STOPPED
+            status = _total_force(teeth, gaps[p], width[p], delta[d, p], f, work)
+            if status != 0:
+                return status
+            total[d, p] = work.sums[0]
+            tangent[d, p] = work.sums[1]
+    return 0
+
+
+@cached_njit(_DIGEST, "the first touch of tooth pairs", "ten seconds", **_JIT)
+def pickups(
+    C: Array, A: Array, B: float, gaps: Array, most: Array, pickup: Array, flag: Index
+) -> int:
+    """Approach (P, n) at which each pair of a single slice begins to carry, up to ``most``."""
+    n = A.shape[1]
+    work = _work(n)
+    f, alone = np.empty(n), np.empty(n)
+    for p in range(A.shape[0]):
+        if flag[0] != 0:
+            return STOPPED
+        teeth = Teeth(C[p], A[p], B)
+        for i in range(n):
+            # The pair itself stays separated; neighbours may pull its teeth together.
+            for j in range(n):
+                alone[j] = gaps[p, 0, j]
+            alone[i] = _APART
+            low, high = _least(gaps[p]), most[p]
+            pickup[p, i] = min(low, high)
+            if not low < high or low == gaps[p, 0, i]:
+                continue
+            f[:] = 0.0
+            while high - low > 1e-14 * high:
+                middle = 0.5 * (low + high)
+                if middle <= low or middle >= high:
+                    break
+                status = _slice(teeth, alone, middle, f, work)
+                if status < 0:
+                    return -status
+                if _residual(teeth, gaps[p, 0, i], middle, f, i) < 0.0:
+                    high = middle
+                else:
+                    low = middle
+            pickup[p, i] = high
+    return 0

@@ -5,7 +5,6 @@ from __future__ import annotations
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
-from typing import Any
 
 import numba as nb
 import numpy as np
@@ -15,11 +14,13 @@ from tribodyn.arrays.splines import (
     bspline_values,
     interpolation_knots,
 )
-from tribodyn.compiled import announced, source_digest
+from tribodyn.compiled import source_digest
 from tribodyn.compiled.cache import cached_njit
 from tribodyn.compiled.jit import INNER_OPTIONS
 from tribodyn.errors import Argument, InputError
 from tribodyn.types import Array, Tree
+
+_DIGEST = source_digest(Path(__file__).parent, [Path(__file__).stem])
 
 #: Distance beyond the ends of the face, over its width, that is rounding.
 _ROUNDING = 1e-9
@@ -252,46 +253,39 @@ def _cubic_weights(knots: Array, x: float, weights: Array) -> int:
     return low - 3
 
 
-def _build(digest: str) -> Any:
-    @cached_njit(**_JIT)
-    def fill_compliance(
-        table: Array, knots: Array, widths: Array, radii: Array, sense: int, out: Array
-    ) -> None:
-        """Add the compliance between all contacts of all phases."""
-        digest  # noqa: B018  # a closure variable, hence part of the key of the disk cache
-        phases, pairs, slices = radii.shape
-        most = table.shape[0] - 1
-        first, weight = np.empty((pairs, slices), np.int64), np.empty((pairs, slices, 4))
-        for p in range(phases):
-            for i in range(pairs):
+@cached_njit(_DIGEST, "the compliance between slices", "five seconds", **_JIT)
+def fill_compliance(
+    table: Array, knots: Array, widths: Array, radii: Array, sense: int, out: Array
+) -> None:
+    """Add the compliance between all contacts of all phases."""
+    phases, pairs, slices = radii.shape
+    most = table.shape[0] - 1
+    first, weight = np.empty((pairs, slices), np.int64), np.empty((pairs, slices, 4))
+    for p in range(phases):
+        for i in range(pairs):
+            for k in range(slices):
+                x = min(max(radii[p, i, k] ** 2, knots[0]), knots[-1])
+                first[i, k] = _cubic_weights(knots, x, weight[i, k])
+        for i in range(pairs):
+            for j in range(pairs):
+                step = (j - i) * sense
+                # the other side follows by reciprocity
+                if step < 0 or step > most or (step == 0 and i != j):
+                    continue
                 for k in range(slices):
-                    x = min(max(radii[p, i, k] ** 2, knots[0]), knots[-1])
-                    first[i, k] = _cubic_weights(knots, x, weight[i, k])
-            for i in range(pairs):
-                for j in range(pairs):
-                    step = (j - i) * sense
-                    # the other side follows by reciprocity
-                    if step < 0 or step > most or (step == 0 and i != j):
-                        continue
-                    for k in range(slices):
-                        for m in range(slices):
-                            if i == j and m < k:
-                                continue
-                            total = 0.0
-                            for a in range(4):
-                                row = 0.0
-                                for b in range(4):
-                                    row += (
-                                        weight[j, m, b]
-                                        * table[step, k, m, first[i, k] + a, first[j, m] + b]
-                                    )
-                                total += weight[i, k, a] * row
-                            loaded, displaced = i * slices + k, j * slices + m
-                            out[p, displaced, loaded] += total / widths[m]
-                            if loaded != displaced:
-                                out[p, loaded, displaced] += total / widths[k]
-
-    return announced(fill_compliance, "the compliance between slices", "five seconds")
-
-
-fill_compliance = _build(source_digest(Path(__file__).parent, [Path(__file__).stem]))
+                    for m in range(slices):
+                        if i == j and m < k:
+                            continue
+                        total = 0.0
+                        for a in range(4):
+                            row = 0.0
+                            for b in range(4):
+                                row += (
+                                    weight[j, m, b]
+                                    * table[step, k, m, first[i, k] + a, first[j, m] + b]
+                                )
+                            total += weight[i, k, a] * row
+                        loaded, displaced = i * slices + k, j * slices + m
+                        out[p, displaced, loaded] += total / widths[m]
+                        if loaded != displaced:
+                            out[p, loaded, displaced] += total / widths[k]
