@@ -235,18 +235,18 @@ def cyclic_coherence(
     weights = weights.astype(np.float32)
     # The signal is real: the line at f - a/2 is the conjugate of the mirrored one.
     mirror = -np.arange(half + 1)
-    sample, whole = np.arange(block_length), np.arange(0, values.size, block_length)
+    sample, block_starts = np.arange(block_length), np.arange(0, values.size, block_length)
     for column, each in enumerate(alpha):
         turns = -1j * np.pi * each / sampling_rate
-        turning = np.outer(np.exp(turns * whole), np.exp(turns * sample)).reshape(-1)
+        turning = np.outer(np.exp(turns * block_starts), np.exp(turns * sample)).reshape(-1)
         turning = turning[: values.size].astype(np.complex64)
         blocks = np.lib.stride_tricks.sliding_window_view(centred * turning, block_length)[::step]
         above = fft(blocks * weights, axis=1, overwrite_x=True)
         phase = turning[: count * step : step] ** 2
         leakage = phase.conj() * phase.mean()
         leakage *= np.abs(phase.mean()) ** 2 >= _LEAKAGE / independent
-        both = above[:, : half + 1] * above[:, mirror]
-        cross = np.abs((1.0 - leakage) @ both / count) ** 2
+        products = above[:, : half + 1] * above[:, mirror]
+        cross = np.abs((1.0 - leakage) @ products / count) ** 2
         power = np.mean(above.real**2 + above.imag**2, axis=0)
         power = power[: half + 1] * power[mirror]
         # Next to its mirror image a line of noise is coherent with itself.

@@ -322,8 +322,8 @@ def take_loads(case: MachineCase, before: MachineCase, numbers: Mapping[str, flo
     loads = read_loads(case.data, tables, parts_of(tables, "load_cases"), problems)
     if loads is None or problems:
         return False
-    kept = {"_teeth": before._teeth, "_machines": dict(before._machines)}
-    vars(case).update(kept, operating_point=loads.operating_point, load_cases=loads.load_cases)
+    state = {"_teeth": before._teeth, "_machines": dict(before._machines)}
+    vars(case).update(state, operating_point=loads.operating_point, load_cases=loads.load_cases)
     try:
         check_loads(case)
     except InputError:  # whose message says what was replaced

@@ -405,8 +405,8 @@ class ResultOfCase(Record, ABC):
         if not name.startswith(_PLOT):
             kind_of("MachineResult")  # shows its members
             owner = "a machine" if type(self) is kind_of("PairResult") else "a pair of gears"
-            shown = f": that is of {owner}" * (name in Result.__annotations__)
-            raise AttributeError(what + shown)
+            member_of = f": that is of {owner}" * (name in Result.__annotations__)
+            raise AttributeError(what + member_of)
         figure, figures = name.removeprefix(_PLOT), figures_of(self)
         if figure in figures:
             return bound_figure(self, figure)
