@@ -242,7 +242,7 @@ def test_a_hunting_pair_moves_over_phases_of_its_shafts(hunting: Case) -> None:
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize(("points", "accuracy"), [(64, 2e-2), (512, 2e-3)])
+@pytest.mark.parametrize(("points", "accuracy"), [(128, 1e-2), (512, 2e-3)])
 def test_lines_of_a_crack_are_those_of_one_clock(
     hunting: Case, monkeypatch: pytest.MonkeyPatch, points: int, accuracy: float
 ) -> None:

@@ -46,7 +46,7 @@ _LEAST, _MOTION, _TEETH, _CRACK = 0.1, 6.5e-3, (5e-4, 0.04, 0.095), (3.5, 6.5)
 #: Mesh cycles of a period that is taken as one clock, with a line at each of its orders.
 _SHORT = 100
 #: Points of a mesh cycle of a motion over phases.
-MESH_POINTS = 64
+MESH_POINTS = 128
 #: Memory that the motion of a pair may take [byte].
 _MEMORY = 4e9
 
