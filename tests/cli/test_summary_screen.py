@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from tribodyn.cli import call
-from tribodyn.cli.screen import chief_figures
+from tribodyn.cli.screen import chief_figures, screen
 from tribodyn.study import SUMMARY
 from tribodyn.study.pipeline.summary_figures import figure_of, is_chief, part_figures
 
@@ -87,3 +87,13 @@ def test_all_prints_every_figure(
     assert all(name in every for name in names)
     assert "peak_mesh_force" in short
     assert "tip_diameter_pinion" not in short
+
+
+def test_rows_without_a_value_in_a_block_are_left_out() -> None:
+    values = {f"meshes.planet_mesh{n}.mesh_frequency": 10.0 + n for n in range(12)}
+    values["meshes.planet_mesh0.center_distance"] = 0.1
+    lines = screen(values, values).splitlines()
+    assert sum(line.startswith("Meshes") for line in lines) > 1
+    assert sum("mesh_frequency" in line for line in lines) > 1
+    (row,) = [line for line in lines if "center_distance" in line]
+    assert "100" in row

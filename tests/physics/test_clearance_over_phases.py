@@ -104,6 +104,8 @@ def test_a_disturbance_in_a_loose_bearing_grows_as_its_warning_says() -> None:
     path = solve_ivp(slope, (0.0, times[-1]), start, **options).y[:8].T
     away = np.linalg.norm(felt(system, pins, path) - felt(system, pins, at.position), axis=1)
     assert away[-1] / away[-2] == pytest.approx(growth**3, rel=3e-3)
+    _, multiplier = growing(ON_CLOCK, 300.0, 300.0, 1, steps=400)
+    assert away[-1] / away[-2] == pytest.approx(multiplier, rel=2e-3)
 
 
 @pytest.mark.slow

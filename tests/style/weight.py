@@ -129,7 +129,7 @@ LINES: dict[str, int] = {
     "arrays": 167,
     "cases": 1373,
     "checkpoints": 142,
-    "cli": 2729,
+    "cli": 2730,
     "compiled": 234,
     "contact": 417,
     "cookbook": 102,

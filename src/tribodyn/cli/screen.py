@@ -73,7 +73,7 @@ def _grid(values: Mapping[str, float], names: list[str], title: str) -> Iterator
 
 
 def _side_by_side(first: list[str], columns: list[list[str]]) -> Iterator[str]:
-    """Right-aligned columns behind the first one, as many as fit in each block."""
+    """Right-aligned columns behind the first one, as many as fit in each block; no empty rows."""
     widths = [max(map(len, column)) + 2 for column in columns]
     label_width = max(map(len, first))
     start = 0
@@ -83,9 +83,10 @@ def _side_by_side(first: list[str], columns: list[list[str]]) -> Iterator[str]:
             width_used += widths[end]
             end += 1
         for number, label in enumerate(first):
-            fitting = zip(columns[start:end], widths[start:end], strict=True)
-            cells = "".join(column[number].rjust(width) for column, width in fitting)
-            yield label.ljust(label_width) + cells
+            cells = [column[number] for column in columns[start:end]]
+            if any(cell != "-" for cell in cells):
+                row = "".join(map(str.rjust, cells, widths[start:end]))
+                yield label.ljust(label_width) + row
         start = end
 
 
