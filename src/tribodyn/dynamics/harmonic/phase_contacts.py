@@ -111,10 +111,11 @@ class Pieces:
         """Weights of the points of the refined lines in a motion at each point."""
         from scipy.sparse import vstack
 
-        return self.own if self.uncut is None else vstack((self.uncut.between, self.own), "csr")
+        new = self.at_cuts
+        return new if self.uncut is None else vstack((self.uncut.between, new), "csr")
 
     @cached_property
-    def own(self) -> csr_matrix:
+    def at_cuts(self) -> csr_matrix:
         """The same at the points that are none of the uncut pieces."""
         from scipy.sparse import csr_matrix
         from scipy.special import binom
@@ -252,13 +253,13 @@ class PhaseContacts(ContactLaw):
         if closed is None and (crossings := self._crossings(pieces, rows, law)).piece.size:
             pieces = pieces.cut(crossings.piece, crossings.inside)
             rows = self.part.projected(pieces.points, *self.bases)
-            moved = pieces.own @ fine[0], pieces.own @ fine[1]
+            moved = pieces.at_cuts @ fine[0], pieces.at_cuts @ fine[1]
             further = self.law(rows, 1.0, *moved, excess, closed)
             ends = slice(-crossings.piece.size, None)
             jumped = self._jumped(crossings, rows.at(ends), further.push[ends], moved)
             law = Law(*(
-                both[0] if len(both[0]) == 1 else np.concatenate(both)
-                for both in zip(law, further, strict=True)
+                entries[0] if len(entries[0]) == 1 else np.concatenate(entries)
+                for entries in zip(law, further, strict=True)
             ))  # fmt: skip
         weight = pieces.weight[:, None, None]
         stiffness, damping = (

@@ -279,16 +279,16 @@ def growth(residual: PhaseResidual, state: State, motion: PhaseResponse) -> floa
 def _tangents_along(line: tuple[int, ...], count: int, part: OnGrid, state: State) -> Array:
     """Changes of the forces of a part with its motion and rate (count, s, 2 r) along a line."""
     grid, changes = part.grid, tangents(part.structure, state)
-    both = np.concatenate(np.broadcast_arrays(*changes), axis=2)
-    values = both.reshape(len(both), -1)
+    joined = np.concatenate(np.broadcast_arrays(*changes), axis=2)
+    values = joined.reshape(len(joined), -1)
     if state.cell is not None:
         values = state.cell.pieces.gather(values)
     values = np.broadcast_to(values, (grid.size, values.shape[1]))
     paired = ~grid.unpaired
     lines = _cosines(grid.numbers[paired], grid.spectrum(values)[paired], grid.frequency)
-    along = _summed(line, count, *lines).reshape(count, *both.shape[1:])
+    along = _summed(line, count, *lines).reshape(count, *joined.shape[1:])
     if state.mean_stiffness is not None:  # it holds what nothing else does
-        along[..., : both.shape[2] // 2] -= state.mean_stiffness
+        along[..., : joined.shape[2] // 2] -= state.mean_stiffness
     return along
 
 

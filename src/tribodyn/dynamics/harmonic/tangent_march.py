@@ -68,11 +68,11 @@ class TangentMarch:
     @classmethod
     def of(cls, residual: ClockResidual, state: State, fewest: int | None = None) -> TangentMarch:
         """Over a period, with means of tangents over steps if fewer suffice."""
-        both, steps = _tangents(residual, state), len(state.y)
+        samples, steps = _tangents(residual, state), len(state.y)
         if fewest is not None:
             steps = next(n for n in range(min(fewest, steps), steps + 1) if steps % n == 0)
-            both = both.reshape(steps, -1, *both.shape[1:]).mean(axis=1)
-        return cls(residual.structure, both, 1.0 / (residual.frequency * steps))
+            samples = samples.reshape(steps, -1, *samples.shape[1:]).mean(axis=1)
+        return cls(residual.structure, samples, 1.0 / (residual.frequency * steps))
 
     def __call__(self, motion: Array, rate: Array) -> Array:
         """Motion whose product with the derivative of the residual is nearly this one."""
@@ -110,12 +110,12 @@ def _tangents(residual: ClockResidual, state: State) -> Array:
     """Forces per motion and rate at the contacts, at each sample (steps, s, 2 r)."""
     structure, breaks = residual.structure, state.breaks
     (s, r), steps = structure.contact_stiffness.shape, len(state.y)
-    both = np.empty((steps, s, 2 * r))
-    both[..., :r], both[..., r:] = tangents(structure, state)
+    joined = np.empty((steps, s, 2 * r))
+    joined[..., :r], joined[..., r:] = tangents(structure, state)
     if breaks.step.size:
         tangent = breaks.tangent.reshape(breaks.step.size, -1)
-        both[..., :r] += (breaks.spread(steps) @ tangent).reshape(steps, s, r)
-    return both
+        joined[..., :r] += (breaks.spread(steps) @ tangent).reshape(steps, s, r)
+    return joined
 
 
 def warn_of_growth(what: str, size: float, limit: float) -> None:
