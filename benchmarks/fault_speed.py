@@ -25,7 +25,7 @@ from tribodyn.study.faults.motion import (
     TurningMotion,
     turning_mesh_of,
     turning_motion,
-    turning_system,
+    turning_system_of,
 )
 from tribodyn.study.pipeline.run import prepare_run
 
@@ -55,7 +55,8 @@ class _Pair:
         self.prepared = [prepare_run(_case(depth, **changed)) for depth in ("0 mm", "1.5 mm")]
         self.solution = self.motions()[1].response  # compiles, and keeps compliances
         mesh = turning_mesh_of(self.prepared[1].case)
-        self.system = turning_system(self.prepared[1], mesh)
+        run = self.prepared[1]
+        self.system = turning_system_of(run.case, run.mesh, run.damping, mesh)
         self.frequency = self.prepared[1].mesh.mesh_frequency / mesh.cycles
         self.steps = 128 * mesh.cycles
 

@@ -86,7 +86,7 @@ class BasicRack:
         Examples
         --------
         >>> round(BasicRack.usual(math.radians(25.0)).tip_radius_coefficient, 4)
-        0.3178
+        0.3179
         """
         rack = cls(*heights)
         if not 0.0 <= pressure_angle < 0.25 * math.pi:

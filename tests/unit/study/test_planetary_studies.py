@@ -125,7 +125,11 @@ def test_variants_have_the_load_shares_of_their_errors(case):
         ({"planets.low.pin_errors": "0 um +- 20 mm"}, "planets.low.pin_errors.1", "Allowed"),
         ({"planets.low.pin_errors.4": "5 um"}, "planets.low.pin_errors.4", "has 3 values"),
         ({"planets.low.pin_errors.1": "5 mm"}, "planets.low.pin_errors", "0.4 mm"),
-        ({"planets.low.thickness_errors": ["0.5 mm", 0.0, 0.0]}, "thickness_errors", "0.4 mm"),
+        (
+            {"planets.low.thickness_errors": ["0.5 mm", "0 m", "0 m"]},
+            "thickness_errors",
+            "0.4 mm",
+        ),
         ({"operation.torque": "600 N +- 2 %"}, "operation.torque", "N"),
     ],
 )

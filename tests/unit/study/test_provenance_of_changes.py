@@ -208,11 +208,11 @@ def test_all_of_it_holds_on_the_command_line(
 ) -> None:
     monkeypatch.chdir(tmp_path)
     assert call(["check", "fzg-roughness"]) == 0
-    assert "20 values are assumed" in capsys.readouterr().err
+    assert "(--all): 20 assumed" in capsys.readouterr().err
     arguments = ["--set", f"{WIDTH}=30 mm", "--set", "gears.wheel.face_width=30 mm"]
     assert call(["check", "fzg-roughness", *arguments]) == 0
     by_set = capsys.readouterr().err
-    assert "18 values are assumed" in by_set
+    assert "(--all): 18 assumed" in by_set
     assert call(["new", "my.toml", "--from", "fzg-roughness"]) == 0
     text = Path("my.toml").read_text(encoding="utf-8")
     Path("my.toml").write_text(text.replace('\nface_width = "20 mm"', '\nface_width = "30 mm"'))

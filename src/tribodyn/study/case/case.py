@@ -242,6 +242,8 @@ class Case(CaseTables):
                 return None
             if key in self._spread or key in self._assumed or self._effective.get(key) is None:
                 return None
+            if key.count(".") > 1:  # inside an inner table or a list
+                return None
             try:
                 numbers[key] = read_value(spec, key.rpartition(".")[2], Plain(value))
             except FaultError:
