@@ -135,7 +135,7 @@ LINES: dict[str, int] = {
     "contact": 417,
     "cookbook": 102,
     "drawing": 204,
-    "dynamics": 15695,
+    "dynamics": 15691,
     "ehl": 9445,
     "errors": 224,
     "exchange": 2164,

@@ -58,6 +58,7 @@ def test_lines_are_those_of_the_shafts() -> None:
     motion = motion_with(axis=AXIS)
     assert motion.turns["input"] == 1
     assert motion.cycles == 27
+    assert repr(motion) == "MachineTurningMotion(0.02 s, turns: input 1, output 0.529412)"
     frequency, lines = motion.harmonics("bearings.A.force_y")
     size = np.abs(lines)
     tall = np.flatnonzero(size[:1000] > 1e-6 * size[1:].max())

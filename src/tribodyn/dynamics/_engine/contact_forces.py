@@ -30,20 +30,12 @@ from tribodyn.dynamics._engine.lanes import (
     negative_lanes,
     store,
 )
-from tribodyn.dynamics._engine.method import INNER
+from tribodyn.dynamics._engine.method import INNER, Law
 from tribodyn.dynamics.equations.program import Slots, lay_out
 from tribodyn.types import Array, Index
 
 #: Converts literal integer arguments, for each of which the compiler would recompile the callee.
 I64: Callable[..., int] = np.int64  # type: ignore[assignment]
-
-
-class Law(NamedTuple):
-    """Addresses of the arrays that the compiled law reads."""
-
-    code: Index
-    reads: Index
-    rows: Array | tuple[Array]  #: a tuple where every lane has its own
 
 
 _lay_out = nb.njit(forceinline=True, **INNER)(lay_out)

@@ -20,7 +20,6 @@ import numba as nb
 
 from tribodyn.dynamics._engine.contact_forces import (
     I64,
-    Law,
     compression,
     dead_zone,
     first_contact,
@@ -29,7 +28,7 @@ from tribodyn.dynamics._engine.contact_forces import (
     slots_of,
 )
 from tribodyn.dynamics._engine.lanes import first_lane
-from tribodyn.dynamics._engine.method import INNER, ONCE, Method, prepare, restart, step
+from tribodyn.dynamics._engine.method import INNER, ONCE, Law, Method, prepare, restart, step
 from tribodyn.dynamics.equations import divergence, motion
 from tribodyn.types import Array
 

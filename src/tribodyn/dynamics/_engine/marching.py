@@ -11,7 +11,6 @@ from tribodyn.compiled.cache import cached_njit
 from tribodyn.dynamics._engine import newmark, runge_kutta  # noqa: F401  # their overloads
 from tribodyn.dynamics._engine.contact_forces import (
     I64,
-    Law,
     acceleration,
     first_contact,
     is_dead_zone,
@@ -26,6 +25,7 @@ from tribodyn.dynamics._engine.method import (
     INNER,
     JIT,
     ONCE,
+    Law,
     Method,
     accept,
     kernel_digest,

@@ -21,7 +21,6 @@ from tribodyn.dynamics.equations.grid import Grid
 from tribodyn.types import Array, Index, Tree
 
 if TYPE_CHECKING:
-    from tribodyn.dynamics._engine.contact_forces import Law
     from tribodyn.dynamics._engine.lanes import Lanes
 
 F = TypeVar("F", bound=Callable[..., object])
@@ -32,6 +31,14 @@ def kernel_digest() -> str:
     folder = Path(__file__).parent
     law = (f"../equations/{name}" for name in ("program", "motion", "divergence"))
     return source_digest(folder, [*sorted(path.stem for path in folder.glob("*.py")), *law])
+
+
+class Law(NamedTuple):
+    """Addresses of the arrays that the compiled law reads."""
+
+    code: Index
+    reads: Index
+    rows: Array | tuple[Array]  #: a tuple where every lane has its own
 
 
 class RungeKutta4(NamedTuple):

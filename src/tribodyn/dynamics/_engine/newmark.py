@@ -18,7 +18,6 @@ import numba as nb
 from tribodyn.dynamics._engine.contact_forces import (
     I64,
     Cursor,
-    Law,
     acceleration,
     compression_and_rate,
     contact_law,
@@ -43,6 +42,7 @@ from tribodyn.dynamics._engine.lanes import (
 )
 from tribodyn.dynamics._engine.method import (
     INNER,
+    Law,
     Newmark,
     accept,
     for_method,

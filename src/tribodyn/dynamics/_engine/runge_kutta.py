@@ -6,7 +6,6 @@ import numba as nb
 
 from tribodyn.dynamics._engine.contact_forces import (
     I64,
-    Law,
     all_forces,
     next_coordinate,
     slots_of,
@@ -15,6 +14,7 @@ from tribodyn.dynamics._engine.contact_forces import (
 from tribodyn.dynamics._engine.lanes import Lanes, keep_apart, load, store
 from tribodyn.dynamics._engine.method import (
     INNER,
+    Law,
     RungeKutta4,
     accept,
     for_method,

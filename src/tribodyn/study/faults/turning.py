@@ -218,7 +218,7 @@ class PeriodicMotion(ABC):
 
     def __repr__(self) -> str:
         """One line."""
-        turns = ", ".join(f"{shaft} {turns:g}" for shaft, turns in self.turns.items())
+        turns = ", ".join(f"{shaft} {float(turns):g}" for shaft, turns in self.turns.items())
         return f"{type(self).__name__}({self.period:.5g} s, turns: {turns})"
 
 

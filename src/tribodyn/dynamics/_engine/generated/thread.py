@@ -15,7 +15,7 @@ import numpy as np
 from numba import cuda
 from numba.extending import register_jitable
 
-from tribodyn.dynamics._engine.contact_forces import I64, Law, set_sides, slots_of
+from tribodyn.dynamics._engine.contact_forces import I64, set_sides, slots_of
 from tribodyn.dynamics._engine.crossing import split_step
 from tribodyn.dynamics._engine.lanes import Lanes
 from tribodyn.dynamics._engine.marching import (
@@ -25,7 +25,7 @@ from tribodyn.dynamics._engine.marching import (
     set_up,
     take_lane,
 )
-from tribodyn.dynamics._engine.method import Method
+from tribodyn.dynamics._engine.method import Law, Method
 from tribodyn.dynamics._engine.runge_kutta import take_over
 from tribodyn.dynamics._engine.running_statistics import Gathered, Place, gather, gather_parts
 from tribodyn.types import Array, Index, Mask
