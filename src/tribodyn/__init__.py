@@ -17,7 +17,7 @@ import sys
 from importlib import import_module
 from typing import Any
 
-from tribodyn.lazy import names_of_stub
+from tribodyn.aliases import names_of_stub
 
 __version__ = "0.2.0"
 

@@ -1,4 +1,4 @@
-"""Deprecated public names: one table of what replaces them, and the aliases that it defines.
+"""Public names: those of a stub, a table of what replaces deprecated ones, and their aliases.
 
 An alias works like the new name and issues a ``DeprecationWarning``, which Python displays once for
 each line of a script that uses it. Functions and classes that are decorated with
@@ -7,11 +7,13 @@ each line of a script that uses it. Functions and classes that are decorated wit
 
 from __future__ import annotations
 
+import ast
 import functools
 import sys
 import warnings
 from collections.abc import Callable, Mapping
 from importlib import import_module
+from pathlib import Path
 from typing import Any, TypeVar, cast
 
 __all__ = ["RENAMED", "Alias", "old_module", "warn_of_old_name", "with_old_names"]
@@ -126,3 +128,25 @@ def warn_of_old_name(old: str, new: str) -> None:
         frame.f_globals["__name__"],
         frame.f_globals.setdefault("__warningregistry__", {}),
     )
+
+
+def names_of_stub(page: str) -> dict[str, str]:
+    """Module of each public name of a page, as the stub of the page imports it.
+
+    The stub ``__init__.pyi`` is the only list of the names: editors and type checkers read it, and
+    so does the page when it is imported.
+
+    Parameters
+    ----------
+    page : str
+        Path of the page, its ``__file__``.
+
+    Returns
+    -------
+    dict of str to str
+        Module by name.
+    """
+    stub = ast.parse(Path(page).with_suffix(".pyi").read_text(encoding="utf-8"))
+    imports = [node for node in stub.body if isinstance(node, ast.ImportFrom)]
+    names = ((alias, node.module or "") for node in imports for alias in node.names)
+    return {alias.name: module for alias, module in names if alias.asname}

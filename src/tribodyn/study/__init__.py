@@ -5,8 +5,8 @@ from __future__ import annotations
 from importlib import import_module
 from typing import Any
 
+from tribodyn.aliases import names_of_stub
 from tribodyn.arguments import guarded
-from tribodyn.lazy import names_of_stub
 
 #: Modules of the public names, which are loaded when they are first used.
 _HOMES = names_of_stub(__file__)

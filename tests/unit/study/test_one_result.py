@@ -76,3 +76,20 @@ def test_one_function_runs_a_case_of_any_kind(name: str) -> None:
 def test_what_follows_a_pair_is_refused_for_a_machine() -> None:
     with pytest.raises(td.InputError, match="follow"):
         run(td.load_case("two-stage-spur"), follow=lambda case, mesh: case)
+
+
+@pytest.mark.filterwarnings("ignore::tribodyn.errors.ModelWarning")
+def test_a_machine_without_computed_teeth_says_so() -> None:
+    gears = {"a": {"shaft": "in", "teeth": 20}, "b": {"shaft": "out", "teeth": 41}}
+    case = td.study.Case(
+        gears={name: {**gear, "face_width": "10 mm"} for name, gear in gears.items()},
+        meshes={"m": {"gears": ["a", "b"], "normal_module": "3 mm", "stiffness": "2e8 N/m"}},
+        operation={"input": "in", "output": "out", "speed": "1000 rpm", "torque": "50 N*m"},
+    )  # fmt: skip
+    result = run(case)
+    for of in (
+        result.loaded_contact, result.transmission_error_at_rest, lambda: result.static_error(0.0),
+        lambda: result.half_backlash,
+    ):  # fmt: skip
+        with pytest.raises(td.InputError, match="no mesh whose teeth are computed"):
+            of()

@@ -68,7 +68,7 @@ class Pieces:
 
     @classmethod
     def of(cls, grid: PhaseGrid, axis: int, cut: Cut, teeth: int = 1) -> Pieces:
-        """Pieces between even places on all lines, alike for all teeth, and those of a cut."""
+        """Pieces between even places on all lines, the same for all teeth, and those of a cut."""
         lines = grid.size // grid.shape[axis]
         count = -(-grid.shape[axis] // (_STEPS * teeth)) * teeth
         even = Cut(np.repeat(np.arange(lines), count), np.tile(np.arange(count) / count, lines))

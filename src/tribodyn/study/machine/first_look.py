@@ -244,7 +244,7 @@ def idle_keys(case: MachineCase) -> dict[str, str]:
         stage = case.stages[case.lone_stage].table
         keys = [f"gears.{each}.position" for each in (stage.sun, stage.ring)]
         if not stage.helix_angle:
-            idle |= dict.fromkeys(keys, "the gears of a stage by itself have one plane")
+            idle |= dict.fromkeys(keys, "the gears of a stage alone have one plane")
     has_oil = case.losses is not None or case.is_rated or case.heat is not None
     return {
         key: why

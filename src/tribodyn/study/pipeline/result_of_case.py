@@ -119,10 +119,9 @@ class ResultOfCase(Record, ABC):
         -------
         array [m]
         """
-        mesh_error, phase = self.mesh.functions().error, np.asarray(phase, dtype=float)
-        return static_error(self._pair.dynamics, phase) + (
-            0.0 if mesh_error is None else mesh_error(phase)
-        )
+        dynamics, phase = self._pair.dynamics, np.asarray(phase, dtype=float)
+        mesh_error = self.mesh.functions().error
+        return static_error(dynamics, phase) + (0.0 if mesh_error is None else mesh_error(phase))
 
     def transmission_error_at_rest(self, phase: Array | float | None = None) -> Array:
         """Lag of the driven gear under load at rest, with the prescribed error of the case.
@@ -136,9 +135,10 @@ class ResultOfCase(Record, ABC):
         -------
         array [m]
         """
-        name, mesh = "transmission_error_at_rest", self.mesh
+        dynamics, mesh = self._pair.dynamics, self.mesh
+        name = "transmission_error_at_rest"
         loaded = getattr(mesh, name) if phase is None else mesh.at(name, phase)
-        error = static_error(self._pair.dynamics, mesh.phase if phase is None else phase)
+        error = static_error(dynamics, mesh.phase if phase is None else phase)
         return np.asarray(loaded + error)
 
     def loaded_contact(self) -> LoadedContact:

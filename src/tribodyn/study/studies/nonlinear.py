@@ -201,7 +201,7 @@ def _require_short(study: str, case: AnyCase, name: str | None = None, *, steps:
 
 
 def _starts(case: AnyCase, name: str, cycles: int, steps: int | None) -> int:
-    """Values of each coordinate whose motions take no longer than one waits for; told beforehand.
+    """Values of each coordinate whose motions take no longer than one waits for, with a notice.
 
     The motions are those of a rehearsal, so that the teeth are computed only if they are followed.
     """
