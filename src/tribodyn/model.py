@@ -170,6 +170,7 @@ def numbers(low: float, high: float, origin: str, *, default: Any = None, **more
 
 def integer(default: Any, low: int, high: int, origin: str, *, meaning: str, **more: Any) -> Any:
     """Declare a whole number."""
+    more.setdefault("example", str(default if type(default) is int else low))
     return Option("integer", meaning, default, low=low, high=high, origin=origin, **more)
 
 

@@ -203,6 +203,12 @@ def takes_axial_force(bearing: Bearing) -> bool:
     return rolling is not None and rolling.takes_axial_force and not bearing.floating
 
 
+def axial_way(bearing: Bearing) -> int:
+    """Direction along x in which alone a bearing with a contact angle holds the shaft, or 0."""
+    angle = getattr(bearing.rolling, "contact_angle", 0.0)
+    return bearing.rolling.direction if bearing.rolling is not None and angle else 0
+
+
 def held_by(bearing: Bearing) -> Array:
     """Projection (6, 6) on the displacements that a bearing resists, however stiff it is."""
     if bearing.rolling is not None:

@@ -23,6 +23,7 @@ from tribodyn.machine import (
     Operation,
     Section,
     Shaft,
+    TaperedRollerBearing,
     machine_structure,
     static_balance,
 )
@@ -207,6 +208,21 @@ def test_shafts_that_nothing_holds() -> None:
     assert "push it with 2689.97 N" in message
     only_y = put("bearings", "input left", radial_stiffness=(4e8, 0.0))
     assert "shafts.input: its bearings" in broken(only_y)
+    # tapered rollers of one direction: the meshes push with 2689.97 N, and radial loads likewise
+    taper = {"bore_diameter": 0.03, "outer_diameter": 0.062, "width": 0.018, "contact_angle": 0.25}
+    force = float(Machine(**two_stage_parts()).gear_loads["z1"][0])
+    for ways, held in (((1, 1), force > 0.0), ((-1, -1), force < 0.0), ((1, -1), True)):
+        parts = two_stage_parts()
+        for name, way in zip(("left", "right"), ways, strict=True):
+            rolling = TaperedRollerBearing(**taper, direction=way)
+            bearing = parts["bearings"][f"input {name}"]
+            place = Bearing("input", bearing.position, rolling=rolling)
+            parts["bearings"][f"input {name}"] = place
+        if held:
+            assert len(Machine(**parts).bearings) == 6
+        else:
+            with pytest.raises(InputError, match=r"x only, .* by its direction"):
+                Machine(**parts)
     # tilting stiffness holds a shaft at one place, and a rolling bearing is one that holds
     parts = two_stage_parts()
     remove("right")(parts)

@@ -437,14 +437,18 @@ def test_unrestrained_coordinates_are_named():
     loads = {"z1": [50.0, 0.0, 0.0, 0.0, 0.0, 0.0]}
     with pytest.raises(ComputationError, match=r"shafts\.in: nothing balances the load on x"):
         static_balance(only_rollers, loads=loads)
-    turned = {
-        n: replace(b, rolling=replace(b.rolling, direction=-1)) if n == "D" else b
-        for n, b in machine.bearings.items()
+    both = {
+        way: {
+            n: replace(b, rolling=replace(b.rolling, direction=way)) if n in "CD" else b
+            for n, b in machine.bearings.items()
+        }
+        for way in (1, -1)
     }
-    with pytest.raises(
-        (ComputationError, InputError), match=r"bearings\.[CD]\.direction.* along -x only"
-    ):
-        static_balance(replace(machine, bearings=turned))
+    with pytest.raises(InputError, match=r"shafts\.out: its bearings hold .* along -x only"):
+        replace(machine, bearings=both[-1])
+    loads = {"z2": [-8000.0, 0.0, 0.0, 0.0, 0.0, 0.0]}
+    with pytest.raises(ComputationError, match=r"bearings\.[CD]\.direction.* along \+x only"):
+        static_balance(replace(machine, bearings=both[1]), loads=loads)
     with pytest.raises(InputError, match='no gear "z9"'):
         static_balance(machine, loads={"z9": np.zeros(6)})
     with pytest.raises(InputError, match=r"shape \(5,\)"):

@@ -38,6 +38,8 @@ STAGE = all_files()["planetary-stage"].read_text(encoding="utf-8").partition("[[
 STIFF = BOX.replace('"3 mm"\n', '"3 mm"\nstiffness = "4e8 N/m"\n').replace(
     '[friction]\nlaw = "constant"\ncoefficient = 0.05\n', ""
 )
+SUPPORT = '[bearings.A]\nshaft = "in"\nposition = "0 mm"\nstiffness = "4e8 N/m"\n'
+TAPER = SUPPORT.replace('stiffness = "4e8 N/m"', 'type = "tapered-roller"\ndirection = "-"')
 LOAD = '[[load_cases]]\nname = "a"\nshare = "30 %"\n'
 
 
@@ -57,6 +59,8 @@ def refusal(text: str) -> Any:
         (STAGE, '"1500 rpm"', '"0 rpm"', "operation.speed", "Allowed: 0.01 rpm"),
         (BOX, '"90 N*m"', '"0 N*m"', "operation.torque", "Give a torque"),
         (STAGE, '"600 N*m"', '"0 N*m"', "operation.torque", "Give a torque"),
+        (BOX + SUPPORT, "stiffness", "stiffness", "bearings.A.stiffness", "mean radial_stiffness"),
+        (BOX + TAPER, '"-"', '"up"', "bearings.A.direction", "direction = 1."),
         (STAGE, '"4e8 N/m"', '"0 N/m"', "planets.low.pin_stiffness", "above 0 N/m"),
     ],
 )

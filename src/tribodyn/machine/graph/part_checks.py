@@ -10,7 +10,7 @@ import numpy as np
 
 from tribodyn.errors import Problem
 from tribodyn.machine.beam import carried_along
-from tribodyn.machine.bearing import Bearing, held_by
+from tribodyn.machine.bearing import Bearing, axial_way, held_by
 from tribodyn.machine.fields import display
 from tribodyn.machine.gear import Gear
 from tribodyn.machine.graph.directions import center_distance, reference_center_distance
@@ -107,7 +107,19 @@ def support_problems(
                 "It needs radial stiffness in y and z at two places, or tilting stiffness",
                 "Add a bearing, or give tilting_stiffness",
             )
-        if support[0, 0] <= 0.0 and abs(force := pushed.get(name, 0.0)) > 1e-6:
+        force = pushed.get(name, 0.0)
+        ways = {axial_way(bearing) for bearing in supports if held_by(bearing)[0, 0] > 0.0}
+        if len(ways) == 1 and (way := ways.pop()) and way * force <= 1e-6:
+            sign = "+x" if way > 0 else "-x"
+            yield Problem(
+                f"its bearings hold the shaft against forces along {sign} only, and its meshes "
+                f"push it with {force:.6g} N along x",
+                where,
+                "Bearings with a contact angle carry one direction, and push the shaft the other "
+                "way under their radial load",
+                "Turn one of them by its direction (1 or -1), or add a bearing that holds it",
+            )
+        if support[0, 0] <= 0.0 and abs(force) > 1e-6:
             yield Problem(
                 f"no bearing holds the shaft along its axis, and its meshes push it with "
                 f"{force:.6g} N",

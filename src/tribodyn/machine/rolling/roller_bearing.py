@@ -265,6 +265,21 @@ class TaperedRollerBearing(RollerBearing):
         )
 
 
+#: What arguments of rolling bearings mean, where their name does not say it.
+ROLLING_MEANINGS = {
+    "direction": "1 if it holds the shaft against forces along +x, -1 if against those along -x",
+    "preload": "axial force of the undisplaced bearing",
+    "radial_clearance": "radial play at work, of the diameter; negative for an interference",
+    "first_element_angle": "position of the first rolling element, from y towards z",
+    "pitch_diameter": "diameter of the circle of the element centres",
+    "inner_groove": "radius of the inner groove over the ball diameter",
+    "outer_groove": "radius of the outer groove over the ball diameter",
+    "profile": "crowning of the rollers: none or logarithmic",
+    "laminae": "slices along each roller",
+    "balls": "number of balls",
+    "rollers": "number of rollers",
+}
+
 #: Types of rolling bearings: classes by name.
 ROLLING_BEARINGS: Registry[type[RollingElementBearing]] = Registry(
     "type of rolling bearing", "tribodyn.rolling_bearing"

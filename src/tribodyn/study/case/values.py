@@ -475,6 +475,8 @@ def unknown_key(
         return Problem(what, "", term.meaning, f"Write {term.key}" if term.key else "Remove it")
     if remedy := _gear_key_remedy(name, section):
         return Problem(what, "", why, remedy)
+    if longer := [key for key in keys if key.endswith(f"_{name}")]:
+        return Problem(what, "", why, f"Did you mean {' or '.join(longer)}?")
     if not isinstance(value, Mapping) and (tables := _tables_with(name)):
         inner_tables = [label for label in tables if label.startswith(f"{location[:-1]}.")]
         return Problem(what, "", why, f"It belongs to {' or '.join(inner_tables or tables)}")

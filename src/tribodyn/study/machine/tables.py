@@ -9,6 +9,7 @@ from functools import cache
 from typing import Any
 
 from tribodyn.machine import COUPLINGS, ROLLING_BEARINGS, STEEL
+from tribodyn.machine.rolling.roller_bearing import ROLLING_MEANINGS
 from tribodyn.model import (
     REQUIRED,
     Option,
@@ -108,9 +109,11 @@ def rolling_options(law: type) -> dict[str, Option]:
         if not field.init:
             continue
         default = None if field.default is MISSING else field.default
-        kind, meaning = str(field.type), field.name.replace("_", " ")
+        kind = str(field.type)
+        meaning = ROLLING_MEANINGS.get(field.name, field.name.replace("_", " "))
+        counts = (-1, 1) if field.name == "direction" else (2, 1000)
         if "int" in kind and "float" not in kind:
-            options[field.name] = integer(default, -1000, 1000, "counted", meaning=meaning)
+            options[field.name] = integer(default, *counts, "counted", meaning=meaning)
         elif "bool" in kind:
             options[field.name] = flag(default, meaning=meaning)
         elif "str" in kind:
