@@ -66,9 +66,9 @@ def described(package: ModuleType, name: str) -> str:
     return re.sub(r":[a-z]+:`~?([^`]*)`", r"`\1`", first).replace("``", "`")
 
 
-def is_constant(thing: Any) -> bool:
-    """Whether a name stands for a value, whose own docstring is that of its type."""
-    return not (inspect.isclass(thing) or inspect.isroutine(thing) or hasattr(thing, "draw"))
+def is_constant(value: Any) -> bool:
+    """Whether a public name is a constant, whose own docstring is that of its type."""
+    return not (inspect.isclass(value) or inspect.isroutine(value) or hasattr(value, "draw"))
 
 
 @cache

@@ -40,8 +40,8 @@ def contents(index: str) -> str:
     pages = index.partition("\n## Pages\n")[2].partition("\n## ")[0]
     trees = [_tree("Examples", ["_generated/gallery"])]
     for group in re.split(r"^### ", pages, flags=re.MULTILINE)[1:]:
-        caption, _, rest = group.partition("\n")
-        names = re.findall(r"\]\(([\w-]+)\.md\)", rest)
+        caption, _, links = group.partition("\n")
+        names = re.findall(r"\]\(([\w-]+)\.md\)", links)
         trees.append(_tree(caption, names))
     trees.append(_tree("API", ["_generated/api/index"]))
     return "".join(trees)

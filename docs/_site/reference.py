@@ -43,8 +43,8 @@ def _page(name: str, package: Any, docstring: str) -> str:
     )
 
 
-def _code(found: re.Match[str]) -> str:
-    return f"```pycon\n{found[0].rstrip()}\n```\n"
+def _code(example: re.Match[str]) -> str:
+    return f"```pycon\n{example[0].rstrip()}\n```\n"
 
 
 def _markdown(text: str) -> str:
@@ -71,13 +71,13 @@ def _entry(package: Any, name: str) -> str:
 
 
 @cache
-def _known() -> dict[str, str]:
-    """Where a name that has one meaning is explained."""
-    known: dict[str, set[str]] = {}
+def _unique_homes() -> dict[str, str]:
+    """Page of each name that has one meaning."""
+    all_homes: dict[str, set[str]] = {}
     for (package, name), home in homes().items():
-        known.setdefault(name, set()).add(home)
-        known.setdefault(f"{package}.{name}", set()).add(home)
-    return {name: min(places) for name, places in known.items() if len(places) == 1}
+        all_homes.setdefault(name, set()).add(home)
+        all_homes.setdefault(f"{package}.{name}", set()).add(home)
+    return {name: min(places) for name, places in all_homes.items() if len(places) == 1}
 
 
 def home_of(text: str) -> str | None:
@@ -91,7 +91,7 @@ def home_of(text: str) -> str | None:
     short = name.split(".")
     for end in range(len(short), 0, -1):
         for start in (0, end - 1):
-            home = _known().get(".".join(short[start:end]))
+            home = _unique_homes().get(".".join(short[start:end]))
             if home:
                 return ".".join([home, *short[end:]])
     return None

@@ -26,7 +26,7 @@ def times(vectors: Array, matrix: Array, lead: int = 0, allocate: Allocator = np
 
 
 def each_times(vectors: Array, matrix: Array) -> Array:
-    """Vectors (..., n) times a matrix (n, m), each rounded alike whatever their number."""
+    """Vectors (..., n) times a matrix (n, m), each rounded the same whatever their number."""
     # BLAS chooses its kernels by the number of vectors, and these round differently.
     product = vectors[..., :1] * matrix[0]
     for i in np.flatnonzero(matrix[1:].any(axis=1)) + 1:

@@ -62,7 +62,7 @@ def forms_of(
     else:
         sizes = (" over ".join(f"{1e3 * value:.4g} mm" for value in end.values()) for end in ends)
         remarks.append(f"{gear}: end_relief is ignored: {' and '.join(s or '0 mm' for s in sizes)} "
-                       "at both ends of the face, while a case relieves them alike")  # fmt: skip
+                       "at both ends of the face, while a case relieves both equally")  # fmt: skip
     return modification, remarks
 
 

@@ -127,7 +127,7 @@ def stage_from_rexs(
     if len(planetary) != 1 or others:
         what = f"there are {len(planetary)} planetary stages and {len(others)} other stages"
         remedy = "Compute the machine: machine_from_rexs, or tribodyn import FILE --machine"
-        raise InputError(what, model.path, "A planetary stage by itself is one", remedy)
+        raise InputError(what, model.path, "A lone planetary stage is one", remedy)
     return machine_from_rexs(model, load_case, changes=changes, by=by)
 
 

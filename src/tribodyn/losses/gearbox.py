@@ -402,7 +402,7 @@ class TurningBody(NamedTuple):
     speed_ratio: float  #: its speed over that of the pinion
     radial: float  #: force across its axis over the torque on the pinion [1/m]
     axial: float  #: force along its axis over the torque on the pinion [1/m]
-    pitch_radius: float  #: of a cylinder that churns alike [m]
+    pitch_radius: float  #: of a cylinder that churns as much [m]
     face_width: float  #: [m]
     module: float  #: normal module [m]
 

@@ -65,7 +65,7 @@ def modulating_shaft(
     -------
     tuple of ShaftLines
         Of the shaft and of the mate. Of a gear whose every line is one of its mate, all its lines
-        if none of the mate alone stands out.
+        if no line of the mate alone is clear.
 
     Raises
     ------
@@ -186,7 +186,7 @@ def _floor(orders: OrderSpectrum, lines: Array) -> Array:
     return np.interp(orders.orders, centers, medians)
 
 
-#: Amplitude over the median of the lines around it from which a sideband stands out.
+#: Amplitude over the median of the lines around it from which a sideband is clear.
 CLEAR = 4.0
 #: Lines on each side of a cursor that are its own: half the main lobe of the window.
 LOBE = 12

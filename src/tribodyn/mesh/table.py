@@ -219,10 +219,9 @@ class MeshTable(MeshColumns):
         -------
         float or None
             The pair carries its own part of the load at that phase. A slice in the middle of the
-            face stands for its pair: forces and stiffnesses count as if the whole face were there.
-            Where another pair enters or
-            leaves at the same time, the value after that; ``None`` where the pitch point is
-            outside of the contact, or there is no such column in this table.
+            face represents its pair: forces and stiffnesses are those of the whole face. Where
+            another pair enters or leaves at the same time, the value after that; ``None`` where
+            the pitch point is outside of the contact, or there is no such column in this table.
         """
         age = None if self.gears is None else self.gears.pitch_point_age
         values = getattr(self, column, None)

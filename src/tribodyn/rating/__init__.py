@@ -14,7 +14,7 @@
 | `influence` | K_v, K_Hbeta, K_Halpha: ISO 6336-1 |
 | `pitting` | contact stress and its limit: ISO 6336-2 |
 | `root_section`, `bending` | root stress and its limit: ISO 6336-3 |
-| `root_elements` | root stress by finite elements beside it |
+| `root_elements` | root stress by finite elements, compared with it |
 | `surface` | scuffing, micropitting: ISO/TS 6336-20, -21, -22; stress below the surface |
 | `elements` | life of rolling bearings, shafts, load cycles: ISO 281, ISO/TS 16281, DIN 743 |
 | `life` | Z_NT, Y_NT and cycles to failure |

@@ -1,4 +1,4 @@
-"""Root stress by finite elements of the tooth, beside Y_F Y_S of ISO 6336-3.
+"""Root stress by finite elements of the tooth, compared with Y_F Y_S of ISO 6336-3.
 
 Plane stress in the transverse section of spur gears; of helical gears in the normal section, the
 virtual spur gear with a whole number of teeth. Where the tooth contact has slices of the face,

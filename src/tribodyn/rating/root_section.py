@@ -77,7 +77,7 @@ def rack_section(gear: CylindricalGear, tip_radius: float | None = None) -> Root
 
 
 def equivalent_tip_radius(gear: CylindricalGear, cutter: ShaperCutter) -> float:
-    """Tip radius of the rack that stands for a cutter in the 2006 form of rings, in modules."""
+    """Tip radius of the rack that replaces a cutter in the 2006 form of rings, in modules."""
     rho, depth = cutter.tip_radius_coefficient, gear.rack.dedendum_coefficient
     extent = max(cutter.profile_shift_coefficient + depth - rho, 0.0)
     return float(rho + extent**1.95 / (3.156 * 1.036**cutter.teeth))

@@ -79,7 +79,7 @@ def load_classes(
     speed : float or array (n,) [rad/s]
         Of the pinion.
     duration : float [s]
-        Time that the history stands for.
+        Time that the history represents.
     classes : int
         Equal classes from no load to the greatest torque, for each sign (pure number).
 
@@ -157,7 +157,7 @@ class SpectrumRating:
     cases : tuple of SpectrumLoad
         Load cases, with durations scaled to the required life.
     ratings : tuple of PairRating
-        Rating of each load case by itself.
+        Rating of each load case alone.
     """
 
     pinion: GearDamage

@@ -194,7 +194,7 @@ STARTS = ("machine", "stage", "hypoid")
 
 
 def machine_keys() -> Iterator[tuple[str, Option, str]]:
-    """Iterate over the keys of parts with their tables; NAME stands for that of a part."""
+    """Iterate over the keys of parts with their tables; NAME is the name of a part."""
     for group, field in MachineTables.fields.items():
         if isinstance(field, Table) and group not in SHARED:
             yield from walk(field.kind, (group,))

@@ -184,9 +184,7 @@ def test_teeth_of_a_gear_in_two_meshes_are_cut_once() -> None:
 
 def test_parts_outside_their_shaft_or_in_one_place_are_refused() -> None:
     message = broken(put("bearings", "middle right", position=0.350))
-    assert message.startswith(
-        "bearings.middle right.position: position = 350 mm is beside the shaft"
-    )
+    assert message.startswith("bearings.middle right.position: position = 350 mm is off the shaft")
     assert 'Shaft "middle" reaches from 0 to 300 mm' in message
     assert "gears.z1.position: position = -1 mm" in broken(put("gears", "z1", position=-0.001))
     message = broken(put("gears", "z3", position=0.14))

@@ -90,7 +90,7 @@ def test_load_cases_have_names_and_shares(reducer):
 @pytest.mark.parametrize(
     ("changes", "place", "text"),
     [
-        ({"bearings.A.position": "500 mm"}, "bearings.A.position", "beside the shaft"),
+        ({"bearings.A.position": "500 mm"}, "bearings.A.position", "off the shaft"),
         ({"bearings.A.shaft": "inputt"}, "bearings.A.shaft", 'Did you mean "input"'),
         ({"bearings.A.typ": "ball"}, "bearings.A.typ", "has: shaft, position"),
         ({"bearings.A.type": "ball"}, "bearings.A.type", "deep-groove"),

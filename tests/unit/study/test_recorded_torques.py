@@ -215,7 +215,7 @@ def test_recordings_that_are_no_history_are_refused(tmp_path: Path, text: str, m
 
 def test_what_has_no_effect_is_refused(tmp_path: Path) -> None:
     keys = {"torque_history": history(tmp_path)}
-    with pytest.raises(InputError, match=r"torque_history stands beside \[\[load_cases\]\]"):
+    with pytest.raises(InputError, match=r"torque_history and \[\[load_cases\]\] are both"):
         MachineCase(**rated(MACHINE, **keys))
     meshes = {**MACHINE["meshes"], "first": {**MACHINE["meshes"]["first"], "rating": keys}}
     with pytest.raises(InputError, match="It is that of the whole machine"):

@@ -285,7 +285,11 @@ REFUSED = {
         MAPPED,
         'node "7" has the coordinates',
     ),
-    "both": (element_file(False), ELEMENT + 'mass_file = "m.mtx"\n', "mass_file stands beside"),
+    "both": (
+        element_file(False),
+        ELEMENT + 'mass_file = "m.mtx"\n',
+        "mass_file and matrices are both given",
+    ),
     "binary results": ({"h.op2": "x"}, ELEMENT.replace("wall.mtx", "h.op2"), "DMIGPCH"),
     "active damping": (
         {**LABELS, "c.mtx": labelled(-M, "labels")},

@@ -1,7 +1,7 @@
 """How do I predict a steady response without computing it?
 
-A small network learns from computed operating points and states its error over points kept
-aside.
+A small network learns from computed operating points and states its error over points held
+out.
 
 Read on: learning
 """

@@ -162,7 +162,7 @@ def harmonic_balance(
         Floquet multipliers are those that ``stability`` asks for. A motion over several phases has
         no period: it is a :class:`PhaseResponse`, which gives the motion at any time, and its
         spectral lines with the cycles of each phase. Where that is not converged, a time
-        integration from it stands in for it, over the cycles that the warning states.
+        integration from it replaces it, over the cycles that the warning states.
 
     Raises
     ------
@@ -279,7 +279,7 @@ def _on_clock(
 def _assessed(
     prepared: Prepared, residual: ClockResidual, solution: Solution, *, exactly: bool
 ) -> ComplexArray:
-    """Floquet multipliers, if they are asked for; warns of a motion that is unstable."""
+    """Floquet multipliers, if they are requested; warns of an unstable motion."""
     from tribodyn.dynamics.harmonic.tangent_march import TangentMarch, warn_of_growth
 
     what = "Floquet multiplier"
@@ -447,5 +447,5 @@ def _not_converged(residual: ClockResidual, solution: Solution, tolerance: float
         f"no periodic motion was found: certified error {solution.error:.2e}, limit "
         f"{tolerance:.0e}. The largest residual is that of "
         f"{contact_label(contacts.system, worst)}, {1e6 * distance[worst]:.3g} um; {reason}. "
-        "A time integration stands in for it. Try another start or simulate over time"
+        "A time integration replaces it. Try another start or simulate over time"
     )

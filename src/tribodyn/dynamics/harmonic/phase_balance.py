@@ -331,7 +331,7 @@ def _integrated(
     try:
         marched = marched_response(motion, search.structure)
         cycles = abs(int(slowest.cycles @ np.array(marched.turns)))
-        text += f"A time integration over {cycles} cycles of {label}, the slowest, stands in for it"
+        text += f"A time integration over {cycles} cycles of {label}, the slowest, replaces it"
     except (ComputationError, InputError) as error:
         marched = motion
         text += f"A time integration from it failed as well: {error.problems[0].what}"

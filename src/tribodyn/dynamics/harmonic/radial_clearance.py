@@ -23,7 +23,7 @@ from tribodyn.types import Array
 #: Width over the clearance of the transition between no contact and contact.
 _SMOOTH = 1e-3
 #: Displacement over the clearance of a support without load; least stiffness of the spring across
-#: the load that stands for a support, over that along it.
+#: the load that replaces a support, over that along it.
 _UNLOADED, _SOFT = 1e-9, 1e-2
 #: What helps where no motion is found.
 REMEDY = "Reduce the clearance, increase load or damping, or start from a similar motion"

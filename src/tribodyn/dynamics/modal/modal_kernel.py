@@ -147,8 +147,8 @@ def _change_sides(
         for k in range(contacts.dead.shape[1]):
             change = j == worst[0] and k == worst[1]
             if not change and contacts.dead[j, k]:
-                near = _clear(contacts, w, 2, j, k) <= 2.0 * _allowed(contacts, j, k) * reach
-                change = near and _closing(contacts, w, 2, j, k, h) < 0.0
+                in_reach = _clear(contacts, w, 2, j, k) <= 2.0 * _allowed(contacts, j, k) * reach
+                change = in_reach and _closing(contacts, w, 2, j, k, h) < 0.0
             if change:
                 away = 1.0 if w.deflection[2, j] > 0.0 else -1.0
                 _change(trace, at, j, k, 0.0 if w.side[j, k] != 0.0 else away, start, w)
@@ -180,8 +180,8 @@ def _divide(
                 return UNSETTLED
             beyond = _beyond(contacts, w, 2, reach, worst)
             clear = _clear(contacts, w, 2, worst[0], worst[1])
-            near = clear <= _allowed(contacts, worst[0], worst[1]) * reach
-            if (near and not beyond) or high - low < 1e-14:
+            in_reach = clear <= _allowed(contacts, worst[0], worst[1]) * reach
+            if (in_reach and not beyond) or high - low < 1e-14:
                 break
             low, high = (low, at) if beyond else (at, high)
             at -= clear / (width * _closing(contacts, w, 2, worst[0], worst[1], h))

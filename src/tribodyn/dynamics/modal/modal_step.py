@@ -103,13 +103,13 @@ def fill_modes(values: ComplexArray, h: float, weights: Array) -> None:
         first = 0.5 * (half + 1.0) * begin
         second = 0.25 * ((half + 1.0) * middle + begin)
         third = 0.125 * ((half + 1.0) * end + middle + 0.5 * begin)
-        for node, part, whole in (
+        for node, in_half, in_full in (
             (1, 0.5 * (begin - 1.5 * middle + end), first - 3.0 * second + 4.0 * third),
             (2, middle - end, 4.0 * second - 8.0 * third),
             (3, 0.5 * (end - 0.5 * middle), 4.0 * third - second),
         ):
-            weights[0, node, 0, m], weights[0, node, 1, m] = h * part.real, h * part.imag
-            weights[1, node, 0, m], weights[1, node, 1, m] = h * whole.real, h * whole.imag
+            weights[0, node, 0, m], weights[0, node, 1, m] = h * in_half.real, h * in_half.imag
+            weights[1, node, 0, m], weights[1, node, 1, m] = h * in_full.real, h * in_full.imag
 
 
 @nb.njit(**INNER)

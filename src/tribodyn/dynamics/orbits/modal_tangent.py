@@ -174,7 +174,7 @@ class ModalTangent:
         return np.asarray(push + np.einsum("...f,fj,...fs->...js", ratio, members, entries[9]))
 
     def _weights(self, parts: list[_Part]) -> Iterator[_Weights]:
-        """Weights of parts; those of whole steps are kept."""
+        """Weights of parts of steps; those of whole steps are cached."""
         for first in range(0, len(parts), _CHUNK):
             chunk = parts[first : first + _CHUNK]
             width = np.array([(p.end - p.begin) * self.width[p.step] for p in chunk])

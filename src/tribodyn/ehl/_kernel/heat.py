@@ -138,8 +138,8 @@ def _solve_column(last: int, c: Column) -> float:
 
 
 @nb.njit(**LEAN)
-def _answers(i: int, h: float, follows: float, a: Across, c: Column) -> bool:
-    """Changes of stress and gradient that hold speeds and flow; whether the film is sheared."""
+def _find_changes(i: int, h: float, follows: float, a: Across, c: Column) -> bool:
+    """Find changes of stress and gradient at equal speeds and flow; whether the film is sheared."""
     last, steep, tilted, flow, sheared = c.rhs.size - 1, 0.0, 0.0, 0.0, 0.0
     ease, reach, rate, falling = a.steep[i], a.reach[i], a.rate[i], a.falling[i]
     for j in range(last + 1):
@@ -177,7 +177,7 @@ def _balance_column(
     stress, rate, steep, falling = a.stress[i], a.rate[i], a.steep[i], a.falling[i]
     before, behind = a.temperature[i - 1], a.temperature[min(i + 1, k)]
     middle, rhs, shared = c.middle, c.rhs, c.shared
-    sheared = _answers(i, h, b.follows[i], a, c)
+    sheared = _find_changes(i, h, b.follows[i], a, c)
     for j in range(last + 1):
         even += c.answer[j]
     for j in range(last + 1):

@@ -1,6 +1,6 @@
 """The engines ``newton`` (Newton with a Krylov linear solver) and ``multigrid``, and their error.
 
-A grid half or twice as fine tells how far a contact is from an infinitely fine one.
+A grid half or twice as fine shows how far a contact is from an infinitely fine one.
 The errors of both films and of the pressure go with the square of the interval once the inlet is
 resolved. Three films of the nested grids tell whether it is: the differences then fall fourfold. A
 contact that does so is compared with half of its nodes, any other one with twice as many.

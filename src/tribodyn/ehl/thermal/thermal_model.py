@@ -1,4 +1,4 @@
-"""How the oil of a heated film shears, and what of heat a contact needs beside the oil."""
+"""How the oil of a heated film shears, and the thermal data of the bodies of a contact."""
 
 from __future__ import annotations
 

@@ -172,7 +172,7 @@ class Mobility:
         if self.ratios[self.drive.output] == 0:
             why, remedy = "Power leaves by a shaft that turns", "Name another output"
             where = "operation.output"
-            yield Problem(f'output = "{self.drive.output}" stands', where, why, remedy)
+            yield Problem(f'output = "{self.drive.output}" does not turn', where, why, remedy)
         for name, mesh in self.meshes.items():
             first = self.gears[mesh.gears[0]].shaft
             if self.relative(name, first) == 0:

@@ -46,7 +46,7 @@ def drive_problems(
 def place_problems(
     shafts: Mapping[str, Shaft], gears: Mapping[str, Gear], bearings: Mapping[str, Bearing]
 ) -> Iterator[Problem]:
-    """Gears and bearings beside their shaft, and gears in one place."""
+    """Gears and bearings off their shaft, and gears that overlap."""
     for group, parts in (("gears", gears), ("bearings", bearings)):
         for name, part in parts.items():
             shaft = shafts[part.shaft]
@@ -58,7 +58,7 @@ def place_problems(
                 remedy = "Give the position of its mid face"
                 yield Problem("the position is missing", where, reach, remedy)
             elif not -SAME_PLACE <= part.position <= shaft.length + SAME_PLACE:
-                what = f"position = {display(part.position, 'm')} is beside the shaft"
+                what = f"position = {display(part.position, 'm')} is off the shaft"
                 yield Problem(what, where, reach, "Give a position on it, or a longer shaft")
     for first, second in combinations(gears, 2):
         low, high = gears[first], gears[second]

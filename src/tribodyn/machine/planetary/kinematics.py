@@ -28,7 +28,7 @@ class PlanetaryKinematics:
     Parameters
     ----------
     held, input, output : str
-        Member that stands, that drives and that is driven: ``sun``, ``ring`` or ``carrier``.
+        Member that is held, that drives and that is driven: ``sun``, ``ring`` or ``carrier``.
     speeds : mapping of str to float
         Speed of sun, ring and carrier, and of ``planet``, or ``sun_planet`` and ``ring_planet``,
         where their teeth are known, in the unit of the input speed [rad/s].
@@ -93,7 +93,7 @@ def planetary_kinematics(
     sun_teeth, ring_teeth : int
         Numbers of teeth; that of the ring with or without its minus sign.
     held, input : {"sun", "ring", "carrier"}
-        Member that stands, and member that drives; the third one is driven.
+        Member that is held, and member that drives; the third one is driven.
     input_speed : float
         Speed of the input [rad/s]. Speeds are proportional to it and come out in its unit;
         power and mesh frequency need rad/s.

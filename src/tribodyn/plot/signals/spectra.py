@@ -348,7 +348,7 @@ def order_map(result: OrderMap) -> Sketch:
              unit=readable(result.unit))
         for order, (color, dash) in zip(orders, _CUTS, strict=False)
     ]  # fmt: skip
-    title = "No order stands out"
+    title = "No dominant order"
     if orders:
         first = result.cut(orders[0])
         block = int(np.argmax(first.amplitude))

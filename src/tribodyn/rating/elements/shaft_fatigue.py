@@ -114,7 +114,7 @@ class ShaftNotch:
     kind : str
         ``shoulder``, ``groove``, ``key``, ``two keys``, ``press fit`` or ``given``.
     large_diameter : float, optional [m]
-        D beside a shoulder or groove.
+        D of the thicker section at a shoulder or groove.
     radius : float, optional [m]
         r of a shoulder or groove.
     bore_diameter : float [m]

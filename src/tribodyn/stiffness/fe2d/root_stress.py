@@ -77,7 +77,7 @@ def computed_root_stress(
 def root_stress(
     gear: SpurGear, fillet_radius: float, poissons_ratio: float = 0.3
 ) -> RootUnitStress:
-    """Stress along the fillet, kept in the folder of computed arrays."""
+    """Stress along the fillet, stored in the folder of computed arrays."""
     size = MeshSize(largest=round(fillet_radius / _ELEMENTS, 12))
     name = _file_name(gear, poissons_ratio, 1, size)
     cached = load_arrays(name, "root")

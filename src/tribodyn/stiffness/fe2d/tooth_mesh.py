@@ -211,17 +211,17 @@ def tooth_mesh(
     form: ToothForm,
     bore_radius: float,
     size: MeshSize | None = None,
-    near: tuple[float, float] | None = None,
+    refined: tuple[float, float] | None = None,
 ) -> SectorMesh:
-    """Mesh of the sector of one tooth; graded to a place of the flank and a size there, if any."""
+    """Mesh of the sector of one tooth; ``refined``: a place of the flank and a size there."""
     size = size or MeshSize()
     side = ToothSide(form)
     bore = bore_radius / form.normal_module
     _check_rim(form, bore_radius)
-    first = near[1] if near else size.flank
+    first = refined[1] if refined else size.flank
     across = _with_middles(_across(side, size, first))
-    edges = _graded_edges(side, size, *near) if near else _flank_edges(side, size)
-    lengths, lowest = _with_middles(edges), float(edges[-2] - edges[-1]) if near else math.inf
+    edges = _graded_edges(side, size, *refined) if refined else _flank_edges(side, size)
+    lengths, lowest = _with_middles(edges), float(edges[-2] - edges[-1]) if refined else math.inf
     tooth = _tooth_points(side, lengths, across)
     root = side.root_points(_with_middles(_root_shares(side, size, lowest)))
     top = np.concatenate([root[:-1], tooth[:, -1], (root * [-1.0, 1.0])[-2::-1]])

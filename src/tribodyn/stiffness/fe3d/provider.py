@@ -127,7 +127,7 @@ def gear_sector(gear: SpurGear, poissons_ratio: float, size: SolidSize) -> Secto
     return Sector(
         form=gear,
         width=gear.face_width / module,
-        held=held_radius(gear) / module,
+        fixed_radius=held_radius(gear) / module,
         twist=gear.sign * math.tan(gear.base_helix_angle) * module / gear.base_radius,
         poissons_ratio=poissons_ratio,
         size=size,
@@ -271,7 +271,7 @@ def file_name(sector: Sector, *settings: Any) -> str:
         form.rack,
         form.helix_angle,
     )
-    solid = (sector.width, sector.held, sector.twist, sector.poissons_ratio, sector.size)
+    solid = (sector.width, sector.fixed_radius, sector.twist, sector.poissons_ratio, sector.size)
     text = repr((outline, solid, *settings, _digest()))
     return hashlib.sha256(text.encode()).hexdigest()
 

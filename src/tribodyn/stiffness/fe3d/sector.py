@@ -60,7 +60,7 @@ class Sector:
 
     form: SpurGear  #: the gear in its transverse section
     width: float  #: face width
-    held: float  #: radius of the circle where the body is held
+    fixed_radius: float  #: radius of the circle where the body is held
     twist: float  #: angle by which the section turns anticlockwise per module of the face [rad]
     poissons_ratio: float
     size: SolidSize
@@ -69,12 +69,16 @@ class Sector:
     def interface(self) -> float:
         """Radius where the meshed part of the body ends."""
         depth = self.form.root_radius / self.form.normal_module - self.form.sign * self.size.depth
-        return depth if self.form.sign * (depth - self.held) > _LEAST_RING else self.held
+        return (
+            depth
+            if self.form.sign * (depth - self.fixed_radius) > _LEAST_RING
+            else self.fixed_radius
+        )
 
     @property
     def on_ring(self) -> bool:
         """Whether a ring lies below the meshed part, which is held itself otherwise."""
-        return self.interface != self.held
+        return self.interface != self.fixed_radius
 
     @property
     def count(self) -> int:
@@ -180,7 +184,7 @@ class Sector:
 
     def ring_stiffness(self, order: int) -> Array:
         """Stiffness of the ring for waves around the axis."""
-        radii = annulus_radii(self.held, self.interface, order, _RING_SIZE)
+        radii = annulus_radii(self.fixed_radius, self.interface, order, _RING_SIZE)
         return annulus_stiffness(radii, order, self.twist, self.stress, self.face)
 
     def condensed(self) -> Array:
@@ -216,11 +220,11 @@ _FIRST, _GROWTH, _LARGEST = 0.6, 1.5, 0.25
 _DECAYED = 20.0
 
 
-def annulus_radii(held: float, loaded: float, order: int, first: float) -> Array:
+def annulus_radii(fixed: float, loaded: float, order: int, first: float) -> Array:
     """Radii (e, 3) of elements from the held circle to the loaded one, the last size ``first``."""
     decayed = _DECAYED / max(abs(order), 1)
-    reach = loaded * np.exp(np.clip(np.log(held / loaded), -decayed, decayed))
-    inwards = np.sign(loaded - held)
+    reach = loaded * np.exp(np.clip(np.log(fixed / loaded), -decayed, decayed))
+    inwards = np.sign(loaded - fixed)
     depths, step = [0.0], min(first, _FIRST * loaded / (abs(order) + 1.0))
     while depths[-1] < abs(loaded - reach):
         depths.append(depths[-1] + min(step, _LARGEST * (loaded - inwards * depths[-1])))

@@ -1,4 +1,4 @@
-"""Structure of both gears of a pair by a stiffness model, kept for all loads."""
+"""Structure of both gears of a pair by a stiffness model, the same for all loads."""
 
 from __future__ import annotations
 
@@ -176,7 +176,7 @@ def face_compliance(
     alone = np.diagonal(structure, axis1=1, axis2=2).copy()
     # Where a part of a slice alone is on the path of contact, its load per width acts on less.
     structure *= (contacts.width * (contacts.slices / pair.common_face_width))[:, None, :]
-    if not model.over_face:  # that part is a thinner gear: it gives way to its own load as a slice
+    if not model.over_face:  # that part is a thinner gear: its own load deflects it as a slice
         diagonal = np.arange(alone.shape[1])
         structure[:, diagonal, diagonal] = alone
     return Compliance(structure, *local_of_slices(material, places))

@@ -245,7 +245,9 @@ class NotchTable(Section):
         meaning="kind of notch; given has notch_factors",
     )  # fmt: skip
     diameter: float | None = _length(None, "d of the notched section", "the thinner section")
-    large_diameter: float | None = _length(None, "D beside the notch", "the thicker section")
+    large_diameter: float | None = _length(
+        None, "D of the thicker section at the notch", "the thicker section"
+    )
     radius: float | None = _length(None, "r of a shoulder or groove")
     roughness: float = _length(5e-6, "roughness Rz of the surface", unit="um")
     notch_factors: tuple[float, ...] | None = numbers(

@@ -21,7 +21,7 @@ _BEARING = ("rolling_elements", "element_diameter", "pitch_diameter")
 #: Kinds of all cases.
 KINDS: dict[str, Kind] = {
     "eccentricity": Kind(
-        "gear", "Waviness", "axis of the toothing beside the axis of rotation",
+        "gear", "Waviness", "offset of the axis of the toothing from the axis of rotation",
         ("amplitude",), ("phase",),
     ),
     "waviness": Kind(

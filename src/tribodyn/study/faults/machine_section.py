@@ -103,7 +103,7 @@ def check_shaft(fault: PartFaultTable, speed: float) -> None:
     """Raise InputError if a shaft of this speed cannot be driven so."""
     excitation = shaft_excitation(fault)
     if speed == 0.0:
-        what, why = f"{excitation.gear} stands", "The torque varies over its turns"
+        what, why = f"{excitation.gear} does not turn", "The torque varies over its turns"
         raise InputError(what, Argument("shaft"), why, "Name a shaft that turns")
 
 

@@ -319,7 +319,7 @@ def turning_motion(result: PairResult | PreparedRun, progress: Progress = SILENT
 def _of_run(
     result: PairResult | PreparedRun, turns: PairTurns, progress: Progress
 ) -> _Found | None:
-    """Motion of a run, if its teeth are alike and its drive is steady."""
+    """Motion of a run, if its teeth are equal and its drive is steady."""
     from tribodyn.study.pipeline.response_series import film_offset, is_steady
 
     if turns.vary:

@@ -369,7 +369,7 @@ def _bands(analysis: SignalAnalysis) -> list[SignalSpectrum]:
 def _exact_lines(lines: KinematicFrequencies, envelope: SignalSpectrum, scale: float) -> Array:
     """Frequencies of shafts and meshes with their harmonics, sidebands and beats [Hz].
 
-    Of a shaft all harmonics only where it stands out itself; it explains nothing else.
+    Of a shaft all harmonics only where its own line is clear; otherwise the first three.
     """
     rows = [(s, f * scale) for s, f in zip(lines.symbol, lines.frequency.tolist(), strict=True)]
     turns = [f for symbol, f in rows if symbol.startswith("f(")]
@@ -396,7 +396,7 @@ def _bursts(
     others = [_line(lines, k * first.frequency, 0.5 * _EXACT) for k in (2, 3)]
     clear = [first, *(each for each in others if each.clear >= _CLEAR)]
     heights = " and ".join(f"{each.clear:.3g} times at {each.frequency:.5g} Hz" for each in clear)
-    evidence = f"the envelope spectrum stands above the noise about it {heights}"
+    evidence = f"the envelope spectrum exceeds the noise around it {heights}"
     return first.frequency, evidence if len(clear) > 1 else ""
 
 

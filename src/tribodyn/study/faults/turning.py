@@ -39,7 +39,7 @@ class Accuracy(NamedTuple):
     """How exactly a motion over whole turns is searched."""
 
     steps: tuple[int, ...]  #: of a mesh cycle, tried in turn
-    certified: float  #: error that suffices beside a small change with half the steps
+    certified: float  #: error that suffices if half the steps change the motion little
 
 
 class SensedLines:
@@ -172,7 +172,7 @@ class PeriodicMotion(ABC):
         check_tacho(self.places, shaft)
         turns = float(self.turns[shaft])
         if turns == 0.0:
-            what, why = f"{shaft} stands", "A tacho counts the turns of a shaft"
+            what, why = f"{shaft} does not turn", "A tacho counts the turns of a shaft"
             raise InputError(what, "argument tacho", why, "Name another one")
         return turns / self.period
 

@@ -217,7 +217,7 @@ class MachineCase(Case):
         return tables
 
     def __getstate__(self) -> dict[str, Any]:
-        """Return the state without what is kept for further loads."""
+        """Return the state without what is cached for further loads."""
         return {**vars(self), "_teeth": {}, "_machines": {}}
 
     def _add_forms(self) -> None:

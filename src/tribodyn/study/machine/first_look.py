@@ -232,7 +232,7 @@ def computed_pairs(case: MachineCase) -> Iterator[tuple[str, PairCase, TeethUnde
 
 
 def idle_keys(case: MachineCase) -> dict[str, str]:
-    """Keys of teeth that have no effect in any mesh beside other values, and why."""
+    """Keys of teeth that have no effect in any mesh because of other values, and why."""
     idle: dict[str, str] = {}
     used: set[str] = set()
     for _, pair, _ in computed_pairs(case):

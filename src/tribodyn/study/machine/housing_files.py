@@ -64,7 +64,9 @@ def _read_files(table: Any) -> tuple[dict[str, Array], dict[str, list[int]]]:
         for name in ("stiffness_file", "mass_file", "damping_file", "mapping_file"):
             if getattr(table, name) is not None:
                 why = "The file of matrices has all of the housing"
-                raise InputError(f"{name} stands beside matrices", name, why, "Remove one of both")
+                raise InputError(
+                    f"{name} and matrices are both given", name, why, "Remove one of both"
+                )
         kind = "a NumPy archive, or a text file with Nastran DMIG entries or an Abaqus substructure"
         archive = _read("matrices", table.matrices, kind, _archive)
         if isinstance(archive, Superelement):
@@ -359,7 +361,7 @@ def _matrix_output(lines: list[str]) -> Array | Superelement:
         points = ((at[0], at[1]), (at[2], at[3])) if at[2:] else ((at[0], 0), (at[1], 0))
         if entries.setdefault(points, entry) != entry:
             raise ValueError(f"line {number}: the entry is there twice, with another value")
-    # a triangle stands for both, a square has pairs
+    # One triangle represents both; a full matrix has pairs.
     element.symmetric["matrix"] = not any(r != c and (c, r) in entries for r, c in entries)
     element.matrices["matrix"] = entries
     if len(listed[0][1]) == 5:

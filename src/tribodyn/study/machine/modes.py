@@ -29,8 +29,8 @@ STRAINED = 1e-3
 _NEAREST = 10
 #: Relative difference of frequencies that is rounding.
 _ROUNDING = 1e-6
-#: Letters of the types of modes of a stage, and harmonics of a stage by itself in
-#: tables and in the diagram.
+#: Letters of the types of modes of a stage, and harmonics of a lone stage in tables and
+#: in the diagram.
 _TYPES = {"rotational": "R", "translational": "T", "planet": "P", "mixed": "RT"}
 _TYPED, _DRAWN = 12, 5
 #: Motion of a shaft along its axis over that of all shafts across, from which it is axial.
@@ -147,7 +147,7 @@ def excitations(structure: MachineStructure, harmonics: int | None = None) -> di
 
 
 def _harmonics(structure: MachineStructure) -> int:
-    """Harmonics of each mesh: of a stage by itself all whose types are listed."""
+    """Harmonics of each mesh: of a lone stage all whose types are listed."""
     return _HARMONICS if structure.frame is None else _TYPED
 
 
@@ -319,7 +319,7 @@ def mesh_orders(modes: MachineModes) -> tuple[MeshOrder, ...]:
 
 
 def _in_step(machine: Machine) -> list[list[tuple[str, ...]]]:
-    """Meshes that act together, those of a stage by kind; others by themselves."""
+    """Meshes that act together, those of a stage by kind; others alone."""
     of_stages = [stage.mesh_names(name).values() for name, stage in machine.planets.items()]
     planets = {mesh for kinds in of_stages for names in kinds for mesh in names}
     groups: list[list[tuple[str, ...]]] = [[(m,)] for m in machine.meshes if m not in planets]

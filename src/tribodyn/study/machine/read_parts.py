@@ -278,7 +278,7 @@ def completed(data: Mapping[str, Any]) -> dict[str, Any]:
     for stage in map(_as_table, table_in(data, "planets").values()):
         planets = (stage.get("planet"), stage.get("ring_planet"))
         shafts |= {str(name): {"shaft": "planet"} for name in planets if name is not None}
-        if not data.get("shafts"):  # a stage by itself: its members are shafts of their own
+        if not data.get("shafts"):  # a lone stage: its members are shafts of their own
             for member in (str(stage.get(role)) for role in ("sun", "ring")):
                 shafts[member] = {"shaft": member}
     parts: dict[str, Any] = {
@@ -411,7 +411,10 @@ def _history_loads(
         return ()
     faults = list(history_problems(rating, point.speed))
     if not faults and has_load_cases and rating is not None and rating.torque_history is not None:
-        what, why = "torque_history stands beside [[load_cases]]", "Both are loads of the machine"
+        what, why = (
+            "torque_history and [[load_cases]] are both given",
+            "Both are loads of the machine",
+        )
         faults = [("rating.torque_history", Problem(what, "", why, "Remove one of both"))]
     problems += faults
     return () if faults else tuple(

@@ -48,7 +48,7 @@ if TYPE_CHECKING:
     from tribodyn.study.rating import RatedMesh
 
 
-#: Steps per cycle of the fastest mesh, and at least of the only one of a stage by itself.
+#: Steps per cycle of the fastest mesh, and at least of the only one of a lone stage.
 STEPS, _OF_STAGE = 128, 240
 
 
@@ -115,7 +115,7 @@ class LoadResult:
     motion : MachineMotion
         Forces, errors and accelerations by the names of the parts.
     steady : Response, optional
-        Motion of all coordinates over one period of the clock, where it is at hand.
+        Motion of all coordinates over one period of the clock, where it was computed.
     heat : HeatBalance, optional
         Heat balance of gears and oil, if ``lubricant.heat_transfer`` is given.
     losses : mapping of str to float
@@ -225,7 +225,7 @@ class LoadResult:
         return self.stage().ring_sensor(sensor_angle, window, steps)
 
     def __getattr__(self, name: str) -> Any:
-        """Find what a stage by itself had in an earlier version."""
+        """Find what a lone stage had in an earlier version."""
         if name not in ("shares", "phases") or not self.machine.planets:
             raise AttributeError(f"LoadResult has no attribute {name!r}")
         warn_of_old_name(f"LoadResult.{name}", f"LoadResult.stage().{name}")

@@ -183,7 +183,7 @@ class BearingTable(BearingCatalogue):
         return {**cls.fields, **{k: o for k, o in rolling.items() if k not in cls.fields}}
 
 
-# What is needed for the life stands behind the others.
+# Keys of the life follow the others.
 for _name in BearingCatalogue.fields:
     BearingTable.fields[_name] = BearingTable.fields.pop(_name)
 

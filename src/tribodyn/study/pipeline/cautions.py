@@ -387,7 +387,7 @@ def _is_overhang(case: PairCase, key: str, other_use: object) -> bool:
 
 
 def idle_values(case: PairCase) -> Iterator[tuple[str, str]]:
-    """Keys that a case gives and that have no effect beside its other values, and why."""
+    """Keys that a case gives and that have no effect because of its other values, and why."""
     film, friction, oil, gears = case.film, case.friction, case.lubricant, case.gears
     other_use = case.rating or case.losses or getattr(oil, "heat_transfer", None)
     crossed = gears.kind == "hypoid"

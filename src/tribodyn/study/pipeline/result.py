@@ -112,7 +112,7 @@ class PairResult(Result):
 
     @property
     def turns(self) -> TurningMotion | None:
-        """Motion over whole turns; None where all teeth of a gear are alike."""
+        """Motion over whole turns; None where all teeth of a gear are equal."""
         from tribodyn.study.faults.clock import varies_over_turns
 
         return self.turning_motion if varies_over_turns(self.case) else None

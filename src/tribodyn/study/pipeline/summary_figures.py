@@ -41,7 +41,7 @@ class Figures(dict[str, float]):
         return min(values) if name.startswith("minimum") else max(values)
 
     def _in_place_of(self, key: object) -> list[str]:
-        """Keys that replace a deprecated one; of a stage by itself those of all its planets."""
+        """Keys that replace a deprecated one; of a lone stage those of all its planets."""
         load, kind, part, name = split_key(str(key))
         name = PARTS[kind].get("deprecated", {}).get(name, name) if kind else name
         start = f"load_cases.{load}." if load else ""

@@ -317,7 +317,7 @@ def stage_by_itself(data: ByName) -> str | None:
 
 
 def floating_members(key: str, table: Any) -> KeyedProblems:
-    """Problems of members of a stage by itself that nothing holds across the axis."""
+    """Problems of members of a lone stage that nothing holds across the axis."""
     floating = [role for role in MEMBERS if getattr(table, f"{role}_support") == 0.0]
     if len(floating) <= (table.count > 2):
         return []

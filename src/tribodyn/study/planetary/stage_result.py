@@ -191,7 +191,7 @@ class StageResult:
 
     @cached_property
     def plane_data(self) -> Tree:
-        """Arguments of :func:`tribodyn.machine.planetary_plane_model` for the stage by itself."""
+        """Arguments of :func:`tribodyn.machine.planetary_plane_model` for the stage alone."""
         return plane_data(self.result.structure, self.name)
 
 

@@ -37,7 +37,7 @@ if TYPE_CHECKING:
 _MAX_STEP_RATIO = 2
 #: Mesh cycles of statistics and transient of a pair, and least periods of the clock of a machine.
 _LENGTHS = {"cycles": (64, 16), "transient": (300, 32)}
-#: Most points of the motion that are kept by default.
+#: Most points of the motion that are stored by default.
 _MOST_KEPT = 48
 
 

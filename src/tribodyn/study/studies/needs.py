@@ -121,7 +121,7 @@ def mesh_names(case: AnyCase) -> tuple[str, ...]:
 
 
 def _planet_meshes(parts: Any) -> dict[str, tuple[str, ...]]:
-    """Names of the meshes of a stage by itself, by the name of their kind; none of other cases."""
+    """Names of the meshes of a lone stage, by the name of their kind; none of other cases."""
     stage = parts.lone_stage
     return {} if stage is None else parts.machine().planets[stage].mesh_names(stage)
 

@@ -363,7 +363,7 @@ def parts_run_up(
 def _steady_motions(
     result: LoadResult, speeds: Array, progress: Progress
 ) -> Iterator[MachineMotion]:
-    """Motions over phases at the speeds of a run-up, which is slow beside their decay."""
+    """Motions over phases at the speeds of a run-up, which is slow compared with their decay."""
     response: Any = None
     middle = result.load.speed
     progress.start("Speeds of the run-up", speeds.size)
