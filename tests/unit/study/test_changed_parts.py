@@ -96,6 +96,13 @@ def test_values_are_set_in_tables_rows_and_lists() -> None:
     }
     assert data["rows"][0]["v"] == data["a"]["x"] == 1
     assert np.array_equal(data["n"]["l"], [1, 2])
-    for key in ("a.x.y", "n.l.3"):
+    for key in ("a.x.y", "n.l.3", "rows.q", "rows.3.v"):
         with pytest.raises(InputError):
             with_values(data, {key: 1})
+    named, numbered = data["rows"]
+    assert with_values(data, {"rows.r": None})["rows"] == [numbered]
+    assert with_values(data, {"rows.1": None, "rows.2.v": 3})["rows"] == [{"v": 3}]
+    assert with_values(data, {"rows.2": {"v": 7}})["rows"] == [named, {"v": 7}]
+    assert "rows" not in with_values(data, {"rows.2": None, "rows.r": None})
+    twice = {"rows": [named, {**named, "v": 9}]}
+    assert with_values(twice, {"x": 1})["rows"] == twice["rows"]

@@ -150,8 +150,12 @@ def test_teeth_that_would_be_clamped_name_their_mesh_before_the_run() -> None:
             "faults.pitch.accuracy_class": 8,
         }
     )  # fmt: skip
-    with pytest.raises(td.InputError, match=r"mesh mesh2: a pair touches .* um before"):
-        rehearse_faults(narrow, rehearse_machine(narrow))
+    crack = {"kind": "crack", "gear": "z2", "tooth": 1, "depth": "1 mm"}
+    pitch = {"kind": "pitch-deviations", "gear": "z3", "accuracy_class": 8}
+    listed = narrow.replace({"faults": [crack, pitch]})
+    for faulty in (narrow, listed):
+        with pytest.raises(td.InputError, match=r"mesh mesh2: a pair touches .* um before"):
+            rehearse_faults(faulty, rehearse_machine(faulty))
 
 
 @pytest.mark.slow

@@ -191,6 +191,32 @@ def named_rows(value: object) -> list[tuple[str, ByName]]:
     return [(str(row.get("name", number)), row) for number, row in enumerate(value, 1)]
 
 
+class Rows(dict[str, Any]):
+    """Tables of a list of tables, by their names or numbers."""
+
+
+def keyed_rows(data: Any) -> Any:
+    """Copy of tables in which the rows of lists have their names or numbers as keys."""
+    if isinstance(data, Mapping):
+        return {key: keyed_rows(value) for key, value in data.items()}
+    rows = Rows()
+    for number, (name, row) in enumerate(named_rows(data), 1):
+        rows[f"{name} {number}" if name in rows else name] = keyed_rows(row)
+    return rows or data
+
+
+def listed_rows(data: Any) -> Any:
+    """Tables with the rows of lists as lists again, without lists whose rows have all gone."""
+    if not isinstance(data, dict):
+        return data
+    tables = {key: listed_rows(value) for key, value in data.items() if not _is_empty(value)}
+    return list(tables.values()) if isinstance(data, Rows) else tables
+
+
+def _is_empty(value: object) -> bool:
+    return isinstance(value, Rows) and not value
+
+
 def flat_keys(table: ByName, prefix: str = "") -> Iterator[tuple[str, Any]]:
     """Dotted keys of nested tables with their values."""
     for name, value in table.items():

@@ -21,9 +21,12 @@ from tribodyn.model import NO_OPTIONS, Option
 from tribodyn.nomenclature import QUANTITIES
 from tribodyn.study.case.section import (
     NamedTables,
+    Rows,
     Section,
     Table,
     entries,
+    keyed_rows,
+    listed_rows,
     named_rows,
     option_at,
     section_at,
@@ -393,31 +396,35 @@ def changed_tables(
 
 def with_values(data: ByName, values: ByName) -> Tree:
     """Return a copy of tables with dotted keys set, of lists and their rows too; None removes."""
-    result: Tree = _copy(data)
+    result: Any = keyed_rows(data)
     for key, value in values.items():
         *tables, name = key.split(".")
-        table: Any = result
+        table: Tree = result
         for depth, each in enumerate(tables, 1):
-            inner = table.setdefault(each, {}) if isinstance(table, dict) else table
+            inner = table.setdefault(_row(table, each, key), {})
             if depth == len(tables) and name.isdigit() and _is_list(inner, table):
                 table[each] = _with_element(inner, table, key, value)
                 break
-            rows = dict(named_rows(table))
-            table = rows.get(each) if rows else inner
-            if not isinstance(table, dict) and not named_rows(table):
+            if not isinstance(inner, dict):
                 raise InputError(f"{each} is a value, not a table", key, "", "Correct the key")
+            table = inner
         else:
             if unmarked(value) is None:
-                table.pop(name, None)
+                table.pop(_row(table, name, key), None)
             else:
-                table[name] = value
-    return result
+                table[_row(table, name, key)] = value
+    changed: Tree = listed_rows(result)
+    return changed
 
 
-def _copy(data: Any) -> Any:
-    if isinstance(data, Mapping):
-        return {key: _copy(value) for key, value in data.items()}
-    return [_copy(row) for row in data] if named_rows(data) else data
+def _row(table: Tree, name: str, key: str) -> str:
+    """Name of a part of a table; of a row that has a name its number is taken too."""
+    if not isinstance(table, Rows) or name in table:
+        return name
+    if name.isdigit() and 1 <= int(name) <= len(table):
+        return list(table)[int(name) - 1]
+    why = f"Known: {', '.join(table)}"
+    raise InputError(f'there is no value "{key}"', key, why, "Correct the name or number")
 
 
 def _is_list(value: object, table: ByName) -> bool:
