@@ -38,7 +38,7 @@ _UNSCALED = np.array([_PLAIN])
 #: ``omega_max * dt`` at which figures of a spur gear pair are good to about 1e-6.
 _ACCURATE = 0.2
 #: Range of the recommended steps; the limit of 2.7 still holds above it.
-FEWEST, _MOST = 1024, 65536
+FEWEST, MOST = 1024, 65536
 
 
 def largest_rate(system: System, nodes: Nodes, factors: tuple[float, ...] = _PLAIN) -> float:
@@ -192,10 +192,15 @@ def rate_on_grid(system: System, steps: int = FEWEST) -> float:
     return system._rates[steps]
 
 
-def accurate_steps(rate: float, mesh_frequency: float) -> int:
+def needed_steps(rate: float, mesh_frequency: float) -> float:
     """Steps per mesh cycle that follow a motion accurately."""
-    needed = rate / (_ACCURATE * mesh_frequency)
-    return int(min(max(2 ** math.ceil(math.log2(max(needed, 1.0))), FEWEST), _MOST))
+    return rate / (_ACCURATE * mesh_frequency)
+
+
+def accurate_steps(rate: float, mesh_frequency: float) -> int:
+    """The same as a power of two that is not too large."""
+    needed = needed_steps(rate, mesh_frequency)
+    return int(min(max(2 ** math.ceil(math.log2(max(needed, 1.0))), FEWEST), MOST))
 
 
 def refuse_rate(

@@ -9,7 +9,14 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from tribodyn.errors import ComputationError, InputError, Problem, collected, warn
+from tribodyn.errors import (
+    ComputationError,
+    InputError,
+    ModelWarning,
+    Problem,
+    collected,
+    warn,
+)
 from tribodyn.nomenclature import GEARS
 from tribodyn.progress import Progress
 from tribodyn.study.case.provenance import effective
@@ -32,6 +39,8 @@ _REPEATS = 1e-8
 _CYCLES_PER_CHECK, _MOST_CYCLES = 32, 4096
 #: Steps of a transient that are stored in memory.
 _MOST_ROWS = 2**19
+#: Steps per mesh cycle of the motion of slow gears, and step error at which they suffice.
+_BALANCED, _SETTLED = (2**11, 2**13, 2**15, 2**17), 1e-3
 #: Mesh cycles after which a steady motion may repeat.
 _PERIODS = (1, 2, 3, 4)
 
@@ -43,8 +52,12 @@ def motion_of(
     from tribodyn.dynamics._engine.blocks import marching_on
 
     steps = steps_of(case, system, mesh_frequency)
+    slow = slow_cautions(case, system, mesh_frequency)
     with marching_on(engine_arguments(case).get("backend")):
-        if case.solver.method == "steady":
+        if slow:
+            repeat(slow)
+            response = _balanced(system, mesh_frequency, progress)
+        elif case.solver.method == "steady":
             response = _steady(system, mesh_frequency, steps, progress)
             if case.solver.engine != _ORBITS:
                 response = _marched_orbit(case, system, response, steps, progress)
@@ -68,10 +81,9 @@ def motions_of(
             cache_rates([points[number][1] for number in group])
     by_steps: dict[int, list[int]] = {}
     for number, (case, system, frequency) in enumerate(points):
-        if case.solver.method == "steady" and case.solver.engine == _ORBITS:
+        if _solves_orbits(case) and not slow_cautions(case, system, frequency):
             with suppress(InputError), collected():  # its separate run reports the error
-                if engine_arguments(case).get("backend") in (None, "cpu"):
-                    by_steps.setdefault(steps_of(case, system, frequency), []).append(number)
+                by_steps.setdefault(steps_of(case, system, frequency), []).append(number)
     samplers: list[Callable[[], Response] | None] = [None] * len(points)
     for steps, numbers in by_steps.items():
         systems, frequencies = zip(*(points[number][1:] for number in numbers), strict=True)
@@ -123,6 +135,45 @@ def engine_arguments(case: PairCase) -> Tree:
 
     engine, values = ENGINES[case.solver.engine], effective(case)
     return engine.arguments({name: values[f"solver.{name}"] for name in engine.options})
+
+
+def _solves_orbits(case: PairCase) -> bool:
+    """Whether the orbit itself is the motion of a case."""
+    steady = case.solver.method == "steady" and case.solver.engine == _ORBITS
+    return steady and engine_arguments(case).get("backend") in (None, "cpu")
+
+
+def slow_cautions(
+    case: PairCase, system: System, mesh_frequency: float
+) -> tuple[ModelWarning, ...]:
+    """Return a warning on gears so slow that their motion is not integrated over time."""
+    from tribodyn.dynamics.equations.step_limit import MOST, needed_steps, rate_on_grid
+
+    needed = needed_steps(rate_on_grid(system), mesh_frequency)
+    if needed <= MOST or case.solver.steps_per_mesh_cycle or not _solves_orbits(case):
+        return ()
+    text = (
+        f"operation.speed = {_speed(case.operation.speed)} is so low that an integration over time "
+        f"needs {needed:.3g} steps per mesh cycle; an automatic choice takes at most {MOST}. The "
+        "motion is found by harmonic balance, without Floquet multipliers. For an integration "
+        f"give solver.{_STEPS}"
+    )
+    return (ModelWarning("slow-speed", text),)
+
+
+def _balanced(system: System, mesh_frequency: float, progress: Progress) -> Response:
+    """Motion by harmonic balance with as many steps as slow gears need."""
+    from tribodyn.dynamics import harmonic_balance
+
+    motion = None
+    for steps in _BALANCED:
+        with collected() as model_warnings:
+            motion = harmonic_balance(system, mesh_frequency, steps=steps, progress=progress)
+        if motion.step_error <= _SETTLED:
+            break
+    repeat(model_warnings)
+    assert motion is not None
+    return motion
 
 
 def _steady(system: System, mesh_frequency: float, steps: int, progress: Progress) -> Response:
@@ -228,16 +279,17 @@ def steps_of(case: PairCase, system: System, mesh_frequency: float) -> int:
 
 
 def _too_slow(case: PairCase, needed: float, high: float) -> Problem:
-    from tribodyn import units
-
-    def rpm(speed: float) -> str:
-        return f"{units.convert(speed, 'rad/s', 'rpm'):.3g} rpm"
-
     speed = case.operation.speed
     return Problem(
-        f"speed = {rpm(speed)} needs {needed:.3g} steps per mesh cycle",
+        f"speed = {_speed(speed)} needs {needed:.3g} steps per mesh cycle",
         f"argument {GEARS[0]}_speed",
         f"The structure vibrates so fast within one slow mesh cycle; {high:.0f} steps are the most",
-        f"The least speed that works is {rpm(_MARGIN * speed * needed / high)}; slower gears carry "
-        "their load statically",
+        f"The least speed that works is {_speed(_MARGIN * speed * needed / high)}; slower gears "
+        "carry their load statically",
     )
+
+
+def _speed(speed: float) -> str:
+    from tribodyn import units
+
+    return f"{units.convert(speed, 'rad/s', 'rpm'):.3g} rpm"

@@ -27,7 +27,7 @@ from tribodyn.study.pipeline.cautions import (
     motion_cautions,
     teeth_cautions,
 )
-from tribodyn.study.pipeline.motion import motion_of, motions_of, steps_of
+from tribodyn.study.pipeline.motion import motion_of, motions_of, slow_cautions, steps_of
 from tribodyn.study.pipeline.response_series import measured, mesh_force
 from tribodyn.study.pipeline.result import PairResult
 from tribodyn.study.pipeline.result_of_case import Result
@@ -127,8 +127,10 @@ def rehearse(case: PairCase) -> tuple[ModelWarning, ...]:
         system = whole_system(case, mesh, rehearsal=True)
         steps = steps_of(case, system, mesh.mesh_frequency)
         compile_system(system, FEWEST)  # the tables of a slow run take gigabytes
-        refuse_steps(system, mesh.mesh_frequency, steps)
-    return load_cautions(mesh, teeth_contact_ratio(mesh_inputs(case)))
+        slow = slow_cautions(case, system, mesh.mesh_frequency)
+        if not slow:
+            refuse_steps(system, mesh.mesh_frequency, steps)
+    return (*slow, *load_cautions(mesh, teeth_contact_ratio(mesh_inputs(case))))
 
 
 def computed(
