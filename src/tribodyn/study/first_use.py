@@ -55,7 +55,7 @@ def _interruptibly(busy: Callable[[], bool]) -> bool:
 def _missing_jobs(case: PairCase, study: str = "run") -> Sequence[str]:
     """Return the jobs of a study that are not cached."""
     from tribodyn.dynamics._engine.marching import march_block
-    from tribodyn.dynamics.time.engines import ENGINES
+    from tribodyn.study.case.sections import AUTO
 
     if not hasattr(march_block, "_cache"):  # Numba is disabled
         return []
@@ -64,7 +64,7 @@ def _missing_jobs(case: PairCase, study: str = "run") -> Sequence[str]:
         from tribodyn.stiffness.loaded.kernel import solve_loads
 
         uncached |= set() if is_cached(solve_loads) else {"loads"}
-    if ENGINES[case.solver.engine].method == "rk4" and not is_cached(march_block):
+    if case.solver.engine in ("runge-kutta-4", AUTO) and not is_cached(march_block):
         uncached |= {job for jobs in _JOBS.values() for job in jobs} - {"loads"}
     return [job for job in _JOBS[study] if job in uncached]
 

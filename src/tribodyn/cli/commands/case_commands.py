@@ -78,14 +78,16 @@ _Checked = tuple[dict[str, float], Iterable[ModelWarning], dict[str, str], list[
 
 def _checked_pair(case: PairCase) -> _Checked:
     """Geometry and load of a pair, after rehearsing its run."""
+    from tribodyn.study.case.sections import AUTO
     from tribodyn.study.pipeline.assembly import geometry
     from tribodyn.study.pipeline.cautions import case_cautions, idle_values
+    from tribodyn.study.pipeline.motion import engine_remark
     from tribodyn.study.pipeline.preview import operating_figures
     from tribodyn.study.pipeline.run import rehearse
 
     warned = rehearse(case)
     values = {n: float(v) for n, v in (geometry(case) | operating_figures(case)).items()}
-    remarks: list[str] = []
+    remarks = [engine_remark(case)] if case.solver.engine == AUTO else []
     if case.faults is not None:
         from tribodyn.study.faults.clock import turning_clock
 

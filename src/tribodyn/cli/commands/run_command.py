@@ -87,6 +87,8 @@ def run(
         text = figures(result.rows()) if printed.all else chief_figures(result.summary())
         say(f"{result.case.title}\n{text}")
     show_warnings(result.warnings)
+    if reason := result.response.reason:
+        tell(f"Motion by {result.response.engine}: {reason}.")
     report = target / "report.html"
     tell(f"Report: {report}")
     if open_:

@@ -189,8 +189,8 @@ def engine_name(method: str) -> str:
 
 def prepare(method: str, setting: Setting, **options: Any) -> Marcher:
     """Prepare the integration with a method or an engine of a case file; check its options."""
-    engine = ENGINES[method].method if isinstance(method, str) and method in ENGINES else method
-    name = require_one_of("method", engine, _BEGIN)
+    engine = ENGINES[method].method if isinstance(method, str) and method in ENGINES else None
+    name = require_one_of("method", engine or method, _BEGIN)
     begin, allowed = _BEGIN[name]
     chosen = {option: value for option, value in options.items() if value is not None}
     for option in [each for each in chosen if each not in allowed]:
@@ -206,14 +206,14 @@ def prepare(method: str, setting: Setting, **options: Any) -> Marcher:
 
 @dataclass(frozen=True)
 class Engine(Model):
-    """A time integration engine.
+    """An engine that computes motions.
 
     Parameters
     ----------
     name : str
         Name in a case file.
-    method : str
-        Its name in :func:`tribodyn.dynamics.simulate`.
+    method : str, optional
+        Its name in :func:`tribodyn.dynamics.simulate`; None for the one that suits the system.
     options : mapping of str to Option or default
         Its options; ``argument`` of each is the argument of that function.
     meaning : str
@@ -230,7 +230,7 @@ class Engine(Model):
     """
 
     name: str
-    method: Method
+    method: Method | None
     options: Mapping[str, Any] = field(default_factory=dict)
     meaning: str = ""
     papers: tuple[str, ...] = ()
@@ -306,6 +306,20 @@ for _engine in (
         {},
         "exact steps of every linear mode, of fourth order, for structures of many coordinates",
         source="exponential collocation with a parabola of the contact forces over each step",
+    ),
+    Engine(
+        "harmonic-balance",
+        None,
+        {},
+        "the periodic motion from the harmonics of the contact forces",
+        source="Newton's method on the compressions of the contacts over a period",
+    ),
+    Engine(
+        "auto",
+        None,
+        {},
+        "harmonic balance where forces have no jumps and teeth stay in touch, else the march",
+        source="the step error that harmonic balance states",
     ),
 ):  # fmt: skip
     ENGINES.register(_engine.name)(_engine)

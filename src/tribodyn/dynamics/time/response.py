@@ -134,6 +134,8 @@ class Response(Record):
     engine : str
         Method that computed the motion: the name of a time integration engine or
         "harmonic-balance".
+    reason : str
+        Why a case whose engine is "auto" has this one.
     """
 
     time: Array = quantity("time", unit="s", axis=True)
@@ -157,6 +159,7 @@ class Response(Record):
     period: int = 0
     step_error: float = fact(default=float("nan"))
     engine: str = fact(default="runge-kutta-4")
+    reason: str = field(default="", kw_only=True)
 
     @property
     def duration(self) -> float:

@@ -16,7 +16,7 @@ from tribodyn.study.case.gears import (
     size_problems,
 )
 from tribodyn.study.case.section import Choice, SectionKeys, section_at
-from tribodyn.study.case.sections import THERMAL, lubricant_problems
+from tribodyn.study.case.sections import AUTO, BALANCE, THERMAL, lubricant_problems
 from tribodyn.study.case.user_input import CONFLICT_REASON, UserInput, conflicting_keys
 
 if TYPE_CHECKING:
@@ -247,6 +247,10 @@ def _solver(inputs: UserInput) -> KeyedProblems:
         what = f'{inputs.show("solver.cycles")} does not belong to method = "steady"'
         why = "A steady state is computed directly, not over a number of cycles"
         yield "solver.cycles", Problem(what, "", why, 'Remove it, or choose "transient"')
+    if inputs.get("solver.engine") == BALANCE and inputs.get("solver.method") == "transient":
+        what = " and ".join(inputs.show(f"solver.{name}") for name in ("engine", "method"))
+        why = "Harmonic balance finds periodic motions only"
+        yield "solver.engine", Problem(what, "", why, f'Choose engine = "{AUTO}" or another one')
 
 
 #: Kinds of gears for which load, film and friction are not coupled.

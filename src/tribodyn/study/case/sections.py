@@ -304,6 +304,10 @@ class Dynamics(Section):
     )
 
 
+#: Engines of periodic motions from spectra, and of the choice by fitness.
+BALANCE, AUTO = "harmonic-balance", "auto"
+
+
 class Solver(Section):
     """The ``[solver]`` table."""
 
@@ -316,9 +320,7 @@ class Solver(Section):
         },
         meaning="periodic motion, or motion from the static equilibrium",
     )
-    engine: str = model_choice(
-        "runge-kutta-4", _engines, meaning="how the motion is marched over time"
-    )
+    engine: str = model_choice("runge-kutta-4", _engines, meaning="how the motion is found")
     steps_per_mesh_cycle: int | None = integer(
         None,
         64,

@@ -40,6 +40,7 @@ from tribodyn.study.faults.turning import (
 from tribodyn.study.machine.first_look import warn_of_orders
 from tribodyn.study.machine.motion import MachineMotion, machine_motion, phase_units, unit_of
 from tribodyn.study.mesh_inputs import mesh_inputs, named_mesh
+from tribodyn.study.pipeline.motion import by_engine
 from tribodyn.types import Tree
 
 if TYPE_CHECKING:
@@ -128,6 +129,7 @@ def machine_turning_motion(
         else:
             find = _over_phases if over_phases else _on_clock
             response, motion, ahead = find(case, sound, structure, seats, progress)
+            by_engine(case.solver.engine, response)
     clock, cycles, frequency = machine.clock, motion.cycles.max(), motion.mesh_frequency.max()
     periods = Fraction(cycles * clock.frequency / frequency)
     if motion.phase_turns is None:

@@ -60,6 +60,7 @@ from tribodyn.study.pipeline.cautions import (
     tension_cautions,
     warn_of_meshes,
 )
+from tribodyn.study.pipeline.motion import by_engine
 from tribodyn.study.pipeline.store import Stored, StoredLoad, figures_of_load
 from tribodyn.study.pipeline.stored_motion import read_passes
 from tribodyn.study.pipeline.tooth_contact import (
@@ -133,7 +134,7 @@ def run_load(
     structure = structure_of(case, state.static.linearized())
     system = system_of(structure, phases=over_phases(case.solver, structure.machine))
     with friction_suspected(state.tables.values()):
-        response = steady_motion(structure, system, start)
+        response = by_engine(case.solver.engine, steady_motion(structure, system, start))
     progress.finish()
     motion = machine_motion(structure, response)
     of_meshes += _of_motion(case, load, structure.machine, motion)

@@ -24,7 +24,7 @@ from tribodyn.study.case import gears
 from tribodyn.study.case.pair import PairCase
 from tribodyn.study.case.rating_tables import BearingCatalogue, NotchTable, ShaftStrength
 from tribodyn.study.case.section import NamedTables, Section, Table, table
-from tribodyn.study.case.sections import Dynamics, MaterialData, Solver
+from tribodyn.study.case.sections import AUTO, BALANCE, Dynamics, MaterialData, Solver
 
 _GUARD = "guards against a wrong unit"
 _RPM = math.pi / 30.0
@@ -474,6 +474,14 @@ MotionTable.fields |= {
 class SolverTable(Section):
     """The ``[solver]`` table of a machine."""
 
+    engine: str = choice(
+        AUTO,
+        {
+            AUTO: "harmonic balance; where it finds no motion, the march in modal coordinates",
+            BALANCE: "the periodic motion from the harmonics of the contact forces, or an error",
+        },
+        meaning="how the motion is found",
+    )
     coupling: str = Solver.fields["coupling"]  # type: ignore[assignment]
     coupling_tolerance: float = Solver.fields["coupling_tolerance"]  # type: ignore[assignment]
     phases: str = choice(

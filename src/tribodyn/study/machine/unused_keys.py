@@ -81,7 +81,7 @@ def _tables(data: Mapping[str, Any], group: str) -> dict[str, Mapping[str, Any]]
 def unused_keys(data: Mapping[str, Any]) -> KeyedProblems:
     """Keys of a machine or of a lone stage that have no effect."""
     yield from _heat(data)
-    why = "The motion of a machine is found by harmonic balance, over the period of all meshes"
+    why = "The motion of a machine is found by harmonic balance"
     yield from _refused("solver", data.get("solver"), SOLVER_OF_PAIRS, why, "Remove it")
     yield from _planets(data)
     yield from _constant_meshes(data)

@@ -20,7 +20,7 @@ from tribodyn.errors import (
 from tribodyn.nomenclature import GEARS
 from tribodyn.progress import Progress
 from tribodyn.study.case.provenance import effective
-from tribodyn.study.case.sections import Solver
+from tribodyn.study.case.sections import AUTO, BALANCE, Solver
 from tribodyn.study.case.to_models import mesh_law_of
 from tribodyn.study.pipeline.cautions import tension_cautions
 from tribodyn.study.pipeline.tooth_contact import repeat
@@ -33,6 +33,8 @@ if TYPE_CHECKING:
 
 #: Engine whose periodic orbits are solved directly.
 _ORBITS = "runge-kutta-4"
+#: Steps per mesh cycle of harmonic balance that is tried, and step error with which it is taken.
+_TRIED, _FINE = 256, 1e-5
 #: Change of the compression from one period to the next, over its size, that counts as none.
 _REPEATS = 1e-8
 #: Periods between two checks of that change, and largest number of mesh cycles.
@@ -41,6 +43,8 @@ _CYCLES_PER_CHECK, _MOST_CYCLES = 32, 4096
 _MOST_ROWS = 2**19
 #: Steps per mesh cycle of the motion of slow gears, and step error at which they suffice.
 _BALANCED, _SETTLED = (2**11, 2**13, 2**15, 2**17), 1e-3
+#: Why an automatic engine does not march slow gears.
+_SLOW = "the gears are too slow to be marched"
 #: Mesh cycles after which a steady motion may repeat.
 _PERIODS = (1, 2, 3, 4)
 
@@ -51,18 +55,19 @@ def motion_of(
     """Compute the motion of a case."""
     from tribodyn.dynamics._engine.blocks import marching_on
 
-    steps = steps_of(case, system, mesh_frequency)
     slow = slow_cautions(case, system, mesh_frequency)
     with marching_on(engine_arguments(case).get("backend")):
         if slow:
+            steps_of(case, system, mesh_frequency)  # refuses those that no steps follow
             repeat(slow)
-            response = _balanced(system, mesh_frequency, progress)
+            response = _slow_motion(system, mesh_frequency, progress)
+            response = replace(response, reason=_SLOW if case.solver.engine == AUTO else "")
         elif case.solver.method == "steady":
-            response = _steady(system, mesh_frequency, steps, progress)
-            if case.solver.engine != _ORBITS:
-                response = _marched_orbit(case, system, response, steps, progress)
+            response = _steady(case, system, mesh_frequency, progress)
         else:
+            steps = steps_of(case, system, mesh_frequency)
             response = _transient(case, system, mesh_frequency, steps, progress)
+            response = replace(response, reason=march_reason(case))
     if case.backlash == 0.0:
         force = response.contact_force.sum(axis=1)
         repeat(tension_cautions(force, linear=mesh_law_of(case) != "force-law"))
@@ -137,9 +142,9 @@ def engine_arguments(case: PairCase) -> Tree:
     return engine.arguments({name: values[f"solver.{name}"] for name in engine.options})
 
 
-def _solves_orbits(case: PairCase) -> bool:
-    """Whether the orbit itself is the motion of a case."""
-    steady = case.solver.method == "steady" and case.solver.engine == _ORBITS
+def _solves_orbits(case: PairCase, *engines: str) -> bool:
+    """Whether the orbit itself is the motion of a case, by default with its engine."""
+    steady = case.solver.method == "steady" and case.solver.engine in (_ORBITS, *engines)
     return steady and engine_arguments(case).get("backend") in (None, "cpu")
 
 
@@ -150,7 +155,7 @@ def slow_cautions(
     from tribodyn.dynamics.equations.step_limit import MOST, needed_steps, rate_on_grid
 
     needed = needed_steps(rate_on_grid(system), mesh_frequency)
-    if needed <= MOST or case.solver.steps_per_mesh_cycle or not _solves_orbits(case):
+    if needed <= MOST or case.solver.steps_per_mesh_cycle or not _solves_orbits(case, AUTO):
         return ()
     text = (
         f"operation.speed = {_speed(case.operation.speed)} is so low that an integration over time "
@@ -161,7 +166,7 @@ def slow_cautions(
     return (ModelWarning("slow-speed", text),)
 
 
-def _balanced(system: System, mesh_frequency: float, progress: Progress) -> Response:
+def _slow_motion(system: System, mesh_frequency: float, progress: Progress) -> Response:
     """Motion by harmonic balance with as many steps as slow gears need."""
     from tribodyn.dynamics import harmonic_balance
 
@@ -176,7 +181,90 @@ def _balanced(system: System, mesh_frequency: float, progress: Progress) -> Resp
     return motion
 
 
-def _steady(system: System, mesh_frequency: float, steps: int, progress: Progress) -> Response:
+def march_reason(case: PairCase) -> str:
+    """Why an automatic engine marches, as far as the case shows it; empty if it may not."""
+    if case.solver.engine != AUTO:
+        return ""
+    if case.solver.method != "steady":
+        return "a motion over time is marched"
+    if (law := mesh_law_of(case)) != "force-law":
+        return f'one spring with mesh_law = "{law}" is marched faster'
+    return ""
+
+
+def by_engine(engine: str, response: Response) -> Response:
+    """The motion, if harmonic balance has found it or the engine leaves the march to stand in."""
+    if engine == AUTO or response.converged:
+        return response
+    why = "Harmonic balance finds motions that repeat; a march stands in for others"
+    remedy = f'Set engine = "{AUTO}", or add damping'
+    found = f"no periodic motion was found: error {response.error:.2e}"
+    raise ComputationError(Problem(found, "solver.engine", why, remedy))
+
+
+def engine_remark(case: PairCase) -> str:
+    """What an automatic engine does, before the motion is computed."""
+    if reason := march_reason(case):
+        return f'engine = "auto" marches: {reason}.'
+    return (
+        'engine = "auto" takes harmonic balance if it finds a stable motion of teeth in touch '
+        f"with a step error of at most {_FINE:g}, and marches otherwise."
+    )
+
+
+def may_balance(case: PairCase) -> bool:
+    """Whether harmonic balance comes first."""
+    return case.solver.engine == BALANCE or (case.solver.engine == AUTO and not march_reason(case))
+
+
+def _steady(case: PairCase, system: System, mesh_frequency: float, progress: Progress) -> Response:
+    """Periodic motion by the engine of a case."""
+    reason, engine = march_reason(case), case.solver.engine
+    if may_balance(case):
+        with collected() as model_warnings:
+            response, reason = _balanced(case, system, mesh_frequency, progress)
+        if response is not None:
+            repeat(model_warnings)
+            return replace(response, reason=reason)
+    steps = steps_of(case, system, mesh_frequency)
+    response = _orbit(system, mesh_frequency, steps, progress)
+    if engine not in (_ORBITS, AUTO):
+        response = _marched_orbit(case, system, response, steps, progress)
+    return replace(response, reason=reason)
+
+
+def _balanced(
+    case: PairCase, system: System, mesh_frequency: float, progress: Progress
+) -> tuple[Response | None, str]:
+    """Motion by harmonic balance, or None if it is not fit, and why."""
+    from tribodyn.dynamics import harmonic_balance
+
+    engine, steps = case.solver.engine, case.solver.steps_per_mesh_cycle
+    if engine == AUTO:
+        steps = steps or _TRIED
+    response = harmonic_balance(
+        system, mesh_frequency, steps=steps, stability=True, progress=progress
+    )
+    if not response.stable:
+        multipliers = np.abs(response.floquet_multipliers)
+        found = f"largest multiplier {multipliers.max():.4g}" if multipliers.size else "none found"
+        reason = f"no stable motion repeats after a mesh cycle: {found}"
+        if engine == BALANCE:
+            why = "Harmonic balance finds motions of one mesh cycle"
+            remedy = f'Choose engine = "{AUTO}" or "{_ORBITS}", or add damping'
+            raise ComputationError(Problem(reason, "solver.engine", why, remedy))
+        return None, reason
+    if engine == BALANCE:
+        return response, ""
+    error = f"{response.step_error:.1e} of the motion"
+    if not response.step_error <= _FINE:
+        return None, f"harmonic balance errs by {error} with {steps} steps, limit {_FINE:.0e}"
+    if np.any(response.contact_force.sum(axis=1) <= 0.0):
+        return None, "the teeth part, so that several motions may exist"
+    return response, f"it is faster with a force law and errs by {error}"
+
+
+def _orbit(system: System, mesh_frequency: float, steps: int, progress: Progress) -> Response:
     """Return the first stable orbit among those of one to four mesh cycles."""
     from tribodyn.dynamics import steady_state
 

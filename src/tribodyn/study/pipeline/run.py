@@ -27,7 +27,13 @@ from tribodyn.study.pipeline.cautions import (
     motion_cautions,
     teeth_cautions,
 )
-from tribodyn.study.pipeline.motion import motion_of, motions_of, slow_cautions, steps_of
+from tribodyn.study.pipeline.motion import (
+    may_balance,
+    motion_of,
+    motions_of,
+    slow_cautions,
+    steps_of,
+)
 from tribodyn.study.pipeline.response_series import measured, mesh_force
 from tribodyn.study.pipeline.result import PairResult
 from tribodyn.study.pipeline.result_of_case import Result
@@ -125,10 +131,10 @@ def rehearse(case: PairCase) -> tuple[ModelWarning, ...]:
     with locate_errors(case), collected():
         mesh = mesh_of(case, rehearsal=True)
         system = whole_system(case, mesh, rehearsal=True)
-        steps = steps_of(case, system, mesh.mesh_frequency)
         compile_system(system, FEWEST)  # the tables of a slow run take gigabytes
         slow = slow_cautions(case, system, mesh.mesh_frequency)
-        if not slow:
+        steps = 0 if may_balance(case) else steps_of(case, system, mesh.mesh_frequency)
+        if steps and not slow:
             refuse_steps(system, mesh.mesh_frequency, steps)
     return (*slow, *load_cautions(mesh, teeth_contact_ratio(mesh_inputs(case))))
 

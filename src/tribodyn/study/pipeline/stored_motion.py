@@ -135,6 +135,7 @@ _NUMBERS: dict[str, tuple[type, str]] = {
     "error": (float, "steady_state_error"),
     "step_error": (float, "step_error"),
     "engine": (str, "engine"),
+    "reason": (str, "engine_reason"),
     "step_number": (float, "omega_max_dt"),
     **{name: (int, name) for name in ("converged", "cycles_used", "search_cycles", "period")},
 }

@@ -21,6 +21,7 @@ from tribodyn.study.faults.turning import refuse_long_period
 from tribodyn.study.first_use import compile_in_parallel
 from tribodyn.study.machine.run import run_load
 from tribodyn.study.pipeline.assembly import rotation_of
+from tribodyn.study.pipeline.motion import by_engine
 from tribodyn.study.planetary.common import common_lines, line_labels
 from tribodyn.study.studies.case_grid import Member, results_under, varied
 from tribodyn.study.studies.levels import MachineLevels, levels_of
@@ -338,7 +339,8 @@ def parts_run_up(
         time = np.linspace(0.0, span, _STEADY)
         corners = [0.0, duration, duration + hold, span]
         speed = np.interp(time, corners, [ends[0], ends[1], ends[1], ends[0] if down else ends[1]])
-        levels = levels_of(_steady_motions(result, speed, progress), speed, time=time)
+        motions_over = _steady_motions(result, case.solver.engine, speed, progress)
+        levels = levels_of(motions_over, speed, time=time)
         return _levels_of_result(levels, result)
     per_speed = result.clock_frequency / middle.operating_point.speed
     speed, time = _periods(per_speed, ends, duration, hold, down)
@@ -361,7 +363,7 @@ def parts_run_up(
 
 
 def _steady_motions(
-    result: LoadResult, speeds: Array, progress: Progress
+    result: LoadResult, engine: str, speeds: Array, progress: Progress
 ) -> Iterator[MachineMotion]:
     """Motions over phases at the speeds of a run-up, which is slow compared with their decay."""
     response: Any = None
@@ -371,6 +373,7 @@ def _steady_motions(
         frequency = np.array(result.machine.phases.frequency) * abs(speed / middle)
         with collected(), single_blas_thread():
             response = harmonic_balance(result.system, frequency, start=response)
+            response = by_engine(engine, response)
         yield result.signals_along(response)
         progress.advance()
     progress.finish()
