@@ -6,6 +6,7 @@ import sys
 import sysconfig
 import warnings
 from pathlib import Path
+from traceback import walk_tb
 from typing import Any
 
 from tribodyn import progress
@@ -14,9 +15,8 @@ from tribodyn.errors import ModelWarning, TribodynError
 #: Least time between two texts of progress [s].
 _INTERVAL = 0.5
 #: Folders of frames that are not of the user.
-_INSTALLED = tuple(
-    {str(Path(__file__).parent), *map(sysconfig.get_path, ("stdlib", "purelib", "platlib"))}
-)
+_PACKAGE = str(Path(__file__).parent)
+_INSTALLED = (_PACKAGE, *map(sysconfig.get_path, ("stdlib", "purelib", "platlib")))
 
 
 class CellProgress(progress.TextProgress):
@@ -52,6 +52,12 @@ def users_traceback(traceback: Any) -> Any:
     return traceback
 
 
+def _is_unknown_attribute(traceback: Any) -> bool:
+    """Whether the package says of one of its objects that it has no such attribute."""
+    *_, (frame, _) = walk_tb(traceback)
+    return frame.f_code.co_name == "__getattr__" and frame.f_code.co_filename.startswith(_PACKAGE)
+
+
 def _show_error(
     shell: Any,
     kind: type[BaseException],
@@ -60,6 +66,9 @@ def _show_error(
     tb_offset: Any = None,
 ) -> None:
     """Show an error of the package at the line of the user, without those that led to it."""
+    if not isinstance(error, TribodynError) and not _is_unknown_attribute(traceback):
+        shell.showtraceback((kind, error, traceback), tb_offset=tb_offset)
+        return
     error.__cause__, error.__suppress_context__ = None, True
     short = users_traceback(traceback)
     shell.showtraceback((kind, error.with_traceback(short), short), tb_offset=tb_offset)
@@ -83,4 +92,4 @@ def prepare(shell: Any) -> None:
     progress.automatic = CellProgress
     warnings.formatwarning = _brief_format(warnings.formatwarning)
     if not shell.custom_exceptions:
-        shell.set_custom_exc((TribodynError,), _show_error)
+        shell.set_custom_exc((TribodynError, AttributeError), _show_error)

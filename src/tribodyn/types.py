@@ -15,8 +15,6 @@ ComplexArray = NDArray[np.complex128]
 Texts = NDArray[np.str_]
 #: One number or an array of them.
 Numbers = float | Array
-#: Options of a model by name: numbers, texts, flags, as the model declares them.
-Options = Mapping[str, Any]
 #: Values of any kind by name, as in TOML and JSON: a new one, and one that is only read.
 Tree = dict[str, Any]
 ByName = Mapping[str, Any]

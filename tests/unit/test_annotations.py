@@ -14,7 +14,7 @@ from numpy.typing import ArrayLike, NDArray
 from tribodyn.arguments.annotations import wanted
 from tribodyn.arguments.reading import checked
 from tribodyn.errors import InputError
-from tribodyn.types import Array, ByName, Options
+from tribodyn.types import Array, ByName
 
 
 class _Alias:
@@ -38,7 +38,7 @@ def test_named_annotations_are_checked_as_what_they_stand_for() -> None:
         wanted(NDArray[np.float64], 2).read("text")
 
 
-def _law(options: Options) -> Any:
+def _law(options: ByName) -> Any:
     """Friction.
 
     Parameters

@@ -2,6 +2,7 @@
 
 import io
 import sys
+import traceback
 import warnings
 
 import pytest
@@ -53,6 +54,23 @@ def test_tracebacks_end_at_the_line_of_the_user(shell: Shell, script: str) -> No
     assert error.__cause__ is None
     assert error.__suppress_context__
     assert kind is InputError
+
+
+@pytest.mark.parametrize(
+    ("script", "shortened"),
+    [("case.plot_mesh_forse", True), ("''.joined", False), ("td.gear.spurpair", False)],
+)
+def test_unknown_attributes_of_objects_end_there_too(
+    shell: Shell, script: str, shortened: bool
+) -> None:
+    case = f"case = td.load_case('fzg-roughness')\n{script}"
+    with pytest.raises(AttributeError) as caught:
+        call_of_a_user(case)
+    assert AttributeError in shell.custom_exceptions
+    whole = len(caught.traceback) - 1  # without this test
+    shell.handler(shell, AttributeError, caught.value, caught.tb.tb_next)
+    length = sum(1 for _ in traceback.walk_tb(shell.shown[2]))
+    assert (length < whole) is shortened
 
 
 def test_handlers_of_the_user_stay() -> None:

@@ -168,12 +168,10 @@ def _parts(desk: TabSession, case: MachineCase) -> list[Any]:
         warn_of_gears(case)
         values = kinematic_figures(case)
     alone = case.lone_stage is not None
-    figure, subject = (plot.planetary_stage, case) if alone else (plot.machine, machine)
+    flat = (plot.planetary_stage, case) if alone else (plot.machine, machine)
     numbers = [describe(name, value) for name, value in values.items()]
     rows = [[n.label, f"{n.value} {n.unit}".strip(), n.meaning] for n in numbers]
     first = [describe(n, value, 4) for n, value in values.items() if n.endswith(_OF_MACHINE)]
-    caption = figure.caption_of(subject)
-    block = block_of_figure(figure.name, figure.heading, figure.sketch(subject), caption)
     every = [html.Summary(f"All speeds, torques and powers ({len(rows)})")]
     every.append(table(["Quantity", "Value", "Meaning"], rows))
     assumed = [[a.key, a.value or "", a.reason or ""] for a in case.assumptions]
@@ -181,7 +179,7 @@ def _parts(desk: TabSession, case: MachineCase) -> list[Any]:
     parts = [
         cards([[n.label, n.value, n.unit] for n in first]),
         *notice("Warnings", [str(warning) for warning in warnings]),
-        _block(block.__dict__, f"pair-{figure.name}", json.loads(block.json)),
+        *(_sketched(*drawn) for drawn in (flat, (plot.machine_space, machine))),
         html.Details(every, className="block"),
         *([html.Details(notes, className="block")] if assumed else []),
     ]
@@ -203,12 +201,16 @@ def _drawing(case: Any) -> list[Any]:
     try:
         flanks = case.hypoid_flanks
         figure = plot.gear_pair if flanks is None else plot.hypoid_pair
-        subject = case.gear_pair if flanks is None else flanks
-        sketch = figure.sketch(subject)
+        return [_sketched(figure, case.gear_pair if flanks is None else flanks)]
     except InputError as error:
         return [html.Div(html.P(error.problems[0].what), className="block")]
-    block = block_of_figure(figure.name, figure.heading, sketch, figure.caption_of(subject))
-    return [_block(block.__dict__, f"pair-{figure.name}", json.loads(block.json))]
+
+
+def _sketched(figure: Any, subject: Any) -> html.Section:
+    """Block of a figure of the current case."""
+    caption = figure.caption_of(subject)
+    block = block_of_figure(figure.name, figure.heading, figure.sketch(subject), caption)
+    return _block(block.__dict__, f"pair-{figure.name}", json.loads(block.json))
 
 
 def _block(block: Any, name: str, figure: Any) -> html.Section:

@@ -29,7 +29,7 @@ from tribodyn.stiffness.loaded.problem import (
 )
 from tribodyn.stiffness.loaded.ramps import ramps_about
 from tribodyn.stiffness.model import MODELS
-from tribodyn.types import Array, Index, Options
+from tribodyn.types import Array, ByName, Index
 
 #: Phases of a mesh cycle at which the teeth are solved, where the turns are not too many.
 _PHASES, _FEWEST = 256, 32
@@ -207,7 +207,7 @@ def turning_mesh(
     provider: str = "fe2d",
     extended_contact: bool = True,
     material: Material | None = None,
-    options: Options = NO_OPTIONS,
+    options: ByName = NO_OPTIONS,
     phases: int | None = None,
 ) -> TurningMesh:
     """Solve the loaded tooth contact over whole turns.

@@ -18,7 +18,7 @@ from tribodyn.ehl.traction.traction import FilmShear, FilmState
 from tribodyn.errors import Argument, InputError, warn
 from tribodyn.friction.base import LAWS, TribologicalContact
 from tribodyn.model import choice, flag
-from tribodyn.types import Array, Options
+from tribodyn.types import Array, ByName
 
 _GREATEST = 0.2  # friction coefficient that lubricated steel hardly exceeds
 
@@ -121,7 +121,7 @@ _ALONG_PATH, _PASSES = 2e-3, 120
 _OF_SHEAR = ("eyring_stress", *LIMIT, *THINNING)
 
 
-def film_heat(law: str, options: Options, bodies: tuple[float, float]) -> ThermalModel:
+def film_heat(law: str, options: ByName, bodies: tuple[float, float]) -> ThermalModel:
     """Shear and bodies of a heated film: the shear of the friction law, if it shears the film."""
     shear, numbers = "ree-eyring", {}
     if LAWS[law].needs_film and "shear_model" in LAWS[law].options:

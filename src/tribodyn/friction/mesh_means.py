@@ -15,7 +15,7 @@ from tribodyn.errors import require_one_of, require_positive
 from tribodyn.friction.base import LAWS, Range, TribologicalContact, warn_outside
 from tribodyn.gear import SpurPair
 from tribodyn.model import choice, number
-from tribodyn.types import Array, Options
+from tribodyn.types import Array, ByName
 
 
 @dataclass(frozen=True)
@@ -178,7 +178,7 @@ def mean_friction(
 
 
 def mean_law(
-    name: str, *, law_options: Options | None = None, rough: bool = True, **about: Any
+    name: str, *, law_options: ByName | None = None, rough: bool = True, **about: Any
 ) -> Callable[[Callable[..., Array]], None]:
     """Register a function of contacts and their pitch point as a law with one value everywhere.
 

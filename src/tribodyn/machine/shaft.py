@@ -10,7 +10,7 @@ from tribodyn.gear import Material
 from tribodyn.machine.fields import check_number, quoted
 from tribodyn.machine.section import STEEL, Section
 from tribodyn.model import REQUIRED, Model, Option, Registry, number
-from tribodyn.types import Options
+from tribodyn.types import ByName
 
 #: Positions on a shaft closer than this are one, and overlaps below it are rounding [m].
 SAME_PLACE = 1e-9
@@ -154,7 +154,7 @@ class CouplingModel(Model):
     source: str = ""
     meaning: str = ""
     papers: tuple[str, ...] = ()
-    options: Options = field(default_factory=dict)
+    options: ByName = field(default_factory=dict)
 
 
 COUPLINGS: Registry[CouplingModel] = Registry("coupling", "tribodyn.coupling", CouplingModel)

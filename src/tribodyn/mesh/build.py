@@ -44,7 +44,7 @@ from tribodyn.progress import SILENT, Progress
 from tribodyn.record import from_parts
 from tribodyn.stiffness import MODELS
 from tribodyn.stiffness.loaded.face_problem import has_slices
-from tribodyn.types import Array, Mask, Options
+from tribodyn.types import Array, ByName, Mask
 
 
 def build(
@@ -52,13 +52,13 @@ def build(
     *,
     material: Material,
     stiffness_model: str = "potential-energy",
-    stiffness_options: Options = NO_OPTIONS,
+    stiffness_options: ByName = NO_OPTIONS,
     lubricant: Lubricant,
     friction_law: str,
-    friction_options: Options = NO_OPTIONS,
+    friction_options: ByName = NO_OPTIONS,
     composite_roughness: float,
     film_model: str = "none",
-    film_options: Options = NO_OPTIONS,
+    film_options: ByName = NO_OPTIONS,
     pinion_speed: float,
     pinion_torque: float,
     steps: int | None = None,

@@ -26,7 +26,7 @@ from tribodyn.progress import SILENT, Progress
 from tribodyn.record import Parts, Record, fact, figure_method, from_parts, quantity, record
 from tribodyn.stiffness import MODELS
 from tribodyn.stiffness.loaded.face_problem import has_slices
-from tribodyn.types import Array, Mask, Options
+from tribodyn.types import Array, ByName, Mask
 
 #: Positions for the models that have no such option.
 _POSITIONS = 30
@@ -111,11 +111,11 @@ def film_over_operation(
     *,
     material: Material,
     stiffness_model: str = "potential-energy",
-    stiffness_options: Options = NO_OPTIONS,
+    stiffness_options: ByName = NO_OPTIONS,
     lubricant: Lubricant,
     composite_roughness: float = 0.0,
     film_model: str = "newton",
-    film_options: Options = NO_OPTIONS,
+    film_options: ByName = NO_OPTIONS,
     pinion_speed: ArrayLike,
     pinion_torque: ArrayLike,
     progress: Progress = SILENT,
@@ -330,10 +330,10 @@ def comprehensive_stiffness(
     *,
     material: Material,
     stiffness_model: str = "potential-energy",
-    stiffness_options: Options = NO_OPTIONS,
+    stiffness_options: ByName = NO_OPTIONS,
     lubricant: Lubricant,
     film_model: str = "newton",
-    film_options: Options = NO_OPTIONS,
+    film_options: ByName = NO_OPTIONS,
     kind: str = "tangent",
     pinion_speed: ArrayLike,
     pinion_torque: ArrayLike,

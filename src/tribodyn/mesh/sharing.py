@@ -27,7 +27,7 @@ from tribodyn.stiffness.loaded.face_problem import slice_stiffness
 from tribodyn.stiffness.loaded.problem import Equilibrium
 from tribodyn.stiffness.loaded.ramps import force_ramps, ramps_about
 from tribodyn.stiffness.model import usable_stiffness
-from tribodyn.types import Array, Mask, Options
+from tribodyn.types import Array, ByName, Mask
 
 #: Largest composite roughness that is a roughness and not a slip of the unit [m].
 _LARGEST_ROUGHNESS = 1e-4
@@ -50,12 +50,12 @@ class ToothContact:
     material: Material
     lubricant: Lubricant
     stiffness_model: str = "potential-energy"
-    stiffness_options: Options = field(default_factory=dict)
+    stiffness_options: ByName = field(default_factory=dict)
     composite_roughness: float = 0.0  #: [m]
     film_model: str = "none"
-    film_options: Options = field(default_factory=dict)
+    film_options: ByName = field(default_factory=dict)
     friction_law: str = "none"
-    friction_options: Options = field(default_factory=dict)
+    friction_options: ByName = field(default_factory=dict)
     bodies: tuple[float, float] = STEEL_BODIES  #: sqrt(k rho c) of both gears
 
     def __post_init__(self) -> None:

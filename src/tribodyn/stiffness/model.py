@@ -17,7 +17,7 @@ from tribodyn.gear import Material, SpurPair
 from tribodyn.model import Model, Registry, choice
 from tribodyn.stiffness.teeth.face_influence import FaceInfluence
 from tribodyn.stiffness.teeth.influence import GearInfluence
-from tribodyn.types import Array, Mask, Options
+from tribodyn.types import Array, ByName, Mask
 
 
 class MeshState(NamedTuple):
@@ -64,7 +64,7 @@ class StiffnessModel(Model):
 
     name: str
     function: Callable[..., Array]
-    options: Options
+    options: ByName
     influence: Callable[..., GearInfluence | FaceInfluence] | None = None
     over_face: bool = False
     external_only: bool = False

@@ -176,6 +176,10 @@ def test_an_unknown_figure_names_the_nearest(grid):
         ({"operation.speed": ("400", "500", 3)}, "unit"),
         ({"operation.speed": ("500 rpm", "400 rpm", 3)}, "Exchange the two ends"),
         ({"operation.speed": ("400 rpm", "500 rpm", 1)}, "at least two points"),
+        (
+            {"operation.speed": ("1 rpm", "2 rpm", "3 rpm")},
+            "3 rpm points.*a list has single values",
+        ),
         ({"operation.speed": ["400 rpm"]}, "1 value"),
         ({"operation.speed": "400 rpm"}, "a tuple, or a list"),
         ({"friction.law": ("none", "constant", 3)}, "no values in between"),

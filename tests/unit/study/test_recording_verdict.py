@@ -67,12 +67,25 @@ def test_the_zone_is_that_of_the_velocity_of_a_sine(millimetres: float, zone: st
     assert own.zone == "ABCD"[sum(millimetres > end for end in (1.0, 2.0, 3.0))]
 
 
+@pytest.mark.parametrize(
+    ("rating", "ends"), [("VR3.15", (2.0, 3.15, 5.0)), ("VR 5", (3.15, 5.0, 8.0)),
+                         ("VR20", (12.5, 20.0, 31.5))]
+)  # fmt: skip
+def test_a_rating_of_a_gear_unit_names_its_zones(rating: str, ends: tuple[float, ...]) -> None:
+    """Rows of table 3 of ISO 20816-9, whose rating is the end of zone B."""
+    for millimetres, zone in zip(
+        (0.99 * ends[0], *(1.01 * end for end in ends)), "ABCD", strict=True
+    ):
+        wave = 1e-3 * millimetres * math.sqrt(2.0) * np.cos(2.0 * np.pi * 80.0 * TIME)
+        assert judge_recordings([recorded(wave, "m/s")], limits=rating).zone == zone
+
+
 def test_a_severity_needs_an_acceleration_and_limits_that_rise() -> None:
     verdict = judge_recordings([recorded(np.cos(500.0 * TIME), "N")], limits="I")
     assert verdict.zone == ""
     assert "needs an acceleration or velocity" in verdict.statements[0]
-    for limits in ("V", [1e-3, 1e-3, 2e-3], [1e-3]):
-        with pytest.raises(InputError, match="a class of ISO 10816-1, or three velocities"):
+    for limits in ("V", "VR4", [1e-3, 1e-3, 2e-3], [1e-3]):
+        with pytest.raises(InputError, match="a class of ISO 10816-1, a rating of ISO 20816-9"):
             judge_recordings([recorded(np.cos(500.0 * TIME))], limits=limits)
     with pytest.raises(InputError, match="there is no analysis"):
         judge_recordings([])
@@ -104,6 +117,29 @@ def test_bearings_whose_lines_are_as_near_are_all_named(lines) -> None:
     verdict = judge_recordings([recorded(sound(lines) + struck(157.0))], lines)
     (finding,) = (each for each in verdict.findings if "bearing" in each.part)
     assert finding.part == "bearing D, inner ring, or bearing A, outer ring"
+
+
+def test_an_inner_ring_that_turns_through_the_load_names_no_other_bearing(lines) -> None:
+    """Its sidebands at the turns of the shaft lie at the rate of another ring."""
+    turns = frequency(lines, "shaft input", "f(input)")
+    ring = 0.9878 * frequency(lines, "bearing A", "BPFI")
+    other = frequency(lines, "bearing B", "BPFO")
+    assert abs(ring + turns - other) < 0.02 * other
+    load = np.maximum(0.0, 0.5 + 0.7 * np.cos(2.0 * np.pi * turns * TIME))
+    impacts = load * struck(ring, 12.0)
+    findings = judge_recordings([recorded(sound(lines) + impacts)], lines).findings
+    assert [each.part for each in findings if "bearing" in each.part] == ["bearing A, inner ring"]
+
+
+def test_bursts_at_the_edge_of_the_slip_are_named(lines) -> None:
+    """Noise that swells with the line of the spectrum which is just 2 % below the rate."""
+    ring, rate = frequency(lines, "bearing B", "BPFO"), 283.75
+    assert 0.98 * ring <= rate < ring / 1.02
+    swells = 1.0 + np.cos(2.0 * np.pi * rate * TIME) + 0.5 * np.cos(4.0 * np.pi * rate * TIME)
+    noise = np.random.default_rng(2).normal(0.0, 2.0, TIME.size)
+    (finding,) = judge_recordings([recorded(swells * noise)], lines).findings
+    assert finding.part == "bearing B, rolling elements, or bearing B, outer ring"
+    assert finding.frequency == rate
 
 
 @pytest.mark.parametrize("seed", range(4))

@@ -110,8 +110,9 @@ class Channel:
         Earlier recordings of the same channel in their order, "may.mat,june.mat": NA4, NA4* and NB4
         compare with them, and the verdict has their trend.
     limits : str
-        Class of the machine in ISO 10816-1, I to IV, or ends of the zones A, B and C of the
-        velocity, "2.8/4.5/7.1 mm/s", for its severity.
+        Class of the machine in ISO 10816-1, I to IV, rating of the gear unit in ISO 20816-9, VR3.15
+        to VR20, or ends of the zones A, B and C of the velocity, "2.8/4.5/7.1 mm/s", for its
+        severity.
     """
 
     channel: Text = None

@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike
 from tribodyn.errors import Argument, InputError, require_between, require_positive
 from tribodyn.model import NO_OPTIONS, Model, Registry, number
 from tribodyn.nomenclature import positive
-from tribodyn.types import Array, Options
+from tribodyn.types import Array, ByName
 
 #: Limiting stress ``tau_L0 + Lambda p``, which every model may have.
 LIMIT = {
@@ -33,7 +33,7 @@ class ShearModel(Model):
     name: str  #: name in the registry
     source: str  #: paper behind the model
     stress: Callable[..., tuple[Array, Array]] = field(repr=False)
-    options: Options = field(default_factory=lambda: NO_OPTIONS)  #: numbers of the oil
+    options: ByName = field(default_factory=lambda: NO_OPTIONS)  #: numbers of the oil
     meaning: str = ""  #: one line
     papers: tuple[str, ...] = ()  #: keys of the bibliography
     #: Logarithm of what a pressure step h dp/dx leaves of the viscosity; None for all of it.

@@ -25,7 +25,7 @@ from tribodyn.machine.planetary.positions import (
 )
 from tribodyn.machine.shaft import Shaft
 from tribodyn.nomenclature import require_whole
-from tribodyn.types import Array, Options
+from tribodyn.types import Array, ByName
 
 #: Largest error of a pin or a tooth over the module: beyond, it exceeds any usual backlash.
 LARGEST_ERROR = 0.1
@@ -121,14 +121,14 @@ class PlanetaryStage:
     pressure_angle: float = math.radians(20.0)
     angles: ArrayLike | None = None
     pin: Bearing | None = None
-    sun_mesh: Options = field(default_factory=dict)
-    ring_mesh: Options = field(default_factory=dict)
+    sun_mesh: ByName = field(default_factory=dict)
+    ring_mesh: ByName = field(default_factory=dict)
     sun_to_ring: float = 0.0
     pin_errors: ArrayLike = 0.0
     thickness_errors: ArrayLike = 0.0
     planet_type: PlanetType = "single"
     ring_planet: Gear | None = None
-    planet_mesh: Options = field(default_factory=dict)
+    planet_mesh: ByName = field(default_factory=dict)
     sun_to_planet: float = 0.0
     ring_center_distance: float | None = None
     pair_center_distance: float | None = None

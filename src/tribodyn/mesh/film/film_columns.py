@@ -21,7 +21,7 @@ from tribodyn.mesh.columns import FILM_COLUMNS
 from tribodyn.mesh.face_lines import slice_count
 from tribodyn.mesh.table import MeshTable
 from tribodyn.model import NO_OPTIONS
-from tribodyn.types import Array, Mask, Options
+from tribodyn.types import Array, ByName, Mask
 
 if TYPE_CHECKING:
     from tribodyn.ehl import RoughnessProfile, TransientLineContact
@@ -36,7 +36,7 @@ def film_columns(
     lubricant: Lubricant,
     *,
     common_face_width: float = 1.0,
-    film_options: Options = NO_OPTIONS,
+    film_options: ByName = NO_OPTIONS,
 ) -> dict[str, Array]:
     """Films of the loaded contacts, as far as the model gives them; each contact separately.
 
@@ -144,7 +144,7 @@ def warn_of_loaded(compute: Callable[[], Answer], again: Callable[[], object]) -
 
 
 def friction_by_law(
-    law: str, contact: TribologicalContact, options: Options
+    law: str, contact: TribologicalContact, options: ByName
 ) -> Array | FrictionParts:
     """Friction of every contact; warn where a real part of the load is outside of the law."""
     load = np.asarray(contact.load_per_width)

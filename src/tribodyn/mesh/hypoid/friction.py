@@ -21,7 +21,7 @@ from tribodyn.mesh.table import MeshTable
 from tribodyn.model import NO_OPTIONS
 from tribodyn.nomenclature import require_number
 from tribodyn.record import Record, fact, figure_method, from_parts, quantity, record
-from tribodyn.types import Array, Mask, Options
+from tribodyn.types import Array, ByName, Mask
 
 _PHASES, _CELLS = ("phase",), ("phase", "pair", "cell")
 
@@ -154,9 +154,9 @@ def hypoid_friction(
     lubricant: Lubricant,
     composite_roughness: float,
     friction_law: str = "mixed-ehl",
-    friction_options: Options = NO_OPTIONS,
+    friction_options: ByName = NO_OPTIONS,
     film_model: str = ELLIPTICAL,
-    film_options: Options = NO_OPTIONS,
+    film_options: ByName = NO_OPTIONS,
     entrainment: str = "contact",
 ) -> HypoidFriction:
     """Film and friction in every cell of a hypoid pair under load.

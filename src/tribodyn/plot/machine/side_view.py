@@ -33,6 +33,8 @@ _TEETH = (-0.66, -0.22, 0.22, 0.66)
 _UPRIGHT = 0.7
 #: Distance of names that are drawn as one [px], and that along the axis of names of shafts.
 _NEAR = (4.0, 70.0)
+#: Room right of the last part, over the length of the machine; names give it on the left.
+_MARGIN = 0.04
 STEEL_COLOR, SEAT_COLOR = "#c9d1d9", "#f3e3c3"
 
 
@@ -382,6 +384,9 @@ def machine(machine: Machine) -> Sketch:
         f"{rounded('speed', abs(run.speed))} and {rounded('torque', abs(run.torque))} in, "
         f"{rounded('speed', abs(shafts[run.output].speed))} out: ratio {ratio:.4g}"
     )
+    places = np.concatenate([np.asarray(trace["x"], dtype=float) for trace in traces])
+    right_end = np.nanmax(places) + _MARGIN * np.ptp(places[np.isfinite(places)])
+    traces.append(strokes([right_end], [0.0], INK, showlegend=False))
     x = axis("Along the shafts [mm]", zeroline=False, constrain="domain")
     y = axis("Across [mm]", scaleanchor="x", scaleratio=1.0)
     return plane_figure(title, traces, x, y, height=520, annotations=_names(view))

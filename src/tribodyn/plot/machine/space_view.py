@@ -277,5 +277,5 @@ def machine_space(machine: Machine | MachineModes) -> Sketch:
     scene |= {"aspectmode": "data", "camera": {"eye": {"x": -1.5, "y": -1.3, "z": 0.9}}}
     menu = choice([label for label, *_ in choices], [title for _, title, _ in choices], visible, 0)
     layout: Trace = {"height": 560, "scene": scene, "hovermode": "closest", "updatemenus": [menu]}
-    layout |= {"margin": {"l": 10, "r": 10, "t": 74, "b": 10}}
+    layout |= {"margin": {"l": 10, "r": 10, "t": 74, "b": 10}, "uirevision": "turned by the user"}
     return figure(choices[0][1], traces, layout)

@@ -37,7 +37,7 @@ from tribodyn.stiffness.loaded.problem import (
 )
 from tribodyn.stiffness.loaded.result import LoadedContact
 from tribodyn.stiffness.model import MODELS, StiffnessModel, usable_stiffness
-from tribodyn.types import Array, Mask, Options
+from tribodyn.types import Array, ByName, Mask
 
 
 def compliance_of(
@@ -46,7 +46,7 @@ def compliance_of(
     places: ContactPlaces,
     total_force: float,
     model: StiffnessModel,
-    options: Options = NO_OPTIONS,
+    options: ByName = NO_OPTIONS,
 ) -> Compliance:
     """Compliance of the teeth at given places by a named model."""
     if model.influence is not None:
@@ -68,7 +68,7 @@ def contact_problem(
     total_force: float,
     extended_contact: bool = True,
     material: Material,
-    options: Options = NO_OPTIONS,
+    options: ByName = NO_OPTIONS,
     slices: int | None = None,
 ) -> ContactProblem:
     """Prepare the loaded tooth contact at given mesh phases.
@@ -123,7 +123,7 @@ def mesh_problem(
     total_force: float,
     extended_contact: bool,
     material: Material,
-    options: Options = NO_OPTIONS,
+    options: ByName = NO_OPTIONS,
 ) -> ContactProblem:
     """Prepare the loaded tooth contact on the knots of a mesh table, one-sided at its events.
 
@@ -183,7 +183,7 @@ def contact_settings(
     reference: str | None,
     material: Material | None,
     slices: int | None,
-    options: Options,
+    options: ByName,
 ) -> dict[str, Any]:
     """Arguments of :func:`contact_problem` but for the pair and its load."""
     takes_reference = reference is not None and "reference" in MODELS[provider].options
@@ -218,7 +218,7 @@ def loaded_contact(
     material: Material | None = None,
     film_stiffness: ArrayLike | None = None,
     slices: int | None = None,
-    options: Options = NO_OPTIONS,
+    options: ByName = NO_OPTIONS,
 ) -> LoadedContact:
     """Find load sharing, transmission error and stiffness of a mesh under a torque.
 
@@ -356,7 +356,7 @@ _EVEN: dict[str, Any] = {
 }
 
 
-def body_share(pair: SpurPair, torque: float, *, options: Options, **settings: Any) -> float:
+def body_share(pair: SpurPair, torque: float, *, options: ByName, **settings: Any) -> float:
     """Part of the mean deflection under a torque that lies between the rim and the bore."""
     key = (pair, torque, tuple(settings.items()), tuple(sorted(options.items())))
     try:

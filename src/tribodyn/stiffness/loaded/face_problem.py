@@ -25,11 +25,11 @@ from tribodyn.stiffness.loaded.problem import (
 from tribodyn.stiffness.model import StiffnessModel, usable_stiffness
 from tribodyn.stiffness.teeth.face_influence import FaceInfluence
 from tribodyn.stiffness.teeth.influence import GearInfluence
-from tribodyn.types import Array, Options
+from tribodyn.types import Array, ByName
 
 
 def gear_influences(
-    pair: SpurPair, material: Material, model: StiffnessModel, options: Options
+    pair: SpurPair, material: Material, model: StiffnessModel, options: ByName
 ) -> tuple[Any, Any]:
     """Structure of pinion and wheel by a model that knows it, the same under every load."""
     model.require_known_teeth(pair)
@@ -65,7 +65,7 @@ def sliced_problem(
     contacts: FaceContacts,
     total_force: float,
     model: StiffnessModel,
-    options: Options,
+    options: ByName,
     *,
     teeth_alike: bool = False,
 ) -> ContactProblem:
@@ -140,7 +140,7 @@ def slice_stiffness(
     material: Material,
     contacts: FaceContacts,
     normal_force: float,
-    options: Options,
+    options: ByName,
 ) -> Array:
     """Stiffness of each slice by a model of pairs, as that part of a spur pair (p, c)."""
     count, stiffness = contacts.slices, np.zeros(contacts.path.shape)
@@ -163,7 +163,7 @@ def face_compliance(
     places: ContactPlaces,
     total_force: float,
     model: StiffnessModel,
-    options: Options,
+    options: ByName,
 ) -> Compliance:
     """Compliance of all slices by a named model."""
     if model.influence is None:

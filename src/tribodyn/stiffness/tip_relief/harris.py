@@ -18,7 +18,7 @@ from tribodyn.record import Labels, Record, fact, quantity, record
 from tribodyn.stiffness.loaded import LoadedContact, loaded_contact
 from tribodyn.stiffness.loaded.problem import mesh_period, slice_widths
 from tribodyn.stiffness.loaded.result import harmonic_amplitudes
-from tribodyn.types import Array, Index, Options
+from tribodyn.types import Array, ByName, Index
 
 #: Loads of single pairs in single slices that are held in memory at the same time.
 _AT_ONCE = 4_000_000
@@ -143,7 +143,7 @@ def transmission_error_over_torque(
     reference: str | None = None,
     material: Material | None = None,
     slices: int | None = None,
-    options: Options = NO_OPTIONS,
+    options: ByName = NO_OPTIONS,
 ) -> HarrisMap:
     """Find the static transmission error of a mesh over phase and torque (Harris map).
 

@@ -21,7 +21,7 @@ from tribodyn.stiffness.loaded.contact import contact_problem, contact_settings
 from tribodyn.stiffness.loaded.problem import ContactProblem
 from tribodyn.stiffness.model import MODELS
 from tribodyn.stiffness.tip_relief.search import torques_and_weights
-from tribodyn.types import Array, Options
+from tribodyn.types import Array, ByName
 
 #: Mesh phases of a search.
 _PHASES = 8
@@ -109,7 +109,7 @@ def optimize_lead(
     reference: str | None = None,
     material: Material | None = None,
     slices: int = SLICES,
-    options: Options = NO_OPTIONS,
+    options: ByName = NO_OPTIONS,
     progress: Progress = SILENT,
 ) -> LeadOptimum:
     """Find the crowning and the slope that spread the load most evenly over torques.

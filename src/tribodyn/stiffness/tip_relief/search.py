@@ -29,7 +29,7 @@ from tribodyn.stiffness.loaded.face_problem import has_slices
 from tribodyn.stiffness.loaded.problem import ContactProblem, mesh_period, slice_widths
 from tribodyn.stiffness.model import MODELS
 from tribodyn.stiffness.tip_relief.minimum import least_point
-from tribodyn.types import Array, Options
+from tribodyn.types import Array, ByName
 
 
 @record
@@ -320,7 +320,7 @@ def optimize_tip_relief(
     reference: str | None = None,
     material: Material | None = None,
     slices: int | None = None,
-    options: Options = NO_OPTIONS,
+    options: ByName = NO_OPTIONS,
     digits: int | None = None,
 ) -> TipReliefOptimum:
     """Find the tip relief that leaves least transmission error over a range of torques.

@@ -332,7 +332,7 @@ def _value_text(spec: Option | None, value: object) -> str:
 def case_table(case: Case) -> str:
     """Format the case as a table with units, one row for each effective value."""
     rows = case_rows(case)
-    widths = [max(len(row[column]) for row in rows) for column in range(2)]
+    widths = [min(max(len(row[column]) for row in rows), 48) for column in range(2)]
     head = f"Case: {case.title}"
     body = [f"  {k:<{widths[0]}}  {v:<{widths[1]}}  {origin}" for k, v, origin in rows]
     return "\n".join([head, *(line.rstrip() for line in body)])

@@ -18,11 +18,18 @@ from tribodyn.study.frequencies import KinematicFrequencies
 from tribodyn.types import Array
 
 #: Upper ends of the zones A, B and C by class of machine [m/s]: ISO 10816-1:1995, table B.1.
-ZONES = {
+ZONES: dict[str, tuple[float, ...]] = {
     "I": (0.71e-3, 1.8e-3, 4.5e-3),
     "II": (1.12e-3, 2.8e-3, 7.1e-3),
     "III": (1.8e-3, 4.5e-3, 11.2e-3),
     "IV": (2.8e-3, 7.1e-3, 18.0e-3),
+}
+#: Ratings of gear units in ISO 20816-9:2020, table 3: ends of zone B between its neighbours [mm/s].
+#: From a public copy of the table, not compared with the standard itself.
+_RATINGS = (2.0, 3.15, 5.0, 8.0, 12.5, 20.0, 31.5)
+ZONES |= {
+    f"VR{ends[1]:g}": tuple(1e-3 * end for end in ends)
+    for ends in zip(_RATINGS, _RATINGS[1:], _RATINGS[2:], strict=False)
 }
 _MEANINGS = {
     "A": "as of a newly commissioned machine",
@@ -153,8 +160,8 @@ def judge_recordings(
         scaled to the speed of each recording: by its mesh frequency where that is known, else by
         the mesh lines in its signal.
     limits : str or sequence of three float, optional
-        Class of the machine in ISO 10816-1, ``"I"`` to ``"IV"``, or upper ends of the zones A, B
-        and C [m/s], such as those agreed after ISO 20816-9.
+        Class of the machine in ISO 10816-1, ``"I"`` to ``"IV"``, rating of the gear unit in
+        ISO 20816-9, ``"VR3.15"`` to ``"VR20"``, or upper ends of the zones A, B and C [m/s].
 
     Returns
     -------
@@ -209,9 +216,10 @@ def _ends(limits: str | Sequence[float] | None) -> tuple[float, ...]:
     """Upper ends of the zones A, B and C."""
     if limits is None:
         return ()
-    ends = ZONES.get(limits, ()) if isinstance(limits, str) else tuple(map(float, limits))
+    named = limits.replace(" ", "") if isinstance(limits, str) else ""
+    ends = ZONES.get(named, ()) if isinstance(limits, str) else tuple(map(float, limits))
     if len(ends) != 3 or not 0.0 < ends[0] < ends[1] < ends[2]:
-        why = "It is a class of ISO 10816-1, or three velocities that rise"
+        why = "It is a class of ISO 10816-1, a rating of ISO 20816-9, or three velocities that rise"
         remedy = f"Write one of {', '.join(ZONES)}, or the ends of the zones A, B and C in m/s"
         raise InputError(f"limits = {limits!r}", Argument("limits"), why, remedy)
     return ends
@@ -288,22 +296,35 @@ def _impacts(
 ) -> Iterator[Finding]:
     """Parts that strike: one finding for each rate, with all parts that it may belong to."""
     rates = list(_rates(lines))
+    turns = [
+        f * scales[-1]
+        for s, f in zip(lines.symbol, lines.frequency, strict=True)
+        if _kind(s) == "f"
+    ]
     for band, of_band in enumerate(bursts[-1]):
         exact = _exact_lines(lines, of_band, scales[-1])
         reach, peaks = _LOBE * float(of_band.frequency[1]), list[float]()
         clear: list[tuple[float, str]] = []
+        inner = list[tuple[float, float]]()
         for _, kind, rate in rates:
             peak, evidence = _bursts(of_band, rate * scales[-1], _within(kind), exact)
+            if evidence and kind == "BPFI":
+                inner.append((peak, _line(of_band, peak, 0.0).amplitude))
             if evidence and all(abs(peak - other) > reach for other, _ in clear):
                 clear.append((peak, evidence))
         for peak, evidence in sorted(clear):
             if any(abs(peak - round(peak / p) * p) <= reach * peak / p for p in peaks):
                 continue  # a harmonic of a lower rate
+            size = _line(of_band, peak, 0.0).amplitude
+            if any(abs(abs(peak - p) - f) <= reach for p, a in inner if a > size for f in turns):
+                continue  # a sideband of a defect that turns through the load
             peaks.append(peak)
+            within = [max(_within(kind) * rate * scales[-1], reach) for _, kind, rate in rates]
             candidates = [
-                row for row in rates
-                if abs(row[2] * scales[-1] - peak) <= max(_within(row[1]) * peak, reach)
-            ]  # fmt: skip
+                row
+                for row, width in zip(rates, within, strict=True)
+                if abs(row[2] * scales[-1] - peak) <= width
+            ]
             candidates.sort(key=lambda row: abs(row[2] * scales[-1] - peak))
             history = tuple(
                 _line(each[band], candidates[0][2] * scale, _within(candidates[0][1])).amplitude

@@ -156,10 +156,7 @@ def warn_of_period(machine: Machine, memory: float = math.inf) -> None:
     turning = longer > 1 or any(mesh.period > 1 for mesh in machine.meshes.values())
     reason, remedy = (
         "the teeth have few common factors",
-        (
-            'Set solver.phases = "auto", which finds the motion without a common period; bearings '
-            "with a clearance need the period"
-        ),
+        'Set solver.phases = "auto", which finds the motion without a common period',
     )
     if turning:
         reason = "unequal teeth repeat with whole turns of their gears"

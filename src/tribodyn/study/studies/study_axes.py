@@ -202,8 +202,10 @@ def read_axis(case: AnyCase, key: str, entry: object, by: str) -> Axis:
 
 def _range(case: AnyCase, key: str, entry: tuple[Any, ...], by: str) -> tuple[float, ...]:
     first, last, points = entry
-    if isinstance(points, bool) or int(points) != points or points < 2:
+    if isinstance(points, bool | str) or int(points) != points or points < 2:
         why = "A range has at least two points, both ends included"
+        if isinstance(points, str):
+            why = "A tuple is (first, last, points); a list has single values"
         what = f"{key} has {points} point{'s' if points != 1 else ''}"
         raise InputError(what, _location(by), why, _example(by))
     _check_number(int(points), by)
