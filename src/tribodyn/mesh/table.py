@@ -218,10 +218,11 @@ class MeshTable(MeshColumns):
         Returns
         -------
         float or None
-            The pair carries its own part of the load at that phase. A slice in the middle of the
-            face represents its pair: forces and stiffnesses are those of the whole face. Where
-            another pair enters or leaves at the same time, the value after that; ``None`` where
-            the pitch point is outside of the contact, or there is no such column in this table.
+            The pair carries its own part of the load at that phase. The slice in the middle of the
+            face represents its pair, or the mean of the two in the middle of an even number: forces
+            and stiffnesses are those of the whole face. Where another pair enters or leaves at the
+            same time, the value after that; ``None`` where the pitch point is outside of the
+            contact, or there is no such column in this table.
         """
         age = None if self.gears is None else self.gears.pitch_point_age
         values = getattr(self, column, None)
@@ -229,9 +230,11 @@ class MeshTable(MeshColumns):
             return None
         if self.face_position is not None:
             slices = slice_count(self)
-            age += self.gears.entry_delay(slices)[slices // 2]
-            at = float(self.at(column, age % 1.0)[int(age) * slices + slices // 2])
-            return at * slices if column in SUMMED else at
+            middle = np.unique([(slices - 1) // 2, slices // 2])
+            ages = age + self.gears.entry_delay(slices)[middle]
+            pairs = slices * ages.astype(int) + middle
+            at = np.mean([self.at(column, a % 1.0)[p] for a, p in zip(ages, pairs, strict=True)])
+            return float(at * slices if column in SUMMED else at)
         # The event that is nearest: its phase and this one may differ by rounding.
         phases = np.array(self.event_phases)
         event = int(np.argmin(np.abs((phases - age + 0.5) % 1.0 - 0.5)))

@@ -87,6 +87,16 @@ def test_a_right_hand_pinion_enters_at_the_far_end_of_its_axis():
         assert np.sign(contacts.face_position[:10][youngest > 0.0]).tolist() == [end]
 
 
+def test_the_middle_of_the_face_is_that_of_a_mirrored_pair():
+    """The load falls across the face: neither of the two slices in the middle stands for it."""
+    pairs = [
+        helical(hand=hand, misalignment=sign * 20e-6) for hand, sign in (("right", 1), ("left", -1))
+    ]
+    one, other = (table(pair, stiffness_model="iso6336", steps=64) for pair in pairs)
+    for name in ("hertz_pressure", "load_per_width", "central_film", "film_stiffness", "path"):
+        assert one.at_pitch_point(name) == pytest.approx(other.at_pitch_point(name), rel=1e-9)
+
+
 @pytest.mark.parametrize("model", ["fe2d", "potential-energy", "iso6336", "weber"])
 def test_a_vanishing_helix_angle_gives_the_spur_pair(model):
     options = {"stiffness_options": {"extended_contact": False}} if model == "fe2d" else {}
