@@ -107,7 +107,7 @@ def _helix_factor(mesh: MeshLoad) -> float:
     return mesh.factors.record("Y_beta", value, f"{PART_3}, helix angle factor", branch=branch)
 
 
-def _rim_factor(gear: CylindricalGear, name: str) -> tuple[float, str, str]:
+def rim_factor(gear: CylindricalGear, name: str) -> tuple[float, str, str]:
     """Y_B, its rule and source."""
     height = abs(gear.tip_radius - gear.root_radius)
     rim = abs(gear.rim_radius - gear.root_radius)
@@ -170,7 +170,7 @@ def record_root_stress(mesh: MeshLoad, index: int, factors: Factors) -> float:
     if "Y_B" in factors.replacements:
         y_b = record("Y_B", 1.0, f"{PART_3}, rim factor")
     else:
-        y_b, rule, source = _rim_factor(gear, ("pinion", "wheel")[index])
+        y_b, rule, source = rim_factor(gear, ("pinion", "wheel")[index])
         y_b = record("Y_B", y_b, f"{source}, rim factor", branch=rule)
     y_dt, rule = _deep_tooth_factor(mesh, ratio, rated.grade)
     y_dt = record("Y_DT", y_dt, f"{PART_3}, deep tooth factor", branch=rule)

@@ -132,6 +132,8 @@ class _Envelope:
             return half - rho / base - (roll - math.atan(roll))
 
         low, rho = 0.0, cutter.tip_radius_coefficient
+        if angle_at(low) < 0.0:
+            raise _refused(cutter, "Its teeth end in a point before their tip")
         if angle_at(rho) < 0.0:  # the full round is smaller
             rho = brentq(angle_at, low, rho, xtol=1e-15)
         self.rho, self.center, self.angle = rho, tip - rho, max(angle_at(rho), 0.0)
@@ -152,6 +154,13 @@ class _Envelope:
         return radius * math.cos(angle), radius * math.sin(angle), normal
 
 
+def _refused(cutter: ShaperCutter, why: str) -> InputError:
+    """Error of a cutter that cannot cut the root."""
+    what = f"cutter of {cutter.teeth} teeth with x_0 = {cutter.profile_shift_coefficient:g}"
+    remedy = "Check the number of teeth, shift and tip radius of the cutter"
+    return InputError(what, Argument("cutter"), why, remedy)
+
+
 def cutter_section(gear: CylindricalGear, cutter: ShaperCutter) -> RootSection:
     """Section cut by a gear-shaped cutter: exact envelope of its tip round."""
     from scipy.optimize import brentq
@@ -166,12 +175,8 @@ def cutter_section(gear: CylindricalGear, cutter: ShaperCutter) -> RootSection:
     last = 0.5 * math.pi - gear.normal_pressure_angle  # where the flank of the cutter begins
     reaches = envelope.center > envelope.cutter_pitch
     if not reaches or difference(0.0) * difference(last) > 0.0:
-        raise InputError(
-            f"cutter of {cutter.teeth} teeth with x_0 = {cutter.profile_shift_coefficient:g}",
-            where=Argument("cutter"),
-            why="Its tip round leaves no fillet with a tangent as the critical section has it",
-            remedy="Check the number of teeth, shift and tip radius of the cutter",
-        )
+        why = "Its tip round leaves no fillet with a tangent as the critical section has it"
+        raise _refused(cutter, why)
     root = brentq(difference, 0.0, last, xtol=1e-15)
     x, y, _ = envelope.point(root)
     before, after = envelope.point(root - 1e-4), envelope.point(root + 1e-4)

@@ -276,6 +276,14 @@ def test_report_and_page_have_verdict_and_factors(result):
     assert content["sentences"]
 
 
+def wheel(**keys: Any) -> dict[str, Any]:
+    return {"gears": {**PAIR["gears"], "wheel": {**PAIR["gears"]["wheel"], **keys}}}
+
+
+def cut(shift: float) -> dict[str, Any]:
+    return wheel(cutter={"teeth": 16, "profile_shift_coefficient": shift})
+
+
 @pytest.mark.parametrize(
     ("tables", "text"),
     [
@@ -284,6 +292,13 @@ def test_report_and_page_have_verdict_and_factors(result):
         ({"materials": {"steel": {"hardness": 900.0}}}, "660 to 800 HV"),
         ({"materials": {"steel": {"kind": "V"}}}, "hardness is missing"),
         ({"materials": {"steel": {"kind": "Stahl"}}}, "GGG"),
+        (
+            {"materials": {"steel": {"kind": "V", "hardness": 300.0}}},
+            "materials.steel.yield_strength: yield_strength of V is missing",
+        ),
+        (wheel(bore_diameter=94e-3), "gears.wheel.bore_diameter: rim of"),
+        (cut(-1.9), "gears.wheel.cutter: cutter of 16 teeth .* leaves no fillet"),
+        (cut(1.0), "gears.wheel.cutter: cutter of 16 teeth .* end in a point"),
         ({"rating": None}, "materials has no effect"),
         ({"lubricant": None}, "viscosity at 40 degC"),
         (

@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
-from tribodyn.errors import InputError, Problem, did_you_mean
+from tribodyn.errors import InputError, Problem, collected, did_you_mean
 from tribodyn.model import REQUIRED, choice, file_path, flag, integer, number, numbers, text
 from tribodyn.study.case.section import NamedTables, Section, table
 
@@ -364,6 +364,9 @@ def _viscosity_problems(oil: LubricantData, at_40: float | None) -> Iterator[tup
 
 def rating_problems(case: PairCase) -> Iterator[tuple[str, Problem]]:
     """Problems of materials and of the rating, by dotted key."""
+    from tribodyn.rating.bending import rim_factor, slip_layer
+    from tribodyn.rating.root_section import root_section
+
     names = [] if case.materials is None else [n for n in vars(case.materials) if n[0] != "_"]
     if case.rating is None:
         if names:
@@ -406,11 +409,16 @@ def rating_problems(case: PairCase) -> Iterator[tuple[str, Problem]]:
             remedy = did_you_mean(name, names, f"Add [materials.{name}]")
             yield f"gears.{role}.material", Problem(what, "", why, remedy)
             continue
-        if role == "wheel" and name == materials[0]:
-            continue  # reported with the pinion
         try:
-            gear_material(case, role)
+            with collected():
+                if role == "pinion" or name != materials[0]:  # reported with the pinion
+                    slip_layer(gear_material(case, role))
+                gear = getattr(case.gear_pair, role)
+                root_section(gear, shaper_cutter(case, role), case.rating.edition)
+                rim_factor(gear, role)
         except InputError as error:
             for problem in error.problems:
                 key = getattr(problem.where, "name", "")
-                yield f"materials.{name}.{key}".rstrip("."), problem
+                of_gear = key in getattr(case.gears, role).fields
+                table = f"gears.{role}" if of_gear else f"materials.{name}"
+                yield f"{table}.{key}".rstrip("."), problem
