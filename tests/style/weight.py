@@ -120,7 +120,9 @@ __all__ = ["ANY", "FILES", "LINES", "import_circles", "lines_of_code", "measures
 #: study: dynamic transmission error of each mesh of a machine, as pairs have it
 #: nomenclature: help starts sooner, without gears and models of contact
 #: study: fast changes of numbers of tables alone
-#: notebook, study: unknown attributes end at the user's line; ratings of ISO 20816-9; sidebands
+#: slow pairs by harmonic balance
+#: solver.engine of every kind: harmonic balance of pairs and a choice by fitness
+#: machines: oil where meshes have a constant stiffness; roots that a rating does not cover
 LINES: dict[str, int] = {
     "__init__": 24,
     "__main__": 3,
@@ -150,20 +152,20 @@ LINES: dict[str, int] = {
     "machine": 5597,
     "measurement": 3423,
     "members": 3,
-    "mesh": 5561,
+    "mesh": 5563,
     "model": 229,
     "nomenclature": 98,
     "notebook": 63,
     "nonlinear": 2570,
     "plot": 8626,
     "progress": 72,
-    "rating": 2889,
+    "rating": 2891,
     "record": 213,
     "report": 1742,
     "scope": 55,
     "signals": 1772,
     "stiffness": 5330,
-    "study": 20088,
+    "study": 20099,
     "surrogate": 767,
     "types": 13,
     "uncertainty": 291,

@@ -126,6 +126,33 @@ def test_a_shaft_dips_all_its_gears_into_one_bath_and_each_bearing_has_its_own_l
     assert figures["machine.bearing_power_loss"] == pytest.approx(speed * sum(moments), rel=1e-9)
 
 
+@pytest.mark.parametrize("heat", [{}, {"heat_transfer": "3 W/K"}])
+def test_meshes_of_constant_stiffness_leave_the_losses_of_bearings_and_bath(
+    heat: dict[str, str],
+) -> None:
+    """Oil is that of bearings and bath: 90 N m on a base radius of 28.19 mm, half to each side."""
+    stiff = machine({**OIL, **heat}, 41, "4e8 N/m").data
+    meshes = {"m": {"gears": ["a", "b"], "normal_module": "3 mm", "stiffness": "4e8 N/m"}}
+    gears = {name: {k: v for k, v in each.items() if k != "roughness_ra"}
+             for name, each in stiff["gears"].items()}  # fmt: skip
+    data = {k: v for k, v in stiff.items() if k not in MODELS} | {"meshes": meshes, "gears": gears}
+    result = td.run(MachineCase(**data))
+    figures = result.summary()
+    warm = figures.get("machine.oil_temperature", 333.15)
+    oil = lubricant(result.case.oil, warm)
+    force, speeds = 0.5 * 90.0 / (0.03 * np.cos(np.radians(20.0))), (157.0796, 157.0796 * 20 / 41)
+    extra = {"drag_factor": 0.001, "oil_level": 10e-3}
+    lost = sum(
+        2.0 * speed * bearing_moments(
+            BEARINGS[kind], speed, oil.kinematic_viscosity, force, **options
+        ).total
+        for speed, kind, options in zip(speeds, ("NJ 406", "6306"), ({}, extra), strict=True)
+    )  # fmt: skip
+    assert figures["machine.bearing_power_loss"] == pytest.approx(lost, rel=1e-6)
+    if heat:
+        assert 3.0 * (warm - 293.15) == pytest.approx(figures["machine.total_power_loss"], rel=1e-6)
+
+
 def test_bearings_of_helical_gears_lose_by_their_thrust_as_well() -> None:
     case = td.load_case("two-stage-helical").replace({"losses.shafts.input.bearing": "6308"})
     load = case.operating_point

@@ -83,6 +83,16 @@ def test_bearings_live_as_long_as_the_closed_form_says(result, rating):
     assert "no oil" in rating.bearings["A"].reason
 
 
+def test_oil_modifies_the_life_where_no_teeth_are_computed(rating):
+    """nu_1 = 4500/sqrt(3000 rpm)/sqrt(72.5 mm); the oil has 18.75 mm2/s at 100 degC."""
+    oil = {"lubricant.name": "ISO VG 220", "lubricant.temperature": "100 degC"}
+    bearing = td.run(case(**oil)).rating.bearings["A"]
+    (under,) = bearing.lives
+    assert under.factors["kappa"] == pytest.approx(18.75 / 9.6490, rel=1e-4)
+    assert bearing.modified_life == pytest.approx(under.factors["a_ISO"] * bearing.basic_life)
+    assert rating.bearings["A"].modified_life is None
+
+
 def test_a_notch_has_the_stress_of_a_beam_on_two_supports(result, rating):
     notch = ShaftNotch(diameter=0.04, large_diameter=0.05, radius=2e-3)
     steel = ShaftMaterial(tensile_strength=900e6, yield_strength=700e6)

@@ -190,7 +190,8 @@ def _viscosity(case: MachineCase, load: LoadResult) -> float | None:
         oil = read_teeth(case, mesh, teeth_under(case, mesh, load.load))[0].lubricant
         if oil is not None:
             return float(lubricant(oil).kinematic_viscosity)
-    return None
+    oil = case.oil
+    return None if oil is None else lubricant(oil, load.load.temperature).kinematic_viscosity
 
 
 def _notch(load: LoadResult, names: tuple[str, str, str], rated: Any) -> NotchRating:

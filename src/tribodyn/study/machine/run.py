@@ -181,6 +181,7 @@ def balanced_machine(
     coupling = "none" if rehearsal else case.solver.coupling
     names = case.meshes_with_teeth if heat is not None else ()
     oils = [read_teeth(case, n, teeth_under(case, n, load))[0].lubricant for n in names]
+    oils += [case.heat] if case.heat is not None and not names else []
     try:
         settled = settle(start, coupling, case.solver.coupling_tolerance, heat, oils)
     except ComputationError as error:

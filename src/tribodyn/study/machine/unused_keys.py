@@ -99,10 +99,10 @@ def _catalogues(data: Mapping[str, Any]) -> Iterator[tuple[str, Mapping[str, Any
             yield f"{group}.{name}", body, prefix
 
 
-def rates_parts(data: Mapping[str, Any]) -> bool:
+def rates_parts(data: Mapping[str, Any], *, shafts: bool = True) -> bool:
     """Whether bearings have a dynamic load rating, or shafts have notches."""
     listed = [body.get(f"{prefix}dynamic_load_rating") for _, body, prefix in _catalogues(data)]
-    listed += [body.get("notches") for body in _tables(data, "shafts").values()]
+    listed += [body.get("notches") for body in _tables(data, "shafts").values() if shafts]
     return any(value is not None for value in listed)
 
 
@@ -217,6 +217,8 @@ def _constant_meshes(data: Mapping[str, Any]) -> KeyedProblems:
         teeth = ["lubricant", "film", "stiffness", "friction", "materials", "rating"]
         if rates_parts(data):
             teeth.remove("rating")
+        if _is_set(data, "losses") or rates_parts(data, shafts=False):
+            teeth.remove("lubricant")
         yield from _refused("", data, teeth, why, remedy)
         coupling = ("coupling", "coupling_tolerance")
         yield from _refused("solver", data.get("solver"), coupling, why, remedy)
