@@ -150,6 +150,20 @@ def test_sound_machines_and_noise_name_no_bearing_and_no_gear(lines, seed: int) 
         assert [f.part for f in findings if not f.part.startswith("mesh")] == []
 
 
+def test_computed_recordings_without_noise_name_no_bearing(lines) -> None:
+    """Meshes up to half the sampling rate over an eccentric shaft whose tooth is cracked."""
+    middle = frequency(lines, "shaft middle", "f(middle)")
+    tones = np.zeros(TIME.size)
+    for part in ("mesh first", "mesh second"):
+        mesh = frequency(lines, part, "GMF")
+        for k in range(1, int(0.49 * RATE / mesh)):
+            tones += 3.0 / k**1.5 * np.cos(2.0 * np.pi * k * mesh * TIME + k**2)
+    turn = middle * TIME % 1.0
+    signal = tones * (1.0 + 0.02 * np.cos(2.0 * np.pi * turn)) + np.exp(-((turn - 0.5) ** 2) / 1e-4)
+    findings = judge_recordings([recorded(signal)], lines).findings
+    assert [each.part for each in findings if "bearing" in each.part] == []
+
+
 def test_sidebands_name_the_gear_and_a_strong_turn_its_shaft(lines) -> None:
     mesh = 2.0 * np.pi * frequency(lines, "mesh first", "GMF") * TIME
     middle = 2.0 * np.pi * frequency(lines, "shaft middle", "f(middle)") * TIME

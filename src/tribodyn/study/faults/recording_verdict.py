@@ -41,6 +41,8 @@ _MEANINGS = {
 _BAND, _CHANGE = (10.0, 1000.0), 0.25
 #: Amplitude of a line over the median about it, which noise exceeds once in 3e7 lines.
 _CLEAR = 5.0
+#: Depth of a modulation from which it is taken for impacts: noise of a minute has lines as deep.
+_DEPTH = 5e-3
 #: Deviation of lines that follow from teeth, and of bearings, which slip.
 _EXACT, _SLIP = 1e-3, 0.02
 #: Lines of a spectrum in the main lobe of its window on each side, and those of the noise about it.
@@ -244,7 +246,7 @@ class _Line(NamedTuple):
 
 
 def _line(lines: SignalSpectrum, frequency: float, within: float) -> _Line:
-    """Largest line near a frequency."""
+    """Largest line near a frequency; none is clear where all are the skirt of one beside them."""
     step = lines.frequency[1] - lines.frequency[0]
     reach = max(within * frequency, _LOBE * step)
     distance = np.abs(lines.frequency - frequency)
@@ -253,7 +255,8 @@ def _line(lines: SignalSpectrum, frequency: float, within: float) -> _Line:
         return _Line(frequency, 0.0, 0.0)
     peak = int(np.flatnonzero(searched)[np.argmax(lines.amplitude[searched])])
     size, floor = lines.amplitude[peak], np.median(lines.amplitude[about])
-    return _Line(float(lines.frequency[peak]), float(size), float(size / floor) if floor else 0.0)
+    stands = floor and size >= lines.amplitude[peak - 1 : peak + 2].max()
+    return _Line(float(lines.frequency[peak]), float(size), float(size / floor) if stands else 0.0)
 
 
 def _findings(
@@ -302,7 +305,7 @@ def _impacts(
         if _kind(s) == "f"
     ]
     for band, of_band in enumerate(bursts[-1]):
-        exact = _exact_lines(lines, of_band, scales[-1])
+        exact = _exact_lines(lines, of_band, scales[-1], band)
         reach, peaks = _LOBE * float(of_band.frequency[1]), list[float]()
         clear: list[tuple[float, str]] = []
         inner = list[tuple[float, float]]()
@@ -377,26 +380,33 @@ def _speed_ratio(analysis: SignalAnalysis, lines: KinematicFrequencies) -> float
 
 def _bands(analysis: SignalAnalysis) -> list[SignalSpectrum]:
     """Envelope spectra of the octaves below the end of the band, which impacts excite."""
-    top = _TOP * analysis.sample_rate
+    rate = analysis.sample_rate
     return [
-        envelope_spectrum(
-            analysis.signal, analysis.sample_rate, band=(top / 2 ** (k + 1), top / 2**k),
-            window="hann",
-        )
+        envelope_spectrum(analysis.signal, rate, band=_octave(rate, k), window="hann")
         for k in range(_OCTAVES)
-    ]  # fmt: skip
+    ]
 
 
-def _exact_lines(lines: KinematicFrequencies, envelope: SignalSpectrum, scale: float) -> Array:
-    """Frequencies of shafts and meshes with their harmonics, sidebands and beats [Hz].
+def _octave(sample_rate: float, number: int) -> tuple[float, float]:
+    """Ends of an octave, counted from the highest [Hz]."""
+    top = _TOP * sample_rate / 2**number
+    return 0.5 * top, top
+
+
+def _exact_lines(
+    lines: KinematicFrequencies, envelope: SignalSpectrum, scale: float, octave: int
+) -> Array:
+    """Frequencies of shafts and meshes with their harmonics, sidebands and beats in a band [Hz].
 
     Of a shaft all harmonics only where its own line is clear; otherwise the first three.
     """
+    band = _octave(2.0 * float(envelope.frequency[-1]), octave)[0]
     rows = [(s, f * scale) for s, f in zip(lines.symbol, lines.frequency.tolist(), strict=True)]
     turns = [f for symbol, f in rows if symbol.startswith("f(")]
     meshes = [k * f for symbol, f in rows if symbol == "GMF" for k in range(1, 6)]
     sides = [m + k * f for m in meshes for f in turns for k in (-2, -1, 0, 1, 2)]
-    tones = [k * f for symbol, f in rows if symbol == "GMF" for k in range(1, 11)]
+    last = {f: max(10, int(2.0 * band / f)) for symbol, f in rows if symbol == "GMF"}
+    tones = [k * f for f, count in last.items() for k in range(1, count + 1)]
     beats = [abs(first - second) for first, second in combinations(tones, 2)]
     multiples = [
         k * f
@@ -412,7 +422,12 @@ def _bursts(
     """Rate of impacts and its evidence; empty without, or where a shaft or mesh explains it."""
     step = lines.frequency[1] - lines.frequency[0]
     first = _line(lines, frequency, slip)
-    if first.clear < _CLEAR or np.abs(exact - first.frequency).min(initial=np.inf) <= step:
+    mean = float(lines.amplitude[0])
+    if (
+        first.clear < _CLEAR
+        or first.amplitude < _DEPTH * mean
+        or np.abs(exact - first.frequency).min(initial=np.inf) <= step
+    ):
         return first.frequency, ""
     others = [_line(lines, k * first.frequency, 0.5 * _EXACT) for k in (2, 3)]
     clear = [first, *(each for each in others if each.clear >= _CLEAR)]
