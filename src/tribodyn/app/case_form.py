@@ -201,8 +201,7 @@ class CaseForm:
             return of_stage and name in ("shaft", "position")
         if self._pair is None:
             return group in SHARED
-        kind = self._chosen("gears.kind") if self.case.lumped else self._pair.gears.kind
-        return is_idle(key, kind)
+        return is_idle(key, self._chosen("gears.kind"))
 
     def _chosen(self, key: str) -> Any:
         return self.typed.get(key) or self._effective.get(key) or self._of_pair(key)

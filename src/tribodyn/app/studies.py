@@ -136,15 +136,15 @@ STUDIES: dict[str, Study] = {
                 None, "its range; about the static one where it is empty", "-20..40 um"
             ),
             "rate": _text(None, "range of its rate", "-400000..400000 um/s"),
-            "points": integer(21, 2, 201, _GUARD, meaning="values of each"),
+            "points": integer(None, 2, 201, _GUARD, meaning="values of each, or as many as fit"),
         },
     ),
     "lyapunov": Study(
         "Lyapunov exponents",
         "Whether the motion is chaos.",
         {
-            "cycles": integer(1000, 2, 100000, _GUARD, meaning="mesh cycles of the mean"),
-            "transient": integer(300, 0, 100000, _GUARD, meaning="mesh cycles before"),
+            "cycles": integer(None, 2, 100000, _GUARD, meaning="mesh cycles of the mean"),
+            "transient": integer(None, 0, 100000, _GUARD, meaning="mesh cycles before"),
         },
     ),
     "sobol": Study(

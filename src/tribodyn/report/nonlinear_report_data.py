@@ -119,7 +119,10 @@ _VERDICTS = {
 
 
 def lyapunov_report_data(
-    case: AnyCase, cycles: int = 1000, transient: int = 300, progress: Progress = SILENT
+    case: AnyCase,
+    cycles: int | None = None,
+    transient: int | None = None,
+    progress: Progress = SILENT,
 ) -> StudyReportData:
     """Lyapunov exponents of the response of a case."""
     from tribodyn.study.studies.nonlinear import lyapunov_exponents
@@ -157,7 +160,7 @@ def basins_report_data(
     case: AnyCase,
     transmission_error: Any = None,
     rate: Any = None,
-    points: int | None = 31,
+    points: int | None = None,
     keep_partial: bool = False,
     progress: Progress = SILENT,
     mesh: str | None = None,

@@ -206,6 +206,15 @@ def test_flanks_that_part_are_reported_with_their_share(
     assert (touches in of_pair) is (touches in of_machine) is back
 
 
+def test_damping_in_a_gap_that_stays_closed_is_reported() -> None:
+    pair, machine = runs_of("3000 rpm", "90 N*m", backlash="0.2 mm", damping_in_gap=True)
+    (of_pair,), (of_machine,) = (texts_of(each, "closed-gap") for each in (pair, machine))
+    assert of_machine == f"mesh m, operation: {of_pair}"
+    assert pair.summary()["contact_loss_share"] == 0.0
+    loose = {"backlash": "0.012 mm", "mesh_damping_ratio": 0.03, "damping_in_gap": True}
+    assert not any(texts_of(each, "closed-gap") for each in runs_of("12000 rpm", "4 N*m", **loose))
+
+
 def test_tension_without_backlash_is_reported() -> None:
     tight = {"backlash": "0 mm", "mesh_law": "stiffness", "mesh_damping_ratio": 0.03}
     pair, machine = runs_of("9000 rpm", "4 N*m", **tight)

@@ -158,4 +158,8 @@ def test_a_stage_by_itself_names_the_places_of_its_gears() -> None:
     moved = case.replace({"gears.sun.position": "85 mm"})
     assert "gears.sun.position" in idle_keys(moved)
     assert "gears.ring.position" not in idle_keys(moved)
+    tilted = td.load_case("planetary-stage").replace(
+        {"gears.sun.transverse_moment_of_inertia": 4e-4}
+    )
+    assert [*idle_keys(tilted)] == ["gears.sun.transverse_moment_of_inertia"]
     assert td.run(moved).summary() == td.run(case).summary()

@@ -102,3 +102,11 @@ def test_the_cases_are_sound_without_the_change() -> None:
         for text in (BOX, STIFF, STAGE):
             rehearse_machine(read_case(text, "box.toml"))
     assert td.load_case("planetary-stage").lone_stage == "low"
+
+
+def test_a_ring_without_a_shaft_in_a_machine_is_told_its_own() -> None:
+    text = all_files()["wind-turbine-gearbox"].read_text(encoding="utf-8")
+    named = '[gears.ring]\nshaft = "ring"\n'
+    assert named in text
+    with pytest.raises(InputError, match=r'gears\.ring\.shaft: shaft is missing.*shaft = "ring"'):
+        read_case(text.replace(named, "[gears.ring]\n"))

@@ -151,14 +151,13 @@ def basins(
     rate : str
         Range of its rate: "-400000..400000 um/s". By default what a free vibration reaches.
     points : int
-        Values of each: 31 by default, of a machine as many as take about two minutes.
+        Values of each: 41 by default, of a machine as many as take about two minutes.
     """
 
     def compute(ready: Any, progress: Progress) -> StudyReportData:
         from tribodyn.report.nonlinear_report_data import basins_report_data
 
-        count = points or (31 if ready.lumped else None)
-        return basins_report_data(ready, error, speed, count, True, progress, mesh)
+        return basins_report_data(ready, error, speed, points, True, progress, mesh)
 
     error = None if transmission_error is None else read_ends(transmission_error, "-20..40 um")
     speed = None if rate is None else read_ends(rate, "-400000..400000 um/s")
@@ -167,16 +166,21 @@ def basins(
 
 
 def lyapunov(
-    case: CaseName, /, *, cycles: int = 1000, transient: int = 300, at: Place = USUAL
+    case: CaseName,
+    /,
+    *,
+    cycles: int | None = None,
+    transient: int | None = None,
+    at: Place = USUAL,
 ) -> None:
     """Find the Lyapunov exponents of the motion of a case: whether it is chaos.
 
     Parameters
     ----------
     cycles : int
-        Mesh cycles over which to average.
+        Mesh cycles over which to average: 1000, of a machine as many as take about two minutes.
     transient : int
-        Mesh cycles before.
+        Mesh cycles before: 300, of fewer 0.3 times as many.
     """
 
     def compute(ready: Any, progress: Progress) -> StudyReportData:
@@ -184,7 +188,7 @@ def lyapunov(
 
         return lyapunov_report_data(ready, cycles, transient, progress)
 
-    _check_lengths(cycles, transient)
+    _check_lengths(2 if cycles is None else cycles, transient or 0)
     answer("lyapunov", case, at, compute)
 
 

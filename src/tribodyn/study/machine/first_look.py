@@ -242,6 +242,8 @@ def idle_keys(case: MachineCase) -> dict[str, str]:
         keys = [f"gears.{each}.position" for each in (stage.sun, stage.ring)]
         if not stage.helix_angle:
             idle |= dict.fromkeys(keys, "the gears of a stage alone have one plane")
+            tilts = (f"gears.{name}.transverse_moment_of_inertia" for name in case.data["gears"])
+            idle |= dict.fromkeys(tilts, "the gears of a stage alone do not tilt")
     has_oil = case.losses is not None or case.is_rated or case.heat is not None
     return {
         key: why

@@ -164,7 +164,8 @@ def _of_motion(
     for column, (name, mesh) in enumerate(machine.meshes.items()):
         force, opened = motion.mesh_force[:, column], motion.open[:, column]
         back = bool(np.any((opened > 0.0) & (force != 0.0)))
-        cautions = [*contact_cautions(float(motion.mean(opened)), touches_back=back)]
+        damped, share = any(c.damping_in_gap for c in mesh.contacts), float(motion.mean(opened))
+        cautions = [*contact_cautions(share, touches_back=back, damped=damped and mesh.has_play)]
         cautions += friction_cautions(next(iter(mesh.frictions), None), force)
         if not mesh.has_play:
             computed = name in case.meshes_with_teeth

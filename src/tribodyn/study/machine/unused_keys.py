@@ -166,15 +166,19 @@ def _planets(data: Mapping[str, Any]) -> KeyedProblems:
         if kind == "single":
             why = "Planets with one gear have the module of the sun"
             yield from _refused(key, body, ("ring_normal_module",), why, "Remove it")
+        gears, ring = _tables(data, "gears"), str(body.get("ring"))
+        if data.get("shafts") and ring in gears and "shaft" not in gears[ring]:
+            why, remedy = "A held ring has a shaft of its own", f'Add shaft = "{ring}"'
+            yield f"gears.{ring}.shaft", Problem("shaft is missing", "", why, remedy)
         for role in ("planet", "ring_planet"):
             gear, stepped = body.get(role), role == "ring_planet" and kind == "stepped"
             places = ("shaft",) if stepped else ("shaft", "position")
             why = "The stage gives planets their shafts and their places on the pins"
-            table = _tables(data, "gears").get(str(gear))
+            table = gears.get(str(gear))
             yield from _refused(f"gears.{gear}", table, places, why, "Remove it")
         for role in ("sun", "ring", "carrier"):
             member = str(body.get(role))
-            shaft = str(_tables(data, "gears").get(member, {}).get("shaft", member))
+            shaft = str(gears.get(member, {}).get("shaft", member))
             bearings = [b for b in _tables(data, "bearings").values() if b.get("shaft") == shaft]
             if bearings or _is_set(_tables(data, "shafts").get(shaft), "sections"):
                 why = f"Shaft {shaft} has sections, or bearings that support it"

@@ -363,13 +363,15 @@ def motion_cautions(case: PairCase, system: System, response: Response) -> tuple
     samples = response.fine  # all of them, as the motion is steady
     deflection, touch = compression(samples), first_touch(system, samples)
     share = float(measured(response).mean((deflection <= touch).astype(float)))
-    return contact_cautions(share, touches_back=bool(np.any(deflection < -touch)))
+    back, damped = bool(np.any(deflection < -touch)), case.dynamics.damping_in_gap
+    return contact_cautions(share, touches_back=back, damped=damped)
 
 
-def contact_cautions(share: float, *, touches_back: bool) -> tuple[ModelWarning, ...]:
-    """Warn of loss of contact for a part of the mesh cycle."""
+def contact_cautions(share: float, *, touches_back: bool, damped: bool) -> tuple[ModelWarning, ...]:
+    """Warn of loss of contact for a part of the mesh cycle, and of damping that has no gap."""
     if not share:
-        return ()
+        message = "damping_in_gap has no effect: the flanks stay in touch in this motion"
+        return (ModelWarning("closed-gap", message),) if damped else ()
     back = "the back flanks touch as well" if touches_back else "no back flank touches"
     message = (
         f"the flanks lose contact for {share:.3g} of the mesh cycle; {back}. More load or damping "

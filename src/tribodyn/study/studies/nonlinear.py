@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from functools import partial
+from time import process_time
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -11,7 +12,7 @@ import numpy as np
 from tribodyn.compiled import announce
 from tribodyn.dynamics.orbits.solution_branch import of_contact
 from tribodyn.dynamics.orbits.system_family import family_of
-from tribodyn.errors import Argument, InputError
+from tribodyn.errors import Argument, InputError, collected
 from tribodyn.progress import SILENT, Progress
 from tribodyn.study.machine.case import AnyCase
 from tribodyn.study.studies.case_grid import (
@@ -33,6 +34,8 @@ if TYPE_CHECKING:
 _WIDE = 5.0
 #: Values of each coordinate of the starts of a pair, least ones of a machine.
 _STARTS, _LEAST = 41, 3
+#: Periods that exponents are averaged over by default and at least, and those before.
+_CYCLES, _FEWEST, _BEFORE = 1000, 20, 300
 #: Seconds that the starts of a machine take by default, and steps of each over those of one motion.
 _PATIENCE, _FOLLOWED = 120.0, 3
 
@@ -40,8 +43,8 @@ _PATIENCE, _FOLLOWED = 120.0, 3
 def lyapunov_exponents(
     case: AnyCase,
     *,
-    cycles: int = 1000,
-    transient: int = 300,
+    cycles: int | None = None,
+    transient: int | None = None,
     steps: int | None = None,
     verdict: bool = True,
     progress: Progress = SILENT,
@@ -52,10 +55,11 @@ def lyapunov_exponents(
     ----------
     case : Case
         From :func:`tribodyn.load_case`. The motion starts at its static equilibrium.
-    cycles : int
-        Mesh cycles over which to average.
-    transient : int
-        Mesh cycles that are simulated before.
+    cycles : int, optional
+        Mesh cycles over which to average, of a machine periods of its clock: 1000 by default, or as
+        many as take about two minutes.
+    transient : int, optional
+        Those that are simulated before: 300 by default, 0.3 times as many where there are fewer.
     steps : int, optional
         Steps per mesh cycle; by default those of the case, else a quarter of those of a single run
         and at least 512.
@@ -92,15 +96,48 @@ def lyapunov_exponents(
         progress.start("Tooth contact")
         structure = moving(case)
         progress.finish()
+        structure = structure._replace(steps=steps or structure.steps)
+        few = cycles or _averaged(case, structure, transient, verdict=verdict)
+        if transient is None:
+            transient = _BEFORE if cycles else min(_BEFORE, _BEFORE * few // _CYCLES)
         return compute(
             structure.system,
             structure.frequency,
-            cycles=cycles,
+            cycles=few,
             transient=transient,
-            steps=steps or structure.steps,
+            steps=structure.steps,
             verdict=verdict,
             progress=progress,
         )
+
+
+def _averaged(case: AnyCase, structure: Moving, transient: int | None, *, verdict: bool) -> int:
+    """Periods over which exponents are averaged that take no longer than one waits for."""
+    from tribodyn.analysis import lyapunov_exponents as compute
+
+    if case.lumped:
+        return _CYCLES
+    system, frequency, steps, _ = structure
+    options: dict[str, Any] = {"transient": 0, "steps": steps, "verdict": False}
+    taken = []
+    for few in (2, 2, 6):  # the first time compiles
+        begin = process_time()
+        with collected():
+            compute(system, frequency, cycles=few, **options)
+        taken.append(process_time() - begin)
+    seconds = max(taken[2] - taken[1], 1e-6) / 4.0
+    seconds *= 3.0 if verdict else 1.0  # half the step takes twice as long
+    before = _BEFORE / _CYCLES if transient is None else 0.0
+    count = int((_PATIENCE / seconds - (transient or 0)) / (1.0 + before))
+    if count >= _CYCLES:
+        return _CYCLES
+    count = max(count, _FEWEST)
+    minutes = (count * (1.0 + before) + (transient or 0)) * seconds / 60.0
+    announce(
+        f"averaging over {count} periods of the clock, {minutes:.2g} min; cycles (--cycles) asks "
+        "for others"
+    )
+    return count
 
 
 def basins(
