@@ -165,7 +165,7 @@ LINES: dict[str, int] = {
     "scope": 55,
     "signals": 1772,
     "stiffness": 5330,
-    "study": 20150,
+    "study": 20146,
     "surrogate": 767,
     "types": 13,
     "uncertainty": 291,

@@ -474,14 +474,10 @@ MotionTable.fields |= {
 class SolverTable(Section):
     """The ``[solver]`` table of a machine."""
 
-    engine: str = choice(
-        AUTO,
-        {
-            AUTO: "harmonic balance; where it finds no motion, the march in modal coordinates",
-            BALANCE: "the periodic motion from the harmonics of the contact forces, or an error",
-        },
-        meaning="how the motion is found",
-    )
+    engine: str = choice(AUTO, {
+        AUTO: "harmonic balance; where it finds no motion, the march in modal coordinates",
+        BALANCE: "the periodic motion from the harmonics of the contact forces, or an error",
+    }, meaning="how the motion is found")  # fmt: skip
     coupling: str = Solver.fields["coupling"]  # type: ignore[assignment]
     coupling_tolerance: float = Solver.fields["coupling_tolerance"]  # type: ignore[assignment]
     phases: str = choice(
