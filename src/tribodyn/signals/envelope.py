@@ -276,6 +276,8 @@ def _fitted(values: Array, cycles: Array) -> ComplexArray:
 
 #: Least independent samples of the envelope in a band, and roll-off on each side over its width.
 _LEAST, _ROLL_OFF = 64, 0.125
+#: Part of the record at each end that is faded and not judged: a tone that is cut off there rings.
+_FADED = 0.05
 #: Probability that noise alone has a significant band.
 _FALSE_ALARM = 0.01
 #: Distance of a wide band from zero and from half the sampling rate, over the rate.
@@ -359,7 +361,9 @@ def kurtogram(signal: object, sampling_rate: float, *, levels: int | None = None
     Fast kurtogram of J. Antoni, Mechanical Systems and Signal Processing 21 (2007) 108: 1, 2, 3, 4,
     6, 8, 12 ... equal bands, and of each the kurtosis K = <|c|^4> / <|c|^2>^2 - 2 of its complex
     envelope c. The bands are cut out of one Fourier transform with smooth edges instead of a tree
-    of short filters, so that they have no delay and the edges of all levels are equally sharp. K of
+    of short filters, so that they have no delay and the edges of all levels are equally sharp. The
+    first and last twentieth of the record are faded and left out of K, where a tone that does not
+    fit the record would ring as an impact does in the bands beside it. K of
     noise scatters by 2 over the root of the number of independent samples, so that the largest of
     many narrow bands is large by chance: ``best`` is the largest above the limit of noise.
 
@@ -374,6 +378,8 @@ def kurtogram(signal: object, sampling_rate: float, *, levels: int | None = None
     >>> bool(low < 3200.0 < high)
     True
     """
+    from scipy.signal.windows import tukey
+
     values = checked_signal(signal, 4 * _LEAST)
     require_positive("sampling_rate", sampling_rate, "Hz")
     most = int(np.log2(values.size / (2 * _LEAST)))
@@ -382,7 +388,7 @@ def kurtogram(signal: object, sampling_rate: float, *, levels: int | None = None
     if depth > most:
         what, why = f"levels = {depth}", f"{values.size} samples allow {most}"
         raise InputError(what, Argument("levels"), why, "Record longer, or take fewer levels")
-    lines = np.fft.rfft(values - values.mean())
+    lines = np.fft.rfft((values - values.mean()) * tukey(values.size, 2.0 * _FADED))
     if not lines.any():
         what, why = "the signal is constant", "Nothing in it can be impulsive"
         raise InputError(what, Argument("signal"), why, "Look at the channel")
@@ -394,7 +400,8 @@ def kurtogram(signal: object, sampling_rate: float, *, levels: int | None = None
     ]
     splits, place, size = (np.array(column) for column in zip(*rows, strict=True))
     half = 0.5 * sampling_rate
-    return Kurtogram(splits, half * place, half / splits, size, _limits(splits, values.size))
+    judged = round((1.0 - 2.0 * _FADED) * values.size)
+    return Kurtogram(splits, half * place, half / splits, size, _limits(splits, judged))
 
 
 def _spectral_kurtosis(lines: ComplexArray, split: int, band: int) -> float:
@@ -407,6 +414,8 @@ def _spectral_kurtosis(lines: ComplexArray, split: int, band: int) -> float:
     inside = np.minimum(number - low, high - number)
     edge = np.clip(0.5 + 0.5 * inside / max(roll, 1.0), 0.0, 1.0)
     power = np.abs(np.fft.ifft(lines[first : last + 1] * np.sin(0.5 * np.pi * edge))) ** 2
+    ends = int(np.ceil(_FADED * power.size))
+    power = power[ends : power.size - ends]
     mean = float(power.mean())
     return float(np.mean(power**2)) / mean**2 - 2.0 if mean > 0.0 else 0.0
 

@@ -109,6 +109,16 @@ def test_kurtogram_finds_the_band_of_impacts_and_not_that_of_the_mesh():
     )
 
 
+@pytest.mark.parametrize("cycles", [1000.0, 1000.25, 1000.5])
+def test_a_steady_tone_is_not_impulsive_wherever_the_record_ends(cycles: float) -> None:
+    """Cut off within a period, it would jump where both ends of a periodic record meet."""
+    wave = 30.0 * np.cos(2.0 * np.pi * cycles / TIME.size * np.arange(TIME.size) + 0.3)
+    result = kurtogram(wave + NOISE, RATE)
+    assert not result.significant
+    beside = (result.centre - result.width > 1000.0) & (result.splits <= 8)
+    assert np.abs(result.kurtosis[beside]).max() < 0.2  # noise alone
+
+
 def test_kurtogram_of_noise_and_of_tones():
     """K is 0 for noise and -1 for a tone; of two equal tones 1.5 - 2."""
     quiet = kurtogram(NOISE, RATE)
