@@ -214,7 +214,7 @@ def transverse_pressure_angle(normal_pressure_angle: float, helix_angle: float) 
 
 
 def _teeth_problems(teeth: int) -> list[Problem]:
-    problems = range_problems("teeth", abs(teeth), 5, 500, unit=PURE)
+    problems = range_problems("teeth", abs(teeth), 5, 1000, unit=PURE)
     if problems or teeth == int(teeth):
         return problems
     why = "A gear has a whole number of teeth"

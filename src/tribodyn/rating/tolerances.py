@@ -46,7 +46,7 @@ def _geometric_mean(name: str, value: float, limits: tuple[float, ...]) -> float
         f"{name} = {value:g} mm",
         Argument(name),
         f"The tolerances of ISO 1328-1:1995 go from {limits[0]:g} to {limits[-1]:g} mm",
-        "Give pitch_deviation, profile_deviation and helix_deviation of the gear",
+        "Give pitch_deviation, profile_deviation and helix_deviation to td.rating.RatedGear",
     )
 
 

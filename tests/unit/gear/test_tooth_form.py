@@ -74,7 +74,7 @@ def test_gear_is_frozen_and_its_line_of_text_has_units(make_gear: Maker) -> None
     ("changes", "expected"),
     [
         ({"teeth": 4}, "teeth = 4. "),
-        ({"teeth": 501}, "at most 500"),
+        ({"teeth": 1001}, "at most 1000"),
         ({"teeth": 20.5}, "whole number"),
         ({"normal_module": -4e-3}, "normal_module = -4 mm"),
         ({"normal_pressure_angle": 20.0}, "normal_pressure_angle = 1145.92 deg"),

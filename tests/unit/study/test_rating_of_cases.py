@@ -297,6 +297,7 @@ def cut(shift: float) -> dict[str, Any]:
             "materials.steel.yield_strength: yield_strength of V is missing",
         ),
         (wheel(bore_diameter=94e-3), "gears.wheel.bore_diameter: rim of"),
+        (wheel(face_width=0.5), "gears.wheel.face_width: face_width = 500 mm. The tolerances"),
         (cut(-1.9), "gears.wheel.cutter: cutter of 16 teeth .* leaves no fillet"),
         (cut(1.0), "gears.wheel.cutter: cutter of 16 teeth .* end in a point"),
         ({"rating": None}, "materials has no effect"),

@@ -181,8 +181,11 @@ def kinematics(
     sign = -1.0 if torque < 0.0 else 1.0
     shaft_loads = {}
     for name, ratio in ratios.items():
-        parts = [r[name] * loads[mesh][0] for mesh, r in rows.items() if name in r]
-        entering = sign * 0.5 * (sum(map(abs, parts)) + abs(sum(parts)))
+        parts = {mesh: r[name] * loads[mesh][0] for mesh, r in rows.items() if name in r}
+        carried = [mesh for mesh in parts if mesh in meshes and meshes[mesh].carrier == name]
+        pins = sum(parts.pop(mesh) for mesh in carried)  # of one body, whatever their signs
+        total = abs(pins + sum(parts.values()))
+        entering = sign * 0.5 * (abs(pins) + sum(map(abs, parts.values())) + total)
         turning = float(ratio) * speed
         shaft_loads[name] = ShaftLoad(ratio, turning, entering, entering * abs(turning))
     return PowerFlow(shaft_loads, mesh_loads, {name: -loads[name][0] for name in drive.couplings})

@@ -366,6 +366,7 @@ def rating_problems(case: PairCase) -> Iterator[tuple[str, Problem]]:
     """Problems of materials and of the rating, by dotted key."""
     from tribodyn.rating.bending import rim_factor, slip_layer
     from tribodyn.rating.root_section import root_section
+    from tribodyn.rating.tolerances import gear_tolerances
 
     names = [] if case.materials is None else [n for n in vars(case.materials) if n[0] != "_"]
     if case.rating is None:
@@ -416,9 +417,10 @@ def rating_problems(case: PairCase) -> Iterator[tuple[str, Problem]]:
                 gear = getattr(case.gear_pair, role)
                 root_section(gear, shaper_cutter(case, role), case.rating.edition)
                 rim_factor(gear, role)
+                gear_tolerances(gear, case.rating.accuracy_grade)
         except InputError as error:
             for problem in error.problems:
                 key = getattr(problem.where, "name", "")
-                of_gear = key in getattr(case.gears, role).fields
-                table = f"gears.{role}" if of_gear else f"materials.{name}"
-                yield f"{table}.{key}".rstrip("."), problem
+                places = {"normal_module": "gears", "reference_diameter": f"gears.{role}"}
+                places |= dict.fromkeys(getattr(case.gears, role).fields, f"gears.{role}")
+                yield f"{places.get(key, f'materials.{name}')}.{key}".rstrip("."), problem

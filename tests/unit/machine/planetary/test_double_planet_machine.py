@@ -149,6 +149,23 @@ def test_speeds_and_phases(kind: str) -> None:
     assert cycles[0] * second == cycles[1] * (first if kind == "stepped" else second)
 
 
+@pytest.mark.parametrize("efficiency", [1.0, 0.98])
+@pytest.mark.parametrize("kind", STAGES)
+def test_a_carrier_has_the_torque_that_balances_sun_and_ring(kind: str, efficiency: float) -> None:
+    """Willis: T_r = -i_0 eta T_s at rest of the carrier, and T_c = -T_s - T_r of the three."""
+    machine, _ = stage(kind)
+    flow = machine.power_flow(dict.fromkeys(machine.meshes, efficiency))
+    (sun, first, second, ring), _ = STAGES[kind]
+    ratio = -first * ring / (sun * second) if kind == "stepped" else ring / sun
+    held = ratio * efficiency ** (2 if kind == "stepped" else 3)
+    torque = machine.operation.torque
+    assert flow.shafts["ring"].torque == pytest.approx(abs(held) * torque, rel=1e-12)
+    carrier = flow.shafts["carrier"]
+    assert carrier.torque == pytest.approx(abs(1.0 - held) * torque, rel=1e-12)
+    out = 157.0 / abs(1.0 - ratio)
+    assert carrier.power == pytest.approx(abs(1.0 - held) * torque * out, rel=1e-12)
+
+
 def test_planets_that_cannot_be_are_refused() -> None:
     with pytest.raises(InputError, match="Double planets have a second gear"):
         PlanetaryStage("s", "r", "c", Gear("p", 0.0, 22, 0.05), 3, 4e-3, planet_type="meshed")
