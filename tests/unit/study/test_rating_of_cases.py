@@ -375,6 +375,17 @@ def test_an_idler_of_a_machine_is_bent_both_ways_and_its_load_cases_add_up(tmp_p
     )
 
 
+@pytest.mark.parametrize(("turning", "torque", "sign"), [(-1, 1, -1), (-1, -1, 1)])
+def test_speed_and_torque_say_which_flanks_a_load_case_wears(turning, torque, sign):
+    """The torque counts in the running sense: backwards it loads the other flanks."""
+    loads = [{**MACHINE["load_cases"][0]}, {**MACHINE["load_cases"][1]}]
+    loads[1] |= {"speed": f"{1200 * turning} rpm", "torque": 180.0 * torque}
+    rating = td.run(td.Case(**changed(MACHINE, load_cases=loads))).rating
+    for spectrum, low in zip(rating.spectra, (100.0, 100.0 * 31 / 24), strict=True):
+        torques = [each.torque for each in spectrum.rating.cases]
+        assert torques == pytest.approx([low, 1.8 * low * sign], rel=1e-9)
+
+
 def _by_gear(rating: Any) -> dict[str, dict[str, Any]]:
     meshes: dict[str, dict[str, Any]] = {}
     for gear, by_mesh in rating.gears.items():

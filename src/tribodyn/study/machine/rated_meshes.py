@@ -81,7 +81,7 @@ def _rated_mesh(
     gears = load.machine.meshes[mesh].gears
     torques = dict(zip(gears, flow[mesh].torque, strict=True))
     pinion, wheel = case._pinion_and_wheel(mesh)
-    forwards = case.operating_point.torque
+    forwards = case.machine().kinematics.meshes[mesh].sense
     speed = 2.0 * math.pi * flow[mesh].mesh_frequency / abs(load.machine.gears[pinion].teeth)
     prefix = f"meshes.{mesh}."
     figures = {
@@ -100,7 +100,7 @@ def _rated_mesh(
         mesh=mesh,
         case=pair,
         gears=names,
-        operation=(speed, math.copysign(torques[pinion], load.load.torque * forwards)),
+        operation=(speed, math.copysign(torques[pinion], flow[mesh].sense * forwards)),
         computed=factors,
         meshes_per_turn=counts,
         reversed=reversed_,
