@@ -421,6 +421,5 @@ def rating_problems(case: PairCase) -> Iterator[tuple[str, Problem]]:
         except InputError as error:
             for problem in error.problems:
                 key = getattr(problem.where, "name", "")
-                places = {"normal_module": "gears", "reference_diameter": f"gears.{role}"}
-                places |= dict.fromkeys(getattr(case.gears, role).fields, f"gears.{role}")
-                yield f"{places.get(key, f'materials.{name}')}.{key}".rstrip("."), problem
+                table = f"materials.{name}" if key in StrengthTable.fields else f"gears.{role}"
+                yield f"{'gears' if key == 'normal_module' else table}.{key}".rstrip("."), problem
