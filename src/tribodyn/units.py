@@ -91,6 +91,7 @@ _PI = Fraction("3.14159265358979323846264338327950288419716939937510")
 _SCALES: dict[str, dict[str, str | int | Fraction]] = {
     "m": {"mm": "1e-3", "um": "1e-6", "cm": "1e-2", "nm": "1e-9"},
     "m^2/s": {"mm^2/s": "1e-6"},
+    "m^3": {"l": "1e-3"},
     "m/s": {"mm/s": "1e-3", "um/s": "1e-6"},
     "m/s^2": {"mm/s^2": "1e-3"},
     "kg": {"g": "1e-3"},
@@ -112,6 +113,7 @@ _SCALES: dict[str, dict[str, str | int | Fraction]] = {
     "Pa*s": {"mPa*s": "1e-3"},
     "1/m^2": {"1/mm^2": "1e6"},
     "1/Pa": {"1/MPa": "1e-6", "1/GPa": "1e-9", "GPa^-1": "1e-9", "Pa^-1": 1},
+    "byte": {"GB": "1e9", "MB": "1e6"},
 }
 _USUAL = {
     si: {unit: Fraction(scale) for unit, scale in scales.items()} for si, scales in _SCALES.items()

@@ -6,21 +6,26 @@ from textwrap import fill, indent
 
 from contents import page as contents_page
 from pages import ROOT
+from written_tables import (
+    kind_table,
+    machine_tables,
+    needs_table,
+    program_table,
+    reference_tables,
+    scope_table,
+)
 
 sys.path.insert(0, str(ROOT / "docs"))
 
 from _site.names import described, packages
 
 from tribodyn.aliases import RENAMED
-from tribodyn.scope import PROGRAMS, program_table, scope_table, statement
+from tribodyn.scope import PROGRAMS, statement
 from tribodyn.study import Case
-from tribodyn.study.case.reference import reference_tables, start_toml
+from tribodyn.study.case.reference import start_toml
 from tribodyn.study.case.section import Table
 from tribodyn.study.case.values import Term, find_term, listed_terms
-from tribodyn.study.faults.kinds import kind_table
-from tribodyn.study.machine_tables import machine_tables
 from tribodyn.study.pipeline.citations import bibliography
-from tribodyn.study.studies.needs import needs_table
 
 
 def _tables(text: str) -> str:
@@ -31,7 +36,7 @@ def _tables(text: str) -> str:
 
 _OF_PARTS = """## All keys of machines and planetary stages
 
-`NAME` stands for the name of a part. `[dynamics]` also has the keys of a pair but for `model` and
+`NAME` is the name of a part. `[dynamics]` also has the keys of a pair but for `model` and
 `bearing_damping_ratio`, and a mesh or a stage may have them too; `[material]`, `[lubricant]`,
 `[film]`, `[stiffness]` and `[friction]` are those above, for all meshes or, as
 `[meshes.NAME.film]`, for one. `tribodyn new my.toml --machine`, `--stage` and `--hypoid` write

@@ -9,6 +9,7 @@ from pathlib import Path
 import pytest
 from generated import GENERATED, written
 from pages import ROOT, blocks
+from written_tables import machine_tables, needs_table, reference_tables
 
 import tribodyn as td
 from tribodyn.cli import call
@@ -19,8 +20,7 @@ from tribodyn.stiffness import MODELS
 from tribodyn.study import read_case
 from tribodyn.study.case.checks import case_options
 from tribodyn.study.case.provenance import derived_values
-from tribodyn.study.case.reference import case_keys, reference_tables, start_toml
-from tribodyn.study.machine_tables import machine_tables
+from tribodyn.study.case.reference import case_keys, start_toml
 
 _ROW = r"^\| `([\w-]+)` \| (.*) \|$"
 _INERTIAS = ("mass", "moment_of_inertia")
@@ -36,8 +36,16 @@ def test_pages_are_those_that_the_program_writes(page: str) -> None:
 def test_all_keys_are_on_the_page_as_they_are_checked() -> None:
     page = (_DOCS / "case-file.md").read_text(encoding="utf-8")
     assert reference_tables() in page
-    assert page.endswith(machine_tables())
+    parts = machine_tables()
+    assert page.endswith(parts)
+    assert "| `pin_clearance` |" in parts
+    assert '### `[bearings.NAME with type = "angular-contact"]`' in parts
     assert len(list(case_keys())) > 60
+
+
+def test_studies_of_motions_take_every_kind_of_case() -> None:
+    row = "| `bifurcation` | a structure that moves | yes | yes | yes | `--mesh NAME`"
+    assert row in needs_table()
 
 
 def test_readme_and_page_have_the_file_that_new_writes(tmp_path: Path) -> None:

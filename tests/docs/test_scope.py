@@ -6,12 +6,13 @@ from pathlib import Path
 
 import pytest
 from pages import PAGES, ROOT, anchors
+from written_tables import program_table
 
 import tribodyn as td
 from tribodyn.cli import call
 from tribodyn.cli.app import COMMANDS
 from tribodyn.cookbook import write_skill
-from tribodyn.scope import PROGRAMS, features, not_modelled, program_table, statement
+from tribodyn.scope import PROGRAMS, features, not_modelled, statement
 from tribodyn.study.case.reference import case_keys
 from tribodyn.study.case.values import find_term, listed_terms
 from tribodyn.study.machine_tables import machine_keys

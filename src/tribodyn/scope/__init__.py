@@ -58,28 +58,3 @@ def not_modelled() -> dict[str, str]:
         if not each.modelled
         for term in each.terms
     }
-
-
-def scope_table() -> str:
-    """What is modelled and what is not, by part."""
-    lines = ["| part | modelled | not in this version |", "|---|---|---|"]
-    for part in dict.fromkeys(each.part for each in features()):
-        of_part = [each for each in features() if each.part == part]
-        links = [_linked(each) for each in of_part if each.modelled]
-        missing = [each.text for each in of_part if not each.modelled]
-        lines.append(f"| {part} | {'; '.join(links)} | {'; '.join(missing)} |")
-    return "\n".join(lines)
-
-
-def program_table(program: str) -> str:
-    """Table "there | here" for users of another program."""
-    lines = [f"| in {program} | here |", "|---|---|"]
-    for each in features():
-        if program in each.elsewhere:
-            answer = _linked(each) if each.modelled else "not in this version"
-            lines.append(f"| {each.elsewhere[program]} | {answer} |")
-    return "\n".join(lines)
-
-
-def _linked(feature: Feature) -> str:
-    return f"{feature.text} ([more]({feature.page}))"

@@ -11,7 +11,7 @@ from tribodyn.machine import ROLLING_BEARINGS
 from tribodyn.model import REQUIRED, Option, choice, integer, number, numbers, text
 from tribodyn.study.case.pair import PairCase
 from tribodyn.study.case.rating_tables import BearingCatalogue, PartRating, RatingTable
-from tribodyn.study.case.reference import default_of, key_tables, start_toml, walk
+from tribodyn.study.case.reference import default_of, start_toml, walk
 from tribodyn.study.case.section import NamedTables, Section, Table, section_at, table
 from tribodyn.study.case.sections import Losses, ShaftData
 from tribodyn.study.faults.section import PartFaultTable
@@ -211,11 +211,6 @@ def _rolling_keys(group: str) -> Iterator[tuple[str, Option, str]]:
     for kind, law in ROLLING_BEARINGS.all().items():
         for name, option in rolling_options(law).items():
             yield f'{group}.NAME with type = "{kind}".{name}', option, default_of(option)
-
-
-def machine_tables() -> str:
-    """Format the keys of parts as Markdown tables."""
-    return key_tables(machine_keys())
 
 
 def start_of(kind: str) -> str:

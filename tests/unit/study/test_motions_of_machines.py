@@ -17,7 +17,7 @@ from tribodyn.nonlinear import bifurcation
 from tribodyn.study import read_case
 from tribodyn.study.studies import nonlinear
 from tribodyn.study.studies.case_grid import moving, moving_at, settling_periods
-from tribodyn.study.studies.needs import STUDIES, needs_table, require_short, takes
+from tribodyn.study.studies.needs import STUDIES, require_short, takes
 
 pytestmark = pytest.mark.filterwarnings("ignore::tribodyn.errors.ModelWarning")
 
@@ -54,10 +54,6 @@ def test_every_kind_of_case_moves(small: Any, stage: Any) -> None:
         assert takes(study, small)
         assert takes(study, stage)
     assert "bifurcation" in STUDIES
-    assert (
-        "| `bifurcation` | a structure that moves | yes | yes | yes | `--mesh NAME`"
-        in needs_table()
-    )
 
 
 def test_contacts_of_meshes_are_counted_in_the_order_of_the_machine(small: Any, stage: Any) -> None:

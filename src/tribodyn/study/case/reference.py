@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from functools import lru_cache
 from importlib.resources import files
 
@@ -34,27 +34,6 @@ def default_of(option: Option, declared: bool = True) -> str:
     if option.default is None or option.default is ... or (option.basis and not declared):
         return f"from {option.basis}" if option.basis else "none"
     return option.show(option.default) + ("" if declared else ", of its model")
-
-
-def reference_tables() -> str:
-    """Format all keys of a pair of gears as Markdown tables."""
-    return key_tables(case_keys())
-
-
-def key_tables(keys: Iterable[tuple[str, Option, str]]) -> str:
-    """Format keys as Markdown tables, one for each table of the case file."""
-    lines: list[str] = []
-    table = ""
-    for key, spec, default in keys:
-        place, _, name = key.rpartition(".")
-        if place != table or not lines:
-            table = place
-            lines += ["", f"### `[{place}]`" if place else "### Top of the file", ""]
-            lines += ["| key | symbol | meaning | allowed | default |", "|---|---|---|---|---|"]
-        symbol = f"`{spec.symbol}`" if spec.symbol else ""
-        row = (f"`{name}`", symbol, spec.meaning, _limits(spec), default)
-        lines.append("| " + " | ".join(row) + " |")
-    return "\n".join(lines).strip() + "\n"
 
 
 def start_toml(
@@ -88,12 +67,6 @@ def key_comment(spec: Option, note: str = "") -> str:
 
 def _choice_or_range(spec: Option) -> str:
     return spec.allowed() if spec.names is not None or math.isfinite(spec.low) else ""
-
-
-def _limits(spec: Option) -> str:
-    if spec.names is not None:
-        return ", ".join(f"`{name}`" for name in spec.names())
-    return f"{spec.allowed()} ({spec.origin})" if spec.origin else spec.allowed()
 
 
 def _models() -> Iterator[tuple[str, Model]]:

@@ -107,23 +107,3 @@ def keys_in(case: str, name: str) -> tuple[tuple[str, ...], tuple[str, ...]]:
     part = "gear" if case == "pair" else kind.part
     which = ("planet",) if case == "machine" and kind.part == "gear" else ()
     return (part, *kind.required), (*kind.optional, *which)
-
-
-def kind_table() -> str:
-    """Format kinds and their keys in each kind of case as a Markdown table."""
-    heads = ("kind", "what it is", *(f"keys in a {case} (optional)" for case in LACKS))
-    lines = [heads, ("---",) * len(heads)]
-    for name in KINDS:
-        keys = [_keys_text(case, name) for case in LACKS]
-        repeated = (text != "none" and text in keys[:place] for place, text in enumerate(keys))
-        keys = ["the same" if each else text for each, text in zip(repeated, keys, strict=True)]
-        lines.append((f"`{name}`", KINDS[name].meaning, *keys))
-    return "\n".join(f"| {' | '.join(line)} |" for line in lines)
-
-
-def _keys_text(case: str, name: str) -> str:
-    if name in LACKS[case]:
-        return "none"
-    required, optional = keys_in(case, name)
-    text = ", ".join(f"`{key}`" for key in required)
-    return f"{text}, ({', '.join(f'`{key}`' for key in optional)})" if optional else text

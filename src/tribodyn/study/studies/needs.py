@@ -211,19 +211,3 @@ def help_line(study: str) -> str:
     if need.of_mesh:
         return " Of a machine or a stage: one mesh."
     return "" if need == _ANY else " Takes one pair of gears."
-
-
-def needs_table() -> str:
-    """Format the studies and what they take as a Markdown table."""
-    heads = ("study", "it needs", *(f"{kind}s" for kind in KINDS))
-    lines = [heads, ("---",) * len(heads)]
-    for study, need in STUDIES.items():
-        what = f"{need.what}. {need.why}" if need.why else need.what
-        lines.append((f"`{study}`", what, *(_cell(need, kind) for kind in KINDS)))
-    return "\n".join(f"| {' | '.join(line)} |" for line in lines)
-
-
-def _cell(need: Need, kind: str) -> str:
-    if need.of_mesh and kind in PARTS:
-        return "`--mesh NAME`"
-    return "yes" if kind in need.kinds else "no"
