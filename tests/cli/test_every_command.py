@@ -1,9 +1,10 @@
-"""Every command on every built-in case, reduced in size: a result, or a refusal with a remedy."""
+"""Every command on every kind of case, reduced in size: a result, or a refusal with a remedy."""
 
 from __future__ import annotations
 
 import json
 from collections.abc import Callable
+from functools import cache
 from pathlib import Path
 from typing import Any
 
@@ -11,6 +12,7 @@ import numpy as np
 import pytest
 
 import tribodyn
+from tribodyn.cases.papers.printed import papers
 from tribodyn.cli import call
 from tribodyn.cli.app import COMMANDS
 from tribodyn.study import MachineCase
@@ -19,10 +21,21 @@ from tribodyn.study.studies.needs import KINDS, PARTS, STUDIES, kind_of, mesh_na
 pytestmark = pytest.mark.filterwarnings("ignore::tribodyn.errors.ModelWarning")
 
 _CASES = tuple(tribodyn.cases(machines=True))
+#: Cases that have the structure of another one, and nothing else once their teeth are reduced.
+_LIKE_ANOTHER = {
+    "fzg-12dof-light": "fzg-12dof",
+    "fzg-ehl-vibration": "fzg-roughness",
+    "fzg-film": "fzg-roughness",
+    "fzg-stiffness": "fzg-roughness",
+    "time-varying-friction": "fzg-roughness",
+    "two-stage-helical": "two-stage-spur",
+}
 #: Commands that are tried apart: a server, and processes that compile.
 _APART = {"app", "warm-up"}
 #: Commands that compute no motion, or one that another test has computed.
 _LIGHT = {"check", "export", "friction-from-loss", "new", "rate", "signal"}
+#: Commands that are tried on every built-in case, the others on one of each structure.
+_ON_ALL = {"check", "export", "friction-from-loss", "new", "rate", "run"}
 #: Reasons for which a command for all kinds may refuse a reduced case: a gear whose mate turns with
 #: a carrier, and machines whose constant teeth excite nothing.
 _EXCUSES = {
@@ -38,9 +51,12 @@ _EXCUSES = {
 _CHEAP = {"film.model": "none", "friction.law": "none", "friction.shear_model": None}
 
 
+_case = cache(tribodyn.load_case)
+
+
 def _reduced(name: str) -> Any:
     """Case with teeth that cost little."""
-    case = tribodyn.load_case(name)
+    case = _case(name)
     if isinstance(case, MachineCase):
         teeth = {f"meshes.{mesh}.stiffness": 5e8 for mesh in case.data.get("meshes", {})}
         films = _CHEAP if "planets" in case.data else {}  # others have no computed teeth left
@@ -90,13 +106,13 @@ def place(tmp_path_factory: pytest.TempPathFactory) -> _Place:
 
 
 def _speed(name: str, factor: float = 1.0) -> str:
-    case = tribodyn.load_case(name)
+    case = _case(name)
     load = case.operation if case.lumped else case.operating_point
     return f"{factor * load.speed * 30.0 / np.pi:.6g}"
 
 
 def _torque(name: str) -> str:
-    case = tribodyn.load_case(name)
+    case = _case(name)
     load = case.operation if case.lumped else case.operating_point
     return f"{load.torque:.6g} N*m"
 
@@ -110,21 +126,21 @@ def _spread(name: str) -> list[str]:
 
 
 def _gear(name: str) -> list[str]:
-    case = tribodyn.load_case(name)
+    case = _case(name)
     return [] if case.lumped else ["--gear", next(iter(case.gears))]
 
 
 def _mesh(name: str) -> list[str]:
-    return ["--mesh", mesh_names(tribodyn.load_case(name))[0]]
+    return ["--mesh", mesh_names(_case(name))[0]]
 
 
 def _followed(name: str) -> list[str]:
-    case = tribodyn.load_case(name)
+    case = _case(name)
     return [] if case.lumped else ["--mesh", next(iter(case.meshes))]
 
 
 def _sensor(name: str) -> str:
-    case = tribodyn.load_case(name)
+    case = _case(name)
     if isinstance(case, MachineCase):
         return f"meshes.{next(iter(case.meshes))}.mesh_force"
     return "mesh_force" if case.lumped else "planet_1.sun_mesh_force"
@@ -178,14 +194,23 @@ def test_every_command_with_a_case_is_tried() -> None:
     assert set(_ARGUMENTS) | _APART == taking
 
 
-#: Studies of motions that take minutes: those of a stage are in test_motions_of_machines.py.
+#: Studies of motions that take minutes: those of a stage are in test_motions_of_machines.py. The
+#: printed tables of sources are compared in tests/paper_cases. Studies of many runs are tried on
+#: machines with shorter ones.
 _LONG = {
-    *(
-        ("continuation", name)
-        for name in ("planetary-stage", "two-stage-helical", "two-stage-spur")
-    ),
-    *(("basins", name) for name in ("two-stage-helical", "two-stage-spur", "wind-turbine-gearbox")),
+    *(("paper", name) for name in papers() if name != "fzg-12dof"),
+    *(("continuation", name) for name in ("planetary-stage", "two-stage-spur")),
+    *(("basins", name) for name in ("two-stage-spur", "wind-turbine-gearbox")),
+    *((study, "wind-turbine-gearbox") for study in ("bifurcation", "sobol", "surrogate")),
 }
+
+
+def test_cases_left_out_have_the_structure_of_another_one() -> None:
+    for name, other in _LIKE_ANOTHER.items():
+        case, like = _case(name), _case(other)
+        assert kind_of(case) == kind_of(like)
+        if case.lumped:
+            assert case.dynamics.model == like.dynamics.model
 
 
 @pytest.mark.parametrize(
@@ -194,7 +219,7 @@ _LONG = {
         pytest.param(command, name, marks=() if command in _LIGHT else pytest.mark.slow)
         for command in sorted(_ARGUMENTS)
         for name in _CASES
-        if (command, name) not in _LONG
+        if (command, name) not in _LONG and (command in _ON_ALL or name not in _LIKE_ANOTHER)
     ],
 )
 def test_it_computes_or_refuses(
@@ -215,7 +240,7 @@ def test_it_computes_or_refuses(
         problems = json.loads(output.out)["error"]["problems"]
         assert code in (1, 2)
         assert all(each["what"] and each["remedy"] for each in problems), problems
-    case = tribodyn.load_case(name)
+    case = _case(name)
     if command in STUDIES and kind_of(case) in PARTS and not takes(command, case):
         assert code == 2
         assert f"{command} does not take one" in output.out
