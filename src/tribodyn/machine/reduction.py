@@ -30,6 +30,9 @@ _LIMITS, _HARMONICS = (5e3, 5e4), 3
 _LARGE = 120
 #: Modes of the shafts between bearings and meshes, which loads and speeds do not change.
 _modes_of_shafts: Memo[tuple[Array, Array]] = Memo(4)
+#: Bases and natural modes of the last machines, which a speed does not change.
+_bases: Memo[tuple[Array, Array]] = Memo(4)
+_natural: Memo[tuple[Array, Array]] = Memo(4)
 
 
 def default_limit(structure: MachineStructure) -> float:
@@ -127,17 +130,21 @@ def reduce_structure(
     limit = default_limit(structure) if limit is None else limit
     require_positive("limit", limit, "Hz")
     require_between("tolerance", tolerance, 1e-9, 1.0, "")
-    basis, names, squares = _craig_bampton(structure, _interface(structure))
-    full, shapes = _modes(structure, limit)
+    interface = _interface(structure)
+    content = structure.mass, structure.stiffness, interface
+    basis, squares = _bases.get(content, lambda: _craig_bampton(structure, interface))
+    names = [structure.names[i] for i in np.flatnonzero(interface)]
+    names += [f"mode {j + 1}_q" for j in range(structure.size - len(names))]
+    squares, (full, amplitudes) = squares.copy(), _natural_modes(structure, limit, basis)
     least = _ROUNDING * np.sqrt((np.diag(structure.stiffness) / np.diag(structure.mass)).max())
     squares[squares <= (_ALL_BELOW * 2.0 * np.pi * limit) ** 2] = np.inf
-    omission = _omission(np.asarray(np.linalg.solve(basis, shapes)), squares, full)
+    omission = _omission(amplitudes, squares, full)
     for share in _SHARES:
         columns = _columns(omission, share * tolerance)
         motion = structure.basis @ basis[:, columns]
         reduction = Reduction(tuple(names[i] for i in columns), motion, limit, 0.0)
         reduced = replace(structure, reduction=reduction)
-        error = _error(full, _modes(reduced, np.inf)[0], least)
+        error = _error(full, _modes(reduced.mass, _at_rest(reduced), np.inf)[0], least)
         if error <= tolerance:
             break
     final = replace(structure, reduction=replace(reduction, error=error))
@@ -162,8 +169,8 @@ def _interface(structure: MachineStructure) -> Mask:
     return np.asarray(used)
 
 
-def _craig_bampton(structure: MachineStructure, interface: Mask) -> tuple[Array, list[str], Array]:
-    """Basis of static displacements and fixed modes, names and squared frequencies of both."""
+def _craig_bampton(structure: MachineStructure, interface: Mask) -> tuple[Array, Array]:
+    """Basis of static displacements and fixed modes, and squared frequencies of both."""
     inner = np.flatnonzero(~interface)
     parts = [m[np.ix_(inner, inner)] for m in (structure.mass, structure.stiffness)]
     squares, shapes = _modes_of_shafts.get((*parts,), lambda: _fixed_modes(*parts))
@@ -174,12 +181,8 @@ def _craig_bampton(structure: MachineStructure, interface: Mask) -> tuple[Array,
     coupled = shapes[:, elastic].T @ structure.stiffness[np.ix_(inner, edge)]
     basis[inner, : len(edge)] = -shapes[:, elastic] @ (coupled / squares[elastic, None])
     basis[inner, len(edge) :] = shapes
-    names = [structure.names[i] for i in edge] + [f"mode {j + 1}_q" for j in range(len(inner))]
-    return (
-        basis,
-        names,
-        np.concatenate((np.full(len(edge), np.inf), np.where(elastic, squares, np.inf))),
-    )
+    fixed = np.where(elastic, squares, np.inf)
+    return basis, np.concatenate((np.full(len(edge), np.inf), fixed))
 
 
 def _fixed_modes(mass: Array, stiffness: Array) -> tuple[Array, Array]:
@@ -220,16 +223,36 @@ def _columns(omission: Array, tolerance: float) -> Index:
     return np.flatnonzero(size >= (1.0 - _ALIKE) * least)  # all of equal size, or none
 
 
-def _modes(structure: MachineStructure, limit: float) -> tuple[Array, Array]:
-    """Natural frequencies and shapes at rest up to a limit, meshes at their mean stiffness [Hz]."""
-    from scipy.linalg import eigh
+def _natural_modes(structure: MachineStructure, limit: float, basis: Array) -> tuple[Array, Array]:
+    """Natural frequencies up to a limit [Hz], and amplitudes of a basis in their modes."""
+    # Limits that follow the speed of a study share the modes up to a round one.
+    highest = _LIMITS[0] * 2.0 ** float(np.ceil(np.log2(limit / _LIMITS[0])))
+    content = structure.mass, _at_rest(structure)
 
+    def compute() -> tuple[Array, Array]:
+        frequency, shapes = _modes(*content, highest)
+        return frequency, np.asarray(np.linalg.solve(basis, shapes))
+
+    frequency, amplitudes = _natural.get((*content, np.array([highest])), compute)
+    below = frequency <= limit
+    return frequency[below], amplitudes[:, below]
+
+
+def _at_rest(structure: MachineStructure) -> Array:
+    """Stiffness (n, n) with meshes at their mean stiffness."""
     stiffness = structure.stiffness.copy()
     for name in structure.machine.meshes:
         direction = structure.mesh(name)
         stiffness += structure.mesh_stiffness(name) * np.outer(direction, direction)
+    return stiffness
+
+
+def _modes(mass: Array, stiffness: Array, limit: float) -> tuple[Array, Array]:
+    """Natural frequencies up to a limit [Hz], and shapes."""
+    from scipy.linalg import eigh
+
     subset = None if np.isinf(limit) else (-np.inf, (2.0 * np.pi * limit) ** 2)
-    squares, shapes = eigh(stiffness, structure.mass, subset_by_value=subset)
+    squares, shapes = eigh(stiffness, mass, subset_by_value=subset)
     shapes = shapes @ standard_rotation(squares, shapes.T).T
     return np.sqrt(np.maximum(squares, 0.0)) / (2.0 * np.pi), shapes
 

@@ -160,10 +160,3 @@ def _distinct(limits: Iterable[float]) -> list[float]:
         if not out or limit - out[-1] > SAME_PLACE:
             out.append(limit)
     return out
-
-
-def diagonal_blocks(matrices: list[Array], last: Array) -> Array:
-    """Matrix of blocks along the diagonal."""
-    from scipy.linalg import block_diag
-
-    return np.asarray(block_diag(*matrices, *([last] if len(last) else [])))

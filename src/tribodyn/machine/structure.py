@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from functools import cached_property, lru_cache
 from typing import Any
@@ -21,7 +21,7 @@ from tribodyn.machine.machine import Machine
 from tribodyn.machine.mesh import mean_over_phase
 from tribodyn.machine.planetary.turning_frame import centrifugal_force, frame_terms
 from tribodyn.machine.shaft import Shaft
-from tribodyn.machine.shaft_matrices import ShaftMatrices, diagonal_blocks
+from tribodyn.machine.shaft_matrices import ShaftMatrices
 from tribodyn.machine.static.supports import linear_load
 from tribodyn.types import Array, Mask
 
@@ -169,8 +169,8 @@ class MachineStructure:
     @cached_property
     def mass(self) -> Array:
         """Mass matrix, (n, n) [kg, kg*m, kg*m^2]."""
-        masses = [shaft.mass for shaft in self.shafts.values()]
-        total = self._projected(diagonal_blocks(masses, self._housing("mass")))
+        masses = {name: shaft.mass for name, shaft in self.shafts.items()}
+        total = self._assembled({**masses, "": self._housing("mass")})
         for _, body, motion in self._bodies():
             across = body.transverse_moment_of_inertia
             inertia = [*3 * [body.mass], body.moment_of_inertia, across, across]
@@ -209,8 +209,7 @@ class MachineStructure:
         elements = {}
         for name, shaft in self.shafts.items():
             if shaft.shaft.sections:
-                rows = self.basis[self._rows[name]]
-                elements[f"shafts.{name}"] = rows.T @ shaft.stiffness @ rows
+                elements[f"shafts.{name}"] = self._assembled({name: shaft.stiffness})
         for name, coupling in self.machine.couplings.items():
             twist = self.twist(name)
             elements[f"couplings.{name}"] = coupling.torsional_stiffness * np.outer(twist, twist)
@@ -218,15 +217,13 @@ class MachineStructure:
             motion = self.bearing(name)
             elements[f"bearings.{name}"] = motion.T @ bearing.stiffness_matrix @ motion
         if self.machine.housing is not None:
-            rows = self.basis[self._rows[""]]
-            elements["housing"] = rows.T @ self._housing("stiffness") @ rows
+            elements["housing"] = self._assembled({"": self._housing("stiffness")})
         return elements
 
     @cached_property
     def damping(self) -> Array:
         """Damping matrix, (n, n) [N*s/m, N*s, N*m*s]."""
-        rows = self.basis[self._rows[""]]
-        total = rows.T @ self._housing("damping") @ rows
+        total = self._assembled({"": self._housing("damping")})
         for name, bearing in self.machine.bearings.items():
             motion = self.bearing(name)
             total = total + motion.T @ bearing.damping_matrix @ motion
@@ -256,8 +253,9 @@ class MachineStructure:
         """
         speed = self.machine.operation.speed if speed is None else speed
         ratios = {name: float(load.ratio) for name, load in self.machine.kinematics.shafts.items()}
-        blocks = [speed * ratios[name] * shaft.gyroscopic for name, shaft in self.shafts.items()]
-        total = self._projected(diagonal_blocks(blocks, 0.0 * self._housing("mass")))
+        total = self._assembled(
+            {n: speed * ratios[n] * shaft.gyroscopic for n, shaft in self.shafts.items()}
+        )
         for shaft, body, motion in self._bodies():
             momentum = speed * ratios[shaft] * body.moment_of_inertia
             turned = momentum * np.outer(motion[4], motion[5])
@@ -354,7 +352,7 @@ class MachineStructure:
         """
         bearing, motion = self.machine.bearings[name], self.bearing(name)
         load = linear_load(bearing, np.asarray(position) @ motion.T)
-        if velocity is not None:
+        if velocity is not None and bearing.damping_matrix.any():
             load = load + np.asarray(velocity) @ motion.T @ bearing.damping_matrix
         return load
 
@@ -435,8 +433,15 @@ class MachineStructure:
             force = force - self.bearing(name).T @ bearing.rest_load
         return np.asarray(force + centrifugal_force(self))
 
-    def _projected(self, matrix: Array) -> Array:
-        return np.asarray(self.basis.T @ matrix @ self.basis)
+    def _assembled(self, blocks: Mapping[str, Array]) -> Array:
+        """Sum of matrices of shafts, and of the housing under "", in the coordinates (n, n)."""
+        total = np.zeros((self.size, self.size))
+        for name, block in blocks.items():
+            rows = self.basis[self._rows[name]]
+            moving = np.flatnonzero(rows.any(axis=0))  # few coordinates move a shaft
+            rows = rows[:, moving]
+            total[np.ix_(moving, moving)] += rows.T @ block @ rows
+        return total
 
     def _housing(self, kind: str) -> Array:
         housing = self.machine.housing

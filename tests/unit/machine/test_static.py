@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 from scipy.optimize import root
 
+from tribodyn.arrays.memory import Memo
 from tribodyn.errors import ComputationError, InputError, ModelWarning
 from tribodyn.machine import (
     AngularContactBallBearing,
@@ -464,3 +465,23 @@ def test_forces_of_rounding_are_no_findings(torque, clearance):
     for idle in (machine, spur_stage(stiffness=4e8), helical_stage()):
         balance = static_balance(replace(idle, operation=replace(idle.operation, torque=torque)))
         assert all(abs(mesh.force) < 1e-6 for mesh in balance.meshes.values())
+
+
+def test_a_balance_that_is_kept_is_that_of_its_own_loads_and_laws(monkeypatch):
+    machine = helical_stage()
+    faster = replace(machine, operation=replace(machine.operation, speed=500.0))
+    crowned = FaceLaw(5.2e8, 0.05, 1e-5 * np.linspace(-1.0, 1.0, 81) ** 2)
+    rolling = {n: replace(b, axial_stiffness=3e8) for n, b in machine.bearings.items()}
+    stages = [
+        (machine, {}), (faster, {}), (helical_stage(torque=500.0), {}),
+        (machine, {"first": FaceLaw(5.2e8, 0.05)}), (machine, {"first": crowned}),
+        (helical_stage(rolling), {}),
+    ]  # fmt: skip
+    kept = [static_balance(each, laws=laws) for each, laws in stages]
+    moved = [balance.gears["z1"].tolist() for balance in kept]
+    assert moved[1] == moved[0]
+    assert kept[1].machine is faster
+    assert len({*map(tuple, moved)}) == len(moved) - 1
+    for (each, laws), before in zip(stages, moved, strict=True):
+        monkeypatch.setattr("tribodyn.machine.static.balance._solved", Memo(1))
+        assert static_balance(each, laws=laws).gears["z1"].tolist() == before

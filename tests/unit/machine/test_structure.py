@@ -7,6 +7,7 @@ import pytest
 from machines import DEGREE, RPM, split_path, two_stage_parts, two_stages
 from scipy.linalg import eigh
 
+from tribodyn.arrays.memory import Memo
 from tribodyn.dynamics import natural_modes, spur6
 from tribodyn.errors import InputError
 from tribodyn.machine import (
@@ -126,6 +127,18 @@ def test_modes_of_shafts_are_those_of_another_bearing_stiffness(full, reduced, m
     few = reduce_structure(other, 5000.0)
     got = np.sqrt(eigh(few.stiffness, few.mass, eigvals_only=True)[6:20])
     np.testing.assert_allclose(got, expected, rtol=1e-3)
+
+
+def test_reductions_do_not_depend_on_those_before(full, monkeypatch):
+    limits = (4000.0, 6000.0, 5000.0)
+    kept = [reduce_structure(full, limit) for limit in limits]
+    for limit, before in zip(limits, kept, strict=True):
+        for name in ("_bases", "_natural", "_modes_of_shafts"):
+            monkeypatch.setattr(f"tribodyn.machine.reduction.{name}", Memo(1))
+        alone = reduce_structure(full, limit)
+        assert alone.names == before.names
+        assert alone.reduction.error == before.reduction.error
+        np.testing.assert_array_equal(alone.basis, before.basis)
 
 
 def test_reduction_against_the_full_model(full, reduced):

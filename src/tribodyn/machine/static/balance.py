@@ -13,6 +13,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import ArrayLike
 
+from tribodyn.arrays.memory import Memo
 from tribodyn.errors import (
     Argument,
     ComputationError,
@@ -34,6 +35,8 @@ from tribodyn.types import Array
 _STEPS, _STRIDE, _TOLERANCE = 200, 2e-4, 1e-12
 #: Share of the greatest load, and force [N], below which a force is rounding.
 _ROUNDING = 1e-9
+#: Displacements of the last balances, which a speed does not change.
+_solved: Memo[tuple[Array, float, int]] = Memo(8)
 #: Points at which the deflection of a shaft is sampled, besides its nodes.
 _POINTS = 41
 
@@ -273,7 +276,9 @@ def static_balance(
             raise InputError(what, Argument(f"loads[{name}]"), why, "Give six numbers")
         external += values @ model.gears[name]
     output_row = model.structure.balance
-    displacement, output, steps = _solve(model, external, output_row)
+    displacement, output, steps = _solved.get(
+        (external, output_row, *model.content), lambda: _solve(model, external, output_row)
+    )
     return _balance(model, external, displacement, output, steps)
 
 

@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import replace
+from dataclasses import dataclass, is_dataclass, replace
 from functools import cached_property
 
 import numpy as np
 from numpy.typing import ArrayLike
 
+from tribodyn.arrays.memory import Arrays
 from tribodyn.errors import ComputationError, InputError
 from tribodyn.gear import Misalignment
 from tribodyn.machine.bearing import HELD, Bearing, takes_axial_force
@@ -94,10 +95,19 @@ class StaticModel:
         first, second = (self.machine.gears[gear] for gear in mesh.gears)
         stiffness, error = mean_stiffness(mesh, (first, second)), mean_over_phase(mesh.error)
 
-        def linear(compression: float, slope: float) -> tuple[float, float, ArrayLike]:
-            return stiffness * (compression - error), 0.0, ((stiffness, 0.0), (0.0, 0.0))
+        return _LinearLaw(stiffness, error)
 
-        return linear
+    @property
+    def content(self) -> Arrays:
+        """What the balance under given forces follows from: arrays, and parts that are kept."""
+        laws: list[object] = [self.law(name) for name in self.meshes]
+        numbers = [np.ravel(v) for law in laws if is_dataclass(law) for v in vars(law).values()]
+        parts: list[object] = [*self.machine.bearings.values(), *map(type, laws)]
+        parts += [law for law in laws if not is_dataclass(law)]
+        objects = np.empty(len(parts), dtype=object)
+        objects[:] = parts
+        rows = np.concatenate([*self.meshes.values(), *self.bearings.values()])
+        return self.stiffness, self.scale, rows, np.concatenate([[0.0], *numbers]), objects
 
     def face_width(self, name: str) -> float:
         """Common face width of a mesh."""
@@ -125,6 +135,19 @@ class StaticModel:
             return None
         moved = (displacement - np.asarray(part.offset))[list(HELD)]
         return part.rolling.state(seated(part.rolling, moved) if part.floating else moved)
+
+
+@dataclass(frozen=True)
+class _LinearLaw:
+    """Constant stiffness of a mesh."""
+
+    stiffness: float
+    error: float
+
+    def __call__(self, compression: float, slope: float) -> tuple[float, float, ArrayLike]:
+        """Force, moment about mid face, and their derivatives."""
+        stiff = self.stiffness
+        return stiff * (compression - self.error), 0.0, ((stiff, 0.0), (0.0, 0.0))
 
 
 def _as_spring(bearing: Bearing) -> Bearing:
