@@ -8,11 +8,11 @@ from known_random_machines import random_machine
 from tribodyn.dynamics import Contact, System, harmonic_balance
 from tribodyn.dynamics.equations.grid import PointEvaluator, system_events
 from tribodyn.dynamics.equations.nodes import evaluate_rows
+from tribodyn.dynamics.equations.orbit_coordinates import direction_basis
 from tribodyn.dynamics.harmonic.harmonic_balance import prepare
 from tribodyn.dynamics.harmonic.newton import solve_linear
 from tribodyn.dynamics.harmonic.orbit_response import series
 from tribodyn.dynamics.modal.closed_structure import ClosedStructure
-from tribodyn.dynamics.modal.contact_equations import _basis
 from tribodyn.errors import quiet
 from tribodyn.mesh import phase_grid
 from tribodyn.mesh.grid import MonotonePhaseFunction, PhaseFunction
@@ -35,10 +35,47 @@ def test_directions_of_few_rows_are_in_the_basis():
     flat = generator.normal(size=(2000, 3)) @ generator.normal(size=(3, 9))
     flat[1234] += 1e-6 * generator.normal(size=9)  # rows between those that are looked at first
     flat[777] = generator.normal(size=9)
-    basis = _basis([flat.reshape(500, 4, 9), np.zeros((1, 9))], inverse)
+    basis = direction_basis([flat.reshape(500, 4, 9), np.zeros((1, 9))], inverse)[0]
     rows = flat @ inverse.T
     assert basis.T @ basis == pytest.approx(np.eye(5), abs=1e-12)
     assert rows @ basis @ basis.T == pytest.approx(rows, abs=1e-9)
+
+
+def test_rounding_of_a_derivative_is_no_direction():
+    wave = np.sin(2.0 * np.pi * np.arange(3000) / 3000)[:, None]
+    base, moved = np.random.default_rng(2).normal(size=(2, 9))
+    # A numerical derivative is exact against the directions, also where it is small itself.
+    noise = 1e-11 * np.random.default_rng(3).normal(size=(3000, 9))
+    slope = np.roll(wave, 750, axis=0) * moved + noise
+    basis, some = direction_basis([base + wave * moved], np.eye(9), slope)
+    assert basis.shape == (9, 2)
+    assert np.linalg.matrix_rank(some, 1e-9) == 2
+    assert direction_basis([base + wave * moved, slope], np.eye(9))[0].shape == (9, 9)
+
+
+@pytest.mark.parametrize(("gap", "depth", "enough"), [(None, 0.02, True), (0.2, 0.3, False)])
+def test_plain_products_solve_as_those_of_a_time_integration(gap, depth, enough):
+    machine = random_machine(18, gap=gap, depth=depth)
+    frequency = 2.0 / machine.cycles
+    residual = prepare(machine, frequency).residual(128 * machine.cycles, frequency)
+    state = residual.at(0.5 * random_response(residual, np.random.default_rng(0), 0.5, 0.2))
+    steps = {}
+    for plain in (False, True):
+        residual.plain = plain
+        steps[plain], _ = residual.correction(state, 1e-9)
+    assert residual.plain is enough  # where few do not suffice they are not tried again
+    size = np.abs(steps[False]).max()
+    assert steps[True] == pytest.approx(steps[False], abs=1e-6 * size)
+
+
+def test_derivatives_of_a_table_over_many_coordinates_are_those_of_a_function():
+    grid = phase_grid((0.0, 0.3), 64)
+    table = PhaseFunction(grid, np.stack((np.sin(grid.phase), grid.phase**2), axis=1))
+    onto = np.random.default_rng(5).normal(size=(2, 7))
+    wide = PhaseFunction(grid, table.values, onto)
+    rows = PointEvaluator(np.linspace(0.0, 0.99, 40), (0.0, 0.3))
+    plain = rows.derivatives("direction", lambda x: table(x) @ onto, 7)
+    assert rows.derivatives("direction", wide, 7) == pytest.approx(plain, rel=1e-9, abs=1e-10)
 
 
 @pytest.mark.parametrize("direct", [False, True])

@@ -14,6 +14,7 @@ from typing import Any
 
 import numpy as np
 
+from tribodyn.arrays.linear_algebra import times
 from tribodyn.arrays.memory import Memo
 from tribodyn.dynamics.equations.entry import (
     Entry,
@@ -22,7 +23,7 @@ from tribodyn.dynamics.equations.entry import (
     refuse_jumps,
     varies,
 )
-from tribodyn.dynamics.equations.phases import table_of
+from tribodyn.dynamics.equations.phases import narrower, table_of
 from tribodyn.dynamics.equations.system import System
 from tribodyn.errors import InputError
 from tribodyn.types import Array, Index, Mask
@@ -211,6 +212,8 @@ class RowEvaluator:
         """Derivatives with respect to phase on the nodes, from a five-point stencil."""
         if not varies(entry):
             return np.broadcast_to(0.0, (*self.nodes.shape, size))
+        if (narrow := narrower(entry)) is not None:
+            return times(self.derivatives(where, narrow[0], len(narrow[1])), narrow[1].T)
         span = self._high - self._low
         step = np.minimum(_STENCIL / getattr(entry, "cycles", 1), span / 8.0)
         centre = np.clip(self.nodes, self._low + 2.0 * step, self._high - 2.0 * step)

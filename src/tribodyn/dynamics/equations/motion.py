@@ -146,7 +146,11 @@ def forces(
     total = times(scales.force * unrepeated(rows.force, 1) + extra, inverse) - elastic
     total -= damped
     if scales is _SAME:
-        total -= _pushed(times(unrepeated(rows.force_direction, 2), inverse), contact)
+        few = unrepeated(rows.force_direction, 2)
+        if len(few) == 1:
+            total -= _pushed(times(few, inverse), contact)
+        else:
+            total -= times(_pushed(few, contact), inverse)
     else:
         total -= _pushed(times(unrepeated(rows.direction, 2), inverse), contact)
         rub = times(rows.force_direction - rows.direction, inverse)

@@ -9,6 +9,7 @@ mean stiffness.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import NamedTuple, Protocol
@@ -33,8 +34,9 @@ from tribodyn.errors import InputError, warn
 from tribodyn.types import Array, Mask
 
 _RANK = 1e-9
-#: Directions of a contact over the clock that are replaced by a basis of them.
-_MANY = 4096
+#: Part of a singular value below which a direction depends on others, every which is taken for a
+#: first basis, and number of random directions that test all others.
+_DEPENDENT, _SAMPLED, _PROBES = 1e-10, 31, 8
 #: Share of the acceleration by the forces in free motions above which a warning is issued.
 _UNBALANCED = 1e-3
 #: Part of the friction at rest that is not balanced, but may be in motion, without a warning.
@@ -50,6 +52,7 @@ class OrbitCoordinates:
     moving: Array  #: the same for velocities
     free: Array  #: free motions: neither position nor velocity matters
     rate: float | Array  #: weight of positions against velocities [rad/s]
+    along: Array  #: orthonormal basis, in the mass metric, of the directions of contacts
 
     @cached_property
     def inverse(self) -> Array:
@@ -138,27 +141,41 @@ def orbit_coordinates(compiled: Compiled, mesh_frequency: float) -> OrbitCoordin
     return replace(shared, rate=2.0 * np.pi * mesh_frequency)
 
 
-def structure_coordinates(compiled: Compiled) -> OrbitCoordinates:
+def structure_coordinates(compiled: Sampled) -> OrbitCoordinates:
     """Reduced coordinates of a system at 1 rad/s."""
-    system, nodes = compiled.system, compiled.nodes
-    used = _used_directions(nodes.direction, nodes.direction_slope)
-    matrices = (np.asarray(getattr(system, name)) for name in ("mass", "stiffness", "rate_matrix"))
-    arrays = (*matrices, used)
-    return _coordinates_cache.get(arrays, lambda: _coordinates(*arrays))
+    system = compiled.system
+    mass, stiffness, damping = (
+        np.asarray(getattr(system, name)) for name in ("mass", "stiffness", "rate_matrix")
+    )
+    along, used = _along(compiled, np.linalg.inv(np.linalg.cholesky(mass)))
+    if len(used) > system.size:
+        used = np.asarray(np.linalg.qr(used, mode="r"))  # of the same lengths
+    arrays = (mass, stiffness, damping, used)
+    return _coordinates_cache.get(arrays, lambda: _coordinates(*arrays, along))
+
+
+def _along(compiled: Sampled, inverse: Array) -> tuple[Array, Array]:
+    """Basis (n, r) in which contacts are compressed, and directions with the same span."""
+    counts = [each.cycles for each in compiled.system.contacts]
+    cycles = max((count for count in counts if isinstance(count, int)), default=1)
+    nodes = compiled.nodes
+    return direction_basis([nodes.direction], inverse, nodes.direction_slope, cycles)
 
 
 #: Coordinates of the last systems at 1 rad/s: a study builds the same structure many times.
 _coordinates_cache: Memo[OrbitCoordinates] = Memo(8)
 
 
-def _coordinates(mass: Array, stiffness: Array, damping: Array, used: Array) -> OrbitCoordinates:
+def _coordinates(
+    mass: Array, stiffness: Array, damping: Array, used: Array, along: Array
+) -> OrbitCoordinates:
     lower = np.asarray(np.linalg.cholesky(mass), dtype=float)
     inverse = np.linalg.inv(lower)
     used = used @ inverse.T
     spring, damper = inverse @ stiffness @ inverse.T, inverse @ damping @ inverse.T
     elastic = _row_space([spring, used])
     moving = _row_space([spring, used, damper])
-    return OrbitCoordinates(lower, elastic, moving, _complement(moving), 1.0)
+    return OrbitCoordinates(lower, elastic, moving, _complement(moving), 1.0, along)
 
 
 def warn_of_unbalanced(compiled: Compiled, coordinates: OrbitCoordinates) -> None:
@@ -216,20 +233,46 @@ def refuse_disconnected(compiled: Compiled) -> None:
     )
 
 
-def _used_directions(*parts: Array) -> Array:
-    """Different directions of all contacts (m, n); one row for a contact of constant direction."""
-    rows = [np.zeros((0, parts[0].shape[-1]))]
-    for part in parts:
-        last = rows[0]
-        for number in range(part.shape[-2]):
-            contact = unrepeated(part[..., number, :], 1).reshape(-1, part.shape[-1])
-            if np.array_equal(contact, last):  # another ramp of one force law
-                continue
-            last, varying = contact, np.ptp(contact, axis=0).any()
-            if varying and len(contact) > _MANY:  # rows of the same space, with the same lengths
-                contact = np.asarray(np.linalg.qr(contact, mode="r"))
-            rows.append(contact if varying else contact[:1])
-    return np.asarray(np.unique(np.vstack(rows), axis=0))
+def direction_basis(
+    parts: Sequence[Array], inverse: Array, slope: Array | None = None, cycles: int = 1
+) -> tuple[Array, Array]:
+    """Basis (n, r) of directions (..., n), and some of them (m, n) that have the same span."""
+    # inverse: of the lower factor of the mass matrix, in whose metric the basis is orthonormal
+    # slope: numerical derivatives of the first part over so many cycles, exact against its length
+    size = len(inverse)
+    rows = [unrepeated(part, 1).reshape(-1, size) for part in parts]
+    least = [0.0] * len(rows)
+    if slope is not None:
+        lengths = np.linalg.norm(rows[0][::_SAMPLED] @ inverse.T, axis=1)
+        rows.append(unrepeated(slope, 1).reshape(-1, size))
+        least.append(cycles * float(lengths.max(initial=0.0)))
+    some = [part[::_SAMPLED] for part in rows]
+    basis = _span([_counted(*each, inverse) for each in zip(some, least, strict=True)])
+    # Most rows repeat what some span; components along random directions show those that do not.
+    random = np.random.default_rng(0).standard_normal((size, _PROBES)) / np.sqrt(_PROBES)
+    probes, left = inverse.T @ random, inverse.T @ (random - basis @ (basis.T @ random))
+    outside = []
+    for part, short in zip(rows, least, strict=True):
+        length = np.maximum(np.linalg.norm(part @ probes, axis=1), short)
+        outside.append(part[np.linalg.norm(part @ left, axis=1) > _DEPENDENT * length])
+    others = [_counted(*each, inverse) for each in zip(outside, least, strict=True)]
+    return _span([basis.T, *others]), np.concatenate((*some, *outside))
+
+
+def _counted(rows: Array, least: float, inverse: Array) -> Array:
+    """Rows in the mass metric, each over its length, or over the least one that counts fully."""
+    rows = rows @ inverse.T
+    length = np.maximum(np.linalg.norm(rows, axis=1), least)
+    return np.asarray(rows[length > 0.0] / length[length > 0.0, None])
+
+
+def _span(parts: Sequence[Array]) -> Array:
+    """Orthonormal basis (n, r) of rows (m, n)."""
+    rows = np.concatenate(parts)
+    if not len(rows):
+        return np.zeros((rows.shape[1], 0))
+    _, values, basis = np.linalg.svd(np.linalg.qr(rows, mode="r"), full_matrices=False)
+    return np.ascontiguousarray(basis[values > _DEPENDENT * values[0]].T)
 
 
 def _complement(basis: Array) -> Array:
@@ -266,6 +309,61 @@ class Sampled(Protocol):
         """Its entries."""
 
 
+@dataclass(frozen=True)
+class OverBases:
+    """A system whose contacts have the components of their directions along bases of them."""
+
+    system: System
+    nodes: Nodes
+    coordinates: OrbitCoordinates
+    along: Array  #: basis of compressions (n, r), orthonormal in the mass metric
+    push: Array  #: basis of forces (n, s)
+
+    @classmethod
+    def of(
+        cls,
+        compiled: Sampled,
+        extra: Array | None = None,
+        coordinates: OrbitCoordinates | None = None,
+    ) -> OverBases:
+        """The same for a system on which further forces (m, n) may act."""
+        system, nodes = compiled.system, compiled.nodes
+        if coordinates is None:
+            coordinates = structure_coordinates(compiled)
+            inverse, along = coordinates.inverse, coordinates.along
+        else:  # of a part of the contacts
+            inverse = coordinates.inverse
+            along = _along(compiled, inverse)[0]
+        pushes = [nodes.force_direction, nodes.friction_direction, nodes.force[..., None, :]]
+        pushes += [] if extra is None else [extra]
+        if system.balance is not None:
+            pushes.append(np.asarray(system.balance)[None])
+        push = direction_basis(pushes, inverse)[0]
+        into = {"direction": along, "force_direction": push, "friction_direction": push}
+        parts = {n: _components(getattr(nodes, n), inverse.T @ b) for n, b in into.items()}
+        return cls(system, nodes._replace(**parts), coordinates, along, push)
+
+    @property
+    def bases(self) -> tuple[Array, Array]:
+        """Both bases as directions of the system (n, r) and (n, s)."""
+        return self.coordinates.lower @ self.along, self.coordinates.lower @ self.push
+
+
+def _components(directions: Array, into: Array) -> Array:
+    """Components of directions (..., contacts, n); equal ones of two contacts are equal."""
+    few = unrepeated(directions, 2)
+    parts = [few[..., j, :] @ into for j in range(few.shape[-2])]
+    joined = np.stack(parts, axis=-2) if parts else np.zeros((*few.shape[:-1], into.shape[1]))
+    return np.broadcast_to(joined, (*directions.shape[:-1], into.shape[1]))
+
+
+def _compressed(compiled: Sampled, position: Array) -> Array:
+    """Compression of every contact at a position (n,)."""
+    if isinstance(compiled, OverBases):
+        position = position @ compiled.bases[0]
+    return compression(compiled.nodes, position)
+
+
 def static_start(compiled: Sampled) -> Array:
     """State at rest under the mean loads, every contact on its driving flank."""
     nodes = compiled.nodes
@@ -275,7 +373,7 @@ def static_start(compiled: Sampled) -> Array:
     carrying = stiffness
     position = _equilibrium(compiled, carrying, gap)
     for _ in range(0 if lowest.all() else _ROUNDS):
-        beyond = compression(nodes, position)[..., None] > gap
+        beyond = _compressed(compiled, position)[..., None] > gap
         closed = np.where(lowest | beyond, stiffness, 0.0)
         if np.array_equal(closed, carrying):
             break
@@ -291,7 +389,7 @@ class Rest(NamedTuple):
     floating: Mask  #: contacts that carry nothing, in the middle of their dead zones
 
 
-def at_rest(compiled: Compiled) -> Rest:
+def at_rest(compiled: OverBases) -> Rest:
     """Static equilibrium; a body that nothing loads is in the middle between its flanks."""
     nodes, position = compiled.nodes, static_start(compiled)
     lowest = lowest_of_each_law(nodes) & nodes.stiffness.any(axis=(0, 1))
@@ -306,11 +404,11 @@ def at_rest(compiled: Compiled) -> Rest:
     return Rest(state[: compiled.system.size], floating)
 
 
-def _unloaded(compiled: Compiled, state: Array) -> Mask:
+def _unloaded(compiled: OverBases, state: Array) -> Mask:
     """Contacts without a mean force at rest, where those lowest of a force law are closed."""
     nodes = compiled.nodes
     stiffness, gap = springs(nodes)
-    pressed = compression(nodes, state[: compiled.system.size])[..., None] - gap
+    pressed = _compressed(compiled, state[: compiled.system.size])[..., None] - gap
     closed = pressed > 0.0
     closed[..., 0] |= lowest_of_each_law(nodes)
     force, most = (
@@ -328,39 +426,56 @@ def _equilibrium(compiled: Sampled, carrying: Array, gap: Array) -> Array:
         nodes = nodes._replace(gap=pressed / np.where(carrying > 0.0, carrying, 1.0))
     else:
         carrying = carrying[..., 0]
-    position = balanced_position(system, nodes, carrying, nodes.force_direction)
+    bases = compiled.bases if isinstance(compiled, OverBases) else None
+    position = balanced_position(system, nodes, carrying, nodes.force_direction, bases)
     for _ in range(_ROUNDS if system.frictions else 0):
-        load = carried_load(system, carrying * (compression(nodes, position) - nodes.gap))
+        load = carried_load(system, carrying * (_compressed(compiled, position) - nodes.gap))
         ratio = friction_secant(system, nodes.friction_coefficients, load)
         last, position = (
             position,
-            balanced_position(system, nodes, carrying, push_with_friction(system, nodes, ratio)),
+            balanced_position(
+                system, nodes, carrying, push_with_friction(system, nodes, ratio), bases
+            ),
         )
         if np.abs(position - last).max() <= 1e-12 * np.abs(position).max():
             break
     return position
 
 
-def balanced_position(system: System, nodes: Nodes, carrying: Array, push: Array) -> Array:
+def balanced_position(
+    system: System,
+    nodes: Nodes,
+    carrying: Array,
+    push: Array,
+    bases: tuple[Array, Array] | None = None,
+) -> Array:
     """Position at rest if each newton of a contact pushes with ``push`` (..., contacts, n)."""
+    # bases: those along which directions and ``push`` have components
     weight = nodes.weight[..., None] * carrying
     stiffness, pushed = _sums(push, weight, nodes.direction, nodes.error + nodes.gap)
+    if bases is not None:
+        stiffness, pushed = bases[1] @ stiffness @ bases[0].T, pushed @ bases[1].T
     stiffness = stiffness + np.asarray(system.stiffness)
     force = np.einsum("...rs,...rsi->...i", nodes.weight, nodes.force) + pushed
     # Least squares in mass-weighted coordinates: free motions get no displacement.
     scale = 1.0 / np.sqrt(np.diag(np.asarray(system.mass)))
     matrix = stiffness * np.outer(scale, scale)
+    if matrix.ndim == 2:
+        return np.asarray(scale * np.linalg.lstsq(matrix, scale * force, rcond=1e-12)[0])
     inverse = np.linalg.pinv(matrix, rcond=1e-12)
     return np.asarray(scale * np.einsum("...ij,...j->...i", inverse, scale * force))
 
 
 def _sums(push: Array, weight: Array, along: Array, shift: Array) -> tuple[Array, Array]:
-    """Sums of ``weight push along`` (..., n, n) and of ``weight push shift`` (..., n)."""
-    lead, size = push.shape[:-4], push.shape[-1]
-    if not lead and unrepeated(push, 2).size == unrepeated(along, 2).size == push[0, 0].size:
+    """Sums of ``weight push along`` (..., s, r) and of ``weight push shift`` (..., s)."""
+    lead, size, wide = push.shape[:-4], push.shape[-1], along.shape[-1]
+    constant_push, constant_along = (
+        not lead and unrepeated(part, 2).size == part[0, 0].size for part in (push, along)
+    )
+    if constant_push and constant_along:
         total, moved = weight.sum(axis=(0, 1)), (weight * shift).sum(axis=(0, 1))
         return (push[0, 0].T * total) @ along[0, 0], push[0, 0].T @ moved
-    if not lead and unrepeated(along, 2).size == along[0, 0].size:
+    if constant_along:
         # Of each contact only the sum of its pushes counts.
         flat = push.reshape(-1, *push.shape[2:])
         pairs = np.stack((weight, weight * shift)).reshape(2, *flat.shape[:2])
@@ -368,8 +483,9 @@ def _sums(push: Array, weight: Array, along: Array, shift: Array) -> tuple[Array
         return total.T @ along[0, 0], moved.sum(axis=0)
     flat = np.swapaxes(push.reshape(*lead, -1, size), -1, -2)
     factors = np.stack((weight, weight * shift), axis=-1).reshape(*lead, -1, 2)
-    if (constant := unrepeated(along, 1)).size == size:  # a factor of the sum
+    if (constant := unrepeated(along, 1)).size == wide:  # a factor of the sum
         sums = flat @ factors
-        return sums[..., :1] * constant.reshape(size), sums[..., 1]
-    weighted = factors[..., :1] * np.broadcast_to(along, push.shape).reshape(*lead, -1, size)
+        return sums[..., :1] * constant.reshape(wide), sums[..., 1]
+    each = np.broadcast_to(along, (*push.shape[:-1], wide)).reshape(*lead, -1, wide)
+    weighted = factors[..., :1] * each
     return flat @ weighted, (flat @ factors[..., 1:])[..., 0]

@@ -18,6 +18,7 @@ from tribodyn.nomenclature import require_whole
 from tribodyn.types import Array
 
 if TYPE_CHECKING:
+    from tribodyn.dynamics.equations.entry import Entry
     from tribodyn.dynamics.equations.system import Contact, LoadFriction, System
 
 
@@ -136,6 +137,17 @@ def table_of(entry: Any) -> tuple[Any, int, float] | None:
     if not (hasattr(table, "grid") and isinstance(getattr(table, "values", None), np.ndarray)):
         return None
     return (table, entry.cycles, entry.offset) if clocked else (table, 1, 0.0)
+
+
+def narrower(entry: object) -> tuple[Entry, Array] | None:
+    """Table with fewer columns and the matrix that makes them those of an entry, if it has both."""
+    if (looked_up := table_of(entry)) is None:
+        return None
+    table, cycles, offset = looked_up
+    if (onto := getattr(table, "onto", None)) is None or 2 * len(onto) > onto.shape[1]:
+        return None
+    narrow = replace(table, onto=None)
+    return (ClockEntry(narrow, cycles, offset) if isinstance(entry, ClockEntry) else narrow), onto
 
 
 def same_entry(first: object, second: object) -> bool:

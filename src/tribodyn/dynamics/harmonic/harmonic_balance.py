@@ -17,10 +17,10 @@ from numpy.typing import ArrayLike
 from tribodyn.dynamics.equations.compiled import Compiled, sample_system
 from tribodyn.dynamics.equations.grid import system_events
 from tribodyn.dynamics.equations.orbit_coordinates import (
+    OverBases,
     Rest,
     at_rest,
     refuse_disconnected,
-    structure_coordinates,
     warn_of_unbalanced,
 )
 from tribodyn.dynamics.equations.system import System, contact_label
@@ -39,6 +39,7 @@ from tribodyn.dynamics.modal.modal_march import ModalMotion
 from tribodyn.dynamics.time.response import Response, build_response
 from tribodyn.dynamics.time.simulate import read_start
 from tribodyn.errors import ComputationError, InputError, require_positive, warn
+from tribodyn.interrupt import single_blas_thread
 from tribodyn.nomenclature import require_flag, require_number, require_whole
 from tribodyn.progress import SILENT, Progress
 from tribodyn.types import Array, ComplexArray, Mask
@@ -106,12 +107,10 @@ def prepare(system: System, frequency: float, steps: int = 0) -> Prepared:
     steps = max(2 * _FIRST, steps, -(-2 * len(system_events(system)) // system.cycles))
     compiled = sample_system(system, steps)
     refuse_disconnected(compiled)
-    coordinates = structure_coordinates(compiled)
-    warn_of_unbalanced(compiled, coordinates)
-    equilibrium = at_rest(compiled)
-    structure, closed = close_contacts(
-        compiled, np.zeros((0, system.size)), equilibrium, coordinates
-    )
+    narrow = OverBases.of(compiled)
+    warn_of_unbalanced(compiled, narrow.coordinates)
+    equilibrium = at_rest(narrow)
+    structure, closed = close_contacts(narrow, equilibrium)
     prepared = Prepared(system, structure, closed, equilibrium, {steps: compiled})
     _cache[:] = [(weakref.ref(system), prepared), *_cache[:3]]
     return prepared
@@ -209,10 +208,12 @@ def harmonic_balance(
             what, why = "stability = True", "Motions over several phases have no multipliers"
             raise InputError(what, "stability", why, "Integrate disturbances over time instead")
         progress.start("Steady motion", None)
-        motion = phase_balance(system, frequency, steps, start, tolerance)
+        with single_blas_thread():  # threads of small matrices only wait for each other
+            motion = phase_balance(system, frequency, steps, start, tolerance)
         progress.finish()
         return motion
-    return _on_clock(system, frequency, steps, start, tolerance, stability, progress)
+    with single_blas_thread():
+        return _on_clock(system, frequency, steps, start, tolerance, stability, progress)
 
 
 def _on_clock(
@@ -230,8 +231,9 @@ def _on_clock(
     require_positive("frequency", frequency, "Hz")
     count = _FIRST if steps is None else require_whole("steps", steps, 8)
     progress.start("Steady motion", None)
-    prepared = prepare(system, frequency, 0 if steps is None else count)
-    if prepared.structure.coordinates.moving.shape[1] == 0 or not system.contacts:
+    fewest = 0 if steps is None else count
+    prepared = prepare(system, frequency, fewest) if system.contacts else None
+    if prepared is None or prepared.structure.coordinates.moving.shape[1] == 0:
         what = "no coordinate is moved by a contact"
         remedy = "Add a contact, or use forced_response for a structure alone"
         raise InputError(what, "System.contacts", "Harmonic balance acts at contacts", remedy)

@@ -14,9 +14,8 @@ from tribodyn.dynamics.harmonic.residual import ClockResidual
 from tribodyn.dynamics.time.response import Response, build_response
 from tribodyn.types import Array, ComplexArray, Index
 
-#: Refinement of the samples between which the motion is interpolated, points of a polynomial, and
-#: phases that are evaluated together.
-_REFINED, _POINTS, _CHUNK = 4, 8, 1024
+#: Refinement of the samples between which the motion is interpolated, and points of a polynomial.
+_REFINED, _POINTS = 4, 8
 #: Terms of the exponential series of a pulse within its step, of which the last is below 1e-15.
 _TERMS = 22
 
@@ -143,13 +142,13 @@ def series(amplitudes: ComplexArray, steps: int, phase: Array) -> Array:
     nearest = np.rint(place)
     if np.abs(place - nearest).max() < 1e-7:
         return np.asarray(fine[nearest.astype(np.int64) % count])
+    from scipy.sparse import csr_matrix
+
     first = np.floor(place).astype(np.int64) - _POINTS // 2 + 1
-    weights, result = _lagrange(place - first), np.zeros((phase.size, amplitudes.shape[1]))
-    for begin in range(0, phase.size, _CHUNK):
-        rows = slice(begin, begin + _CHUNK)
-        for point in range(_POINTS):
-            result[rows] += weights[rows, point, None] * fine[(first[rows] + point) % count]
-    return result
+    columns = (first[:, None] + np.arange(_POINTS)) % count
+    ends = np.arange(0, columns.size + 1, _POINTS)
+    shares = _lagrange(place - first).reshape(-1), columns.reshape(-1), ends
+    return np.asarray(csr_matrix(shares, (phase.size, count)) @ fine)
 
 
 def _lagrange(place: Array) -> Array:

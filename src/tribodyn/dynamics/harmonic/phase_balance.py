@@ -11,6 +11,7 @@ import numpy as np
 
 from tribodyn.arrays.memory import machine_memory
 from tribodyn.dynamics.equations.orbit_coordinates import (
+    OverBases,
     at_rest,
     orbit_coordinates,
     refuse_disconnected,
@@ -135,8 +136,9 @@ class _Search:
         means = rows.means
         refuse_disconnected(means)
         orbit_coordinates(means, float(frequency.max()))  # warns of forces that do not balance
-        equilibrium = at_rest(means)
-        structure, _ = close_contacts(means, sampled_forces(system), equilibrium)
+        narrow = OverBases.of(means, sampled_forces(system))
+        equilibrium = at_rest(narrow)
+        structure, _ = close_contacts(narrow, equilibrium)
         parts = parts_of(rows, structure, equilibrium)
         return cls(rows, parts[0].structure, parts, equilibrium.position)
 
@@ -249,7 +251,8 @@ def _supported(
         springs = [spring for _, two in pairs for spring in two]
         supported = replace(system, contacts=[*system.contacts, *springs])
         if laws is not supports:
-            position = at_rest(PhaseRows.of(supported, frequency).means).position
+            means = PhaseRows.of(supported, frequency).means
+            position = at_rest(OverBases.of(means)).position
             loads = np.array([each.displacement(position) for each in supports])
     return supported, [law for law, _ in pairs]
 

@@ -14,7 +14,7 @@ from typing import Any
 
 import numpy as np
 
-from tribodyn.dynamics.equations.orbit_coordinates import Rest
+from tribodyn.dynamics.equations.orbit_coordinates import OverBases, Rest
 from tribodyn.dynamics.harmonic.meshwise_inverse import MeshwiseInverse
 from tribodyn.dynamics.harmonic.newton import LINEAR, State
 from tribodyn.dynamics.harmonic.phase_contacts import PhaseContacts, axis_of
@@ -77,9 +77,9 @@ def parts_of(rows: PhaseRows, structure: ClosedStructure, equilibrium: Rest) -> 
     parts = []
     for key, meshes in groups.items():
         some, members = rows.some(meshes), np.sort(np.concatenate([m.contacts for m in meshes]))
-        none = np.zeros((0, rows.system.size))
         resting = equilibrium._replace(floating=equilibrium.floating[members])
-        law, closed = close_contacts(some.means, none, resting, structure.coordinates)
+        narrow = OverBases.of(some.means, None, structure.coordinates)
+        law, closed = close_contacts(narrow, resting)
         means = law.along, law.push, law.contact_stiffness, law.contact_damping
         parts.append(Part(some, members, *key, structure, *means, closed, resting.floating))
     push, along = structure.push, structure.along

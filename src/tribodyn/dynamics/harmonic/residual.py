@@ -26,6 +26,8 @@ from tribodyn.types import Array, ComplexArray, Index, Mask
 _MEMORY, _FEWEST = 2**29, 30
 #: Residual over the size of the motion that is rounding.
 _ROUNDING = 3e-14
+#: States of a structure from which plain products cost less than its march, and most of them.
+_LARGE, _PLAIN = 100, 24
 
 
 class OnGrid(NamedTuple):
@@ -96,6 +98,7 @@ class Residual:
 
     structure: ClosedStructure
     links: dict[tuple[int, int], _Link]
+    plain = False  #: whether a few products without an approximate inverse are tried first
 
     def __init__(self, parts: Sequence[OnGrid], prior: Residual | None = None) -> None:
         self.parts = list(parts)
@@ -209,6 +212,11 @@ class Residual:
         """Newton step of a motion, and the number of products that it took."""
         if np.linalg.norm(state.residual, axis=1).max(initial=0.0) <= _ROUNDING * state.size:
             return -state.residual, 0  # rounding: a body that nothing holds would magnify it
+        if self.plain:
+            step, count = solve_linear(self.derivative(state), -state.residual, accuracy, _PLAIN)
+            if count < _PLAIN:
+                return step, count
+            self.plain = False
         vectors = int(np.clip(_MEMORY // state.y.nbytes, _FEWEST, VECTORS))
         product, *nearly = self.preconditioned(state)
         solution, count = solve_linear(product, -state.residual, accuracy, vectors)
@@ -226,6 +234,7 @@ class ClockResidual(Residual):
         structure.refuse_resonance(grid.omega)
         still, members = np.zeros((1, structure.along.shape[1]), complex), np.arange(len(closed))
         self.structure, self.contacts, self.frequency = structure, contacts, frequency
+        self.plain = len(structure.matrix) >= _LARGE
         contacts = contacts.turning(frequency)
         super().__init__([OnGrid.of(structure, grid, contacts, still, members, closed, floating)])
 

@@ -82,13 +82,16 @@ class ClosedStructure:
         values = np.linalg.eigvals(self.matrix) if self.modes is None else self.modes[0]
         return -float(values.real.max(initial=-np.inf))
 
-    def respond(self, omega: Array, force: ComplexArray) -> ComplexArray:
-        """Amplitudes of the state (k, m) under forces (k, s)."""
+    def respond(
+        self, omega: Array, force: ComplexArray, output: Array | None = None
+    ) -> ComplexArray:
+        """Amplitudes of the state, or of rows of it (c, m), under forces (k, s)."""
         if self.modes is None:
-            return self._solve(omega, (force @ self.input.T)[..., None])[..., 0]
+            state = self._solve(omega, (force @ self.input.T)[..., None])[..., 0]
+            return state if output is None else np.asarray(state @ output.T)
         values, right, left = self.modes
         modal = force @ (left @ self.input).T / (1j * omega[:, None] - values)
-        return np.asarray(modal @ right.T, dtype=complex)
+        return np.asarray(modal @ (right if output is None else output @ right).T, dtype=complex)
 
     def _solve(self, omega: Array, loads: ComplexArray) -> ComplexArray:
         """Amplitudes under loads on the state (k or 1, m, c), without modes."""
@@ -169,20 +172,25 @@ class ClosedStructure:
 
     def motion(self, omega: Array, force: ComplexArray) -> tuple[ComplexArray, ComplexArray]:
         """Amplitudes (k, n) of positions and velocities under forces (k, s)."""
-        c, count = self.coordinates, self.places.shape[1]
-        state = self.respond(omega, force)
-        elastic, moving = state[:, :count] @ self.places.T, state[:, count:]
-        per_omega = np.divide(
-            1.0, 1j * omega, where=omega != 0.0, out=np.zeros(omega.size, complex)
-        )
-        turned = (moving @ c.braked) * per_omega[:, None] @ (c.moving @ c.braked).T
-        positions = state[:, :count] @ np.linalg.inv(self.root).T
-        pushed = force @ (c.free.T @ self.push).T
-        pushed = pushed - np.hstack((positions, moving)) @ self.free_rows.T
-        free_rate = pushed * per_omega[:, None]
-        x = elastic + turned + free_rate * per_omega[:, None] @ c.free.T
-        rate = moving @ c.moving.T + free_rate @ c.free.T
-        return x @ c.inverse, rate @ c.inverse
+        c, (size, count) = self.coordinates, self.places.shape
+        free_rows = self.free_rows.copy()
+        free_rows[:, :count] = free_rows[:, :count] @ np.linalg.inv(self.root)
+        zero = np.zeros
+        output = np.vstack((
+            np.hstack((c.inverse.T @ self.places, zero((size, len(self.matrix) - count)))),
+            np.hstack((zero((c.braked.shape[1], count)), c.braked.T)),
+            free_rows,
+        ))  # fmt: skip
+        moved = self.respond(omega, force, output)
+        elastic, braked, held = np.split(moved, [size, size + c.braked.shape[1]], axis=1)
+        still = omega == 0.0
+        per_omega = np.divide(1.0, 1j * omega, where=~still, out=zero(omega.size, complex))[:, None]
+        pushed = (force @ (c.free.T @ self.push).T - held) * per_omega**2
+        turned = (c.moving @ c.braked).T @ c.inverse
+        x = elastic + (braked * per_omega) @ turned + pushed @ (c.free.T @ c.inverse)
+        rate = 1j * omega[:, None] * x
+        rate[still] = self.respond(omega[still], force[still])[:, count:] @ (c.moving.T @ c.inverse)
+        return x, rate
 
 
 def _energy_root(stored: Array) -> Array:

@@ -14,7 +14,6 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from tribodyn.dynamics.equations.compiled import Compiled
 from tribodyn.dynamics.equations.grid import PointEvaluator, system_events, unrepeated
 from tribodyn.dynamics.equations.motion import compression, has_gap, sides
 from tribodyn.dynamics.equations.nodes import (
@@ -26,12 +25,7 @@ from tribodyn.dynamics.equations.nodes import (
     lowest_of_each_law,
     springs,
 )
-from tribodyn.dynamics.equations.orbit_coordinates import (
-    OrbitCoordinates,
-    Rest,
-    at_rest,
-    structure_coordinates,
-)
+from tribodyn.dynamics.equations.orbit_coordinates import OverBases, Rest, at_rest
 from tribodyn.dynamics.equations.system import System
 from tribodyn.dynamics.modal.closed_structure import ClosedStructure
 from tribodyn.types import Array, Index, Mask
@@ -39,12 +33,10 @@ from tribodyn.types import Array, Index, Mask
 if TYPE_CHECKING:
     from scipy.sparse import csr_matrix
 
-#: Part of a singular value below which a direction depends on others; of an entry that is no jump.
-_RANK, _JUMP = 1e-10, 1e-5
+#: Part of an entry that is no jump.
+_JUMP = 1e-5
 #: Power of the correction of a spring that just touches: larger than 1, only near this.
 _TOUCH = 4
-#: Of so many directions one is taken for a first basis; random directions that test all others.
-_SAMPLED, _PROBES = 31, 8
 
 
 class Rows(NamedTuple):
@@ -270,33 +262,22 @@ def _touch_factor(
 
 
 def close_contacts(
-    compiled: Compiled,
-    extra: Array,
-    equilibrium: Rest | None = None,
-    coordinates: OrbitCoordinates | None = None,
+    compiled: OverBases, equilibrium: Rest | None = None
 ) -> tuple[ClosedStructure, Mask]:
-    """Structure with closed contacts, and those closed at rest; ``extra`` (m, n) forces act too."""
-    # Contacts that carry nothing are in the structure, but not closed.
-    system, nodes = compiled.system, compiled.nodes
-    coordinates = coordinates or structure_coordinates(compiled)
-    inverse = coordinates.inverse
-    pushes = [nodes.force_direction, nodes.friction_direction, nodes.force[..., None, :], extra]
-    if system.balance is not None:
-        pushes.append(np.asarray(system.balance)[None])
-    along = _basis([nodes.direction, nodes.direction_slope], inverse)
-    push = _basis(pushes, inverse)
+    """Structure with closed contacts, and those closed at rest."""
+    nodes, bases = compiled.nodes, (compiled.push, compiled.along)
     still, floating = equilibrium or at_rest(compiled)
     stiffness, gap = springs(nodes)
-    pressed = compression(nodes, still)[..., None] - gap
+    pressed = compression(nodes, still @ compiled.bases[0])[..., None] - gap
     closed = np.einsum("rs,rsjm->jm", nodes.weight, pressed) > 0.0
     closed[:, 0] |= lowest_of_each_law(nodes)
-    into_along = _distinct(nodes.direction) @ (inverse.T @ along)
-    into_push = _distinct(nodes.force_direction) @ (inverse.T @ push)
     carried = np.where(closed, stiffness, 0.0).sum(axis=-1)
     damped = np.where(closed[:, 0], nodes.damping, 0.0)
-    means = [outer(into_push, part[:, 0], into_along) for part in (carried, damped)]
+    into = _distinct(nodes.force_direction), _distinct(nodes.direction)
+    means = [outer(into[0], part[:, 0], into[1]) for part in (carried, damped)]
     shifts = [np.tensordot(nodes.weight.sum(axis=1), part, 1) for part in means]
-    return ClosedStructure(system, coordinates, push, along, *shifts), closed & ~floating[:, None]
+    structure = ClosedStructure(compiled.system, compiled.coordinates, *bases, *shifts)
+    return structure, closed & ~floating[:, None]
 
 
 def contact_equations(
@@ -362,31 +343,6 @@ def jumping_events(before: Nodes, after: Nodes) -> Index:
             jump = np.abs(right - left).reshape(len(left), -1).max(axis=1, initial=0.0)
             jumps |= jump > _JUMP * scale
     return np.flatnonzero(jumps)
-
-
-def _basis(parts: list[Array], inverse: Array) -> Array:
-    """Orthonormal basis (n, r) of directions (..., n), each of which counts by its direction."""
-    size = parts[0].shape[-1]
-    rows = [unrepeated(part, 1).reshape(-1, size) for part in parts]
-    basis = _span(np.concatenate([part[::_SAMPLED] for part in rows]) @ inverse.T)
-    # Most rows repeat what some span; components along random directions show those that do not.
-    random = np.random.default_rng(0).standard_normal((size, _PROBES))
-    probes, left = inverse.T @ random, inverse.T @ (random - basis @ (basis.T @ random))
-    outside = [
-        part[np.linalg.norm(part @ left, axis=1) > _RANK * np.linalg.norm(part @ probes, axis=1)]
-        for part in rows
-    ]
-    return _span(np.concatenate((basis.T, np.concatenate(outside) @ inverse.T)))
-
-
-def _span(rows: Array) -> Array:
-    """Orthonormal basis (n, r) of the directions of rows (m, n)."""
-    length = np.linalg.norm(rows, axis=1)
-    rows = rows[length > 0.0] / length[length > 0.0, None]
-    if not len(rows):
-        return np.zeros((rows.shape[1], 0))
-    _, values, basis = np.linalg.svd(np.linalg.qr(rows, mode="r"), full_matrices=False)
-    return np.ascontiguousarray(basis[values > _RANK * values[0]].T)
 
 
 def components(direction: Array, motion: Array) -> Array:

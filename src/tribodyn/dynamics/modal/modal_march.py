@@ -17,6 +17,7 @@ from tribodyn.dynamics._engine.statistics import Statistics
 from tribodyn.dynamics.equations.compiled import Compiled, compile_lanes, sample_system
 from tribodyn.dynamics.equations.motion import forces, has_gap, with_middles
 from tribodyn.dynamics.equations.nodes import Nodes, ramp_count, springs
+from tribodyn.dynamics.equations.orbit_coordinates import OverBases
 from tribodyn.dynamics.equations.system import System, contact_label
 from tribodyn.dynamics.modal.closed_structure import ClosedStructure
 from tribodyn.dynamics.modal.contact_equations import close_contacts, with_dead_zone
@@ -241,7 +242,7 @@ class ModalEngine:
     """Integrate lanes of one system in modal coordinates, one after the other."""
 
     def __init__(self, compiled: Compiled, extra_force: Array) -> None:
-        self.structure, _ = close_contacts(compiled, extra_force)
+        self.structure, _ = close_contacts(OverBases.of(compiled, extra_force))
         self.motion = ModalMotion(compiled, self.structure)
 
     def step_number(self, frequency: float) -> float:

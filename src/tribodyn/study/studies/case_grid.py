@@ -167,10 +167,11 @@ _LEFT, _LONGEST = 1e-9, 500
 def settling_periods(member: Moving) -> int:
     """Periods of the clock in which the slowest mode of a machine decays, 500 at most."""
     from tribodyn.dynamics.equations.compiled import sample_system
+    from tribodyn.dynamics.equations.orbit_coordinates import OverBases
     from tribodyn.dynamics.modal.contact_equations import close_contacts
 
     sampled = sample_system(member.system, member.steps)
-    structure, _ = close_contacts(sampled, np.zeros((0, member.system.size)))
+    structure, _ = close_contacts(OverBases.of(sampled))
     periods = -np.log(_LEFT) * member.frequency / max(structure.decay, 1e-300)
     return int(np.ceil(min(periods, _LONGEST)))
 
