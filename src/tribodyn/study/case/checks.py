@@ -170,7 +170,7 @@ def _lubrication_inputs(inputs: UserInput, law: FrictionLaw | None) -> KeyedProb
         and not any(f"gears.{name}" in inputs for name in rough)
     ):
         why = f"{users[0]} needs it"
-        remedy = 'Add composite_roughness = "0.5 um" to [gears], or roughness_ra to both gears'
+        remedy = 'Add composite_roughness = "0.5 um", or roughness_ra to both gears'
         what = "composite_roughness is missing"
         yield "gears.composite_roughness", Problem(what, "", why, remedy)
 
