@@ -49,6 +49,7 @@ def under_even_load(added: FaceInfluence) -> Array:
     return np.asarray(mean / added.face_width)
 
 
+@pytest.mark.slow
 def test_a_crack_over_a_wide_face_is_that_of_plane_strain() -> None:
     gear = wheel(0.06)
     added = influence(gear, 2e-3, 0.0, 0.06)
@@ -57,6 +58,7 @@ def test_a_crack_over_a_wide_face_is_that_of_plane_strain() -> None:
     np.testing.assert_allclose(ratio, 1.0 - STEEL.poissons_ratio**2, rtol=0.02)
 
 
+@pytest.mark.slow
 def test_compliance_is_reciprocal_and_grows_with_the_crack() -> None:
     gear = wheel(0.014, 20.0)
     cracks = [(1e-3, 5e-3), (2e-3, 5e-3), (2e-3, 14e-3)]
