@@ -7,8 +7,8 @@ each line of a script that uses it. Functions and classes that are decorated wit
 
 from __future__ import annotations
 
-import ast
 import functools
+import re
 import sys
 import warnings
 from collections.abc import Callable, Mapping
@@ -134,7 +134,8 @@ def names_of_stub(page: str) -> dict[str, str]:
     """Module of each public name of a page, as the stub of the page imports it.
 
     The stub ``__init__.pyi`` is the only list of the names: editors and type checkers read it, and
-    so does the page when it is imported.
+    so does the page when it is imported. Each name has a statement
+    ``from MODULE import NAME as NAME`` of its own.
 
     Parameters
     ----------
@@ -146,7 +147,6 @@ def names_of_stub(page: str) -> dict[str, str]:
     dict of str to str
         Module by name.
     """
-    stub = ast.parse(Path(page).with_suffix(".pyi").read_text(encoding="utf-8"))
-    imports = [node for node in stub.body if isinstance(node, ast.ImportFrom)]
-    names = ((alias, node.module or "") for node in imports for alias in node.names)
-    return {alias.name: module for alias, module in names if alias.asname}
+    stub = Path(page).with_suffix(".pyi").read_text(encoding="utf-8")
+    imports = re.findall(r"from (tribodyn[\w.]*) import \(?\s*(\w+) as", stub)
+    return {name: module for module, name in imports}

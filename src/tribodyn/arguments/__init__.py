@@ -4,6 +4,7 @@
 |---|---|
 | `annotations` | values that an annotation accepts |
 | `display` | one line for any object |
+| `pages` | pages of public names, loaded when they are first used |
 | `quantities` | numbers from objects of unit libraries |
 | `reading` | validated calls, and messages about wrong arguments |
 """

@@ -15,52 +15,6 @@
 | ``bearing_defect`` | frequencies of a damaged rolling bearing and its impacts |
 """
 
-from tribodyn.arguments import guard
-from tribodyn.faults.bearing_defect import BearingDefect, BearingForce, BearingImpacts
-from tribodyn.faults.cracked_face import crack_influence
-from tribodyn.faults.cracked_tooth import crack_compliance
-from tribodyn.faults.damage import BrokenTooth, Crack, Spall
-from tribodyn.faults.deviations import (
-    InclinedFlanks,
-    PitchDeviations,
-    Waviness,
-    eccentricity,
-    pitch_tolerances,
-)
-from tribodyn.faults.driven import DrivenSystem, clock_cycles, drive
-from tribodyn.faults.excitation import RandomLoad, ShaftExcitation, SpeedFluctuation, TorqueRipple
-from tribodyn.faults.fault import Fault
-from tribodyn.faults.flanks import FlankDeviations, FlankTopographies, slope_tolerances
-from tribodyn.faults.turning import TurningMesh, turning_mesh, turns_of
+from tribodyn.arguments.pages import public_page
 
-__all__ = [
-    "BearingDefect",
-    "BearingForce",
-    "BearingImpacts",
-    "BrokenTooth",
-    "Crack",
-    "DrivenSystem",
-    "Fault",
-    "FlankDeviations",
-    "FlankTopographies",
-    "InclinedFlanks",
-    "PitchDeviations",
-    "RandomLoad",
-    "ShaftExcitation",
-    "Spall",
-    "SpeedFluctuation",
-    "TorqueRipple",
-    "TurningMesh",
-    "Waviness",
-    "clock_cycles",
-    "crack_compliance",
-    "crack_influence",
-    "drive",
-    "eccentricity",
-    "pitch_tolerances",
-    "slope_tolerances",
-    "turning_mesh",
-    "turns_of",
-]
-
-guard(__name__)
+__all__, __getattr__, __dir__ = public_page(__name__, __file__)

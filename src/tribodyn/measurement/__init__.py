@@ -15,44 +15,6 @@
 | ``synthetic`` | synthetic run-up with prescribed orders |
 """
 
-from tribodyn.arguments import guard
-from tribodyn.measurement.comparison import Comparison, compare
-from tribodyn.measurement.mesh_speed import MeshSpeed, mesh_speed
-from tribodyn.measurement.orders import OrderSpectrum, order_map, order_spectrum
-from tribodyn.measurement.recording import Recording, read
-from tribodyn.measurement.shaft_speed import ShaftSpeed
-from tribodyn.measurement.sideband_cursors import (
-    ShaftLines,
-    SidebandCursors,
-    modulating_shaft,
-    sideband_cursors,
-)
-from tribodyn.measurement.signal_analysis import SignalAnalysis, analyse_signal
-from tribodyn.measurement.synthetic import synthetic_run_up
-from tribodyn.measurement.tacho import shaft_angle
-from tribodyn.measurement.vold_kalman import TrackedOrders, track_orders
+from tribodyn.arguments.pages import public_page
 
-__all__ = [
-    "Comparison",
-    "MeshSpeed",
-    "OrderSpectrum",
-    "Recording",
-    "ShaftLines",
-    "ShaftSpeed",
-    "SidebandCursors",
-    "SignalAnalysis",
-    "TrackedOrders",
-    "analyse_signal",
-    "compare",
-    "mesh_speed",
-    "modulating_shaft",
-    "order_map",
-    "order_spectrum",
-    "read",
-    "shaft_angle",
-    "sideband_cursors",
-    "synthetic_run_up",
-    "track_orders",
-]
-
-guard(__name__)
+__all__, __getattr__, __dir__ = public_page(__name__, __file__)

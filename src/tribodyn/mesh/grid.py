@@ -10,7 +10,6 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
-from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -20,15 +19,10 @@ from tribodyn.arrays.splines import monotone_cubic
 from tribodyn.errors import InputError
 from tribodyn.types import Array, ComplexArray, Index
 
-if TYPE_CHECKING:
-    from scipy.sparse import csr_matrix
-
 #: Cubic interpolation needs three intervals; Simpson's rule an even number.
 _LEAST_INTERVALS = 4
 #: Sets of phases whose knots are remembered, and their sizes.
-_CACHED_MATRICES, _FEWEST_CACHED, _MOST_CACHED = 8, 512, 65536
-#: Values of a knot from which on it pays to read them together.
-_WIDE = 12
+_CACHED_PLACES, _FEWEST_CACHED, _MOST_CACHED = 8, 512, 65536
 
 
 @dataclass(frozen=True, eq=False)
@@ -85,29 +79,17 @@ class PhaseGrid:
             return np.asarray(np.einsum("k...,k...c->c...", weights, columns[knots]))
         if phase.size <= _MOST_CACHED:
             # Tables of one case and of all its operating points are evaluated at the same phases.
-            matrix = self._matrices.get((phase,), lambda: self._matrix(phase))
+            knots, weights = self._places.get((phase,), lambda: self._located(phase.ravel()))
         else:
-            matrix = self._matrix(phase)
-        if columns.shape[1] == 1:
-            interpolated = matrix @ columns[:, 0]
-        elif columns.shape[1] < _WIDE:
-            interpolated = np.array([matrix @ column for column in np.ascontiguousarray(columns.T)])
-        else:  # reads all values of a knot at once
-            interpolated = (matrix @ columns).T
-        return np.ascontiguousarray(interpolated).reshape(-1, *phase.shape)
-
-    def _matrix(self, phase: Array) -> csr_matrix:
-        """Matrix of interpolation from the knots to phases."""
-        from scipy.sparse import csr_matrix
-
-        knots, weights = (each.reshape(4, -1).T.ravel() for each in self._located(phase))
-        return csr_matrix(
-            (weights, knots, np.arange(0, weights.size + 1, 4)), (phase.size, self.phase.size)
-        )
+            knots, weights = self._located(phase.ravel())
+        interpolated = np.empty((columns.shape[1], phase.size))
+        for column, place in zip(np.ascontiguousarray(columns.T), interpolated, strict=True):
+            np.einsum("kp,kp->p", weights, column.take(knots), out=place)
+        return interpolated.reshape(-1, *phase.shape)
 
     @cached_property
-    def _matrices(self) -> Memo[csr_matrix]:
-        return Memo(_CACHED_MATRICES)
+    def _places(self) -> Memo[tuple[Index, Array]]:
+        return Memo(_CACHED_PLACES)
 
     def _located(self, phase: Array) -> tuple[Index, Array]:
         folded = np.mod(phase, 1.0)

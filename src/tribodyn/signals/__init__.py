@@ -19,57 +19,6 @@ and the methods of diagnosis can be imported from this page too.
 | ``synchronous_average`` | what repeats with the rotation, and its variance before a damage |
 """
 
-from tribodyn.arguments import guard
-from tribodyn.signals.cepstrum import Cepstrum, cepstrum, lifter
-from tribodyn.signals.condition_indicators import ConditionIndicators, condition_indicators
-from tribodyn.signals.cyclic_coherence import CyclicCoherence, cyclic_coherence
-from tribodyn.signals.demodulation import NarrowbandDemodulation, narrowband_demodulation
-from tribodyn.signals.envelope import Kurtogram, kurtogram
-from tribodyn.signals.gear_indicators import (
-    energy_ratio,
-    fm0,
-    fm4,
-    kurtosis,
-    m6a,
-    m8a,
-    na4,
-    na4_star,
-    nb4,
-    sideband_index,
-    sideband_level_factor,
-)
-from tribodyn.signals.synchronous_average import (
-    SynchronousAverage,
-    locked_variance,
-    time_synchronous_average,
-)
+from tribodyn.arguments.pages import public_page
 
-__all__ = [
-    "Cepstrum",
-    "ConditionIndicators",
-    "CyclicCoherence",
-    "Kurtogram",
-    "NarrowbandDemodulation",
-    "SynchronousAverage",
-    "cepstrum",
-    "condition_indicators",
-    "cyclic_coherence",
-    "energy_ratio",
-    "fm0",
-    "fm4",
-    "kurtogram",
-    "kurtosis",
-    "lifter",
-    "locked_variance",
-    "m6a",
-    "m8a",
-    "na4",
-    "na4_star",
-    "narrowband_demodulation",
-    "nb4",
-    "sideband_index",
-    "sideband_level_factor",
-    "time_synchronous_average",
-]
-
-guard(__name__)
+__all__, __getattr__, __dir__ = public_page(__name__, __file__)

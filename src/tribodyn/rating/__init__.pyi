@@ -1,0 +1,47 @@
+from tribodyn.rating.conditions import RatingConditions as RatingConditions
+from tribodyn.rating.elements.bearing_life import BearingLife as BearingLife
+from tribodyn.rating.elements.bearing_life import RatedBearing as RatedBearing
+from tribodyn.rating.elements.bearing_life import bearing_life as bearing_life
+from tribodyn.rating.elements.bearing_life import contamination_factor as contamination_factor
+from tribodyn.rating.elements.bearing_life import deep_groove_load as deep_groove_load
+from tribodyn.rating.elements.bearing_life import (
+    life_modification_factor as life_modification_factor,
+)
+from tribodyn.rating.elements.bearing_life import reference_viscosity as reference_viscosity
+from tribodyn.rating.elements.bearing_life import system_life as system_life
+from tribodyn.rating.elements.element_life import ball_bearing_life as ball_bearing_life
+from tribodyn.rating.elements.element_life import roller_bearing_life as roller_bearing_life
+from tribodyn.rating.elements.rainflow import LoadCycles as LoadCycles
+from tribodyn.rating.elements.rainflow import rainflow_cycles as rainflow_cycles
+from tribodyn.rating.elements.shaft_fatigue import ShaftMaterial as ShaftMaterial
+from tribodyn.rating.elements.shaft_fatigue import ShaftNotch as ShaftNotch
+from tribodyn.rating.elements.shaft_fatigue import ShaftRating as ShaftRating
+from tribodyn.rating.elements.shaft_fatigue import ShaftStress as ShaftStress
+from tribodyn.rating.elements.shaft_fatigue import rate_shaft as rate_shaft
+from tribodyn.rating.factor import Factor as Factor
+from tribodyn.rating.influence.dynamic_factor import DynamicFactor as DynamicFactor
+from tribodyn.rating.influence.dynamic_factor import dynamic_factor as dynamic_factor
+from tribodyn.rating.influence.face_load import face_load_factor as face_load_factor
+from tribodyn.rating.life import cycles_to_failure as cycles_to_failure
+from tribodyn.rating.life import life_factor as life_factor
+from tribodyn.rating.materials import GearMaterial as GearMaterial
+from tribodyn.rating.oil import GearOil as GearOil
+from tribodyn.rating.pair_rating import GearRating as GearRating
+from tribodyn.rating.pair_rating import PairRating as PairRating
+from tribodyn.rating.pair_rating import rate_pair as rate_pair
+from tribodyn.rating.rated_gear import PinionShaft as PinionShaft
+from tribodyn.rating.rated_gear import RatedGear as RatedGear
+from tribodyn.rating.rated_gear import ShaperCutter as ShaperCutter
+from tribodyn.rating.root_elements import RootStress as RootStress
+from tribodyn.rating.root_elements import root_stress_by_elements as root_stress_by_elements
+from tribodyn.rating.spectrum import GearDamage as GearDamage
+from tribodyn.rating.spectrum import SpectrumLoad as SpectrumLoad
+from tribodyn.rating.spectrum import SpectrumRating as SpectrumRating
+from tribodyn.rating.spectrum import load_classes as load_classes
+from tribodyn.rating.spectrum import rate_spectrum as rate_spectrum
+from tribodyn.rating.surface.subsurface import LineContactStress as LineContactStress
+from tribodyn.rating.surface.subsurface import SubsurfaceExposure as SubsurfaceExposure
+from tribodyn.rating.surface.subsurface import line_contact_stress as line_contact_stress
+from tribodyn.rating.surface.subsurface import subsurface_exposure as subsurface_exposure
+from tribodyn.rating.tolerances import Deviations as Deviations
+from tribodyn.rating.tolerances import gear_tolerances as gear_tolerances
