@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import platform
+import sys
 from collections.abc import Sequence
 from datetime import UTC, datetime
 from functools import lru_cache
@@ -126,10 +127,13 @@ _FOLDER = Path(__file__).parent
 @lru_cache(maxsize=4)
 def template(name: str) -> Any:
     """Read a template of this package."""
-    from jinja2 import Environment, FileSystemLoader, StrictUndefined
+    from jinja2 import Environment, FileSystemBytecodeCache, FileSystemLoader, StrictUndefined
 
+    folder = _FOLDER / "__pycache__"
+    kept = not sys.dont_write_bytecode and os.access(folder, os.W_OK)
     environment = Environment(
         loader=FileSystemLoader(_FOLDER),
+        bytecode_cache=FileSystemBytecodeCache(str(folder)) if kept else None,
         autoescape=True,
         undefined=StrictUndefined,
         trim_blocks=True,
