@@ -19,10 +19,12 @@ from tribodyn.dynamics.equations.orbit_coordinates import (
 from tribodyn.dynamics.equations.phases import read_frequencies
 from tribodyn.dynamics.equations.system import System, contact_label
 from tribodyn.dynamics.harmonic.newton import Solution, State, newton
+from tribodyn.dynamics.harmonic.phase_contacts import PhaseContacts
 from tribodyn.dynamics.harmonic.phase_grid import PhaseGrid
 from tribodyn.dynamics.harmonic.phase_residual import Part, PhaseResidual, parts_of
 from tribodyn.dynamics.harmonic.phase_response import (
     PhaseResponse,
+    along_line,
     growth,
     marched_response,
     phase_response,
@@ -49,9 +51,23 @@ _MANY, _MOST = 2**17, 3 * 2**14
 _SMOOTH, _FALLING, _BROKEN = ((2e-7, _MANY),), 0.1, ((1e-5, 2**13), (2e-3, _MOST))
 #: Memory of a motion per unknown [byte].
 _BYTES = 1.5e3
-#: Time per unknown of all grids of a search, and of a motion on stated points; time per line and
-#: sample of the record [s].
-_SEARCHED, _STATED, _SUMMED = 1e-4, 6e-5, 8e-8
+#: Time of a grid, per unknown of it for each part of the system and for each phase [s], and part of
+#: its lines that are more than rounding: where nothing moves, of forces that are smooth along the
+#: motion, of those that jump, and where flanks separate.
+_WORK = {
+    "steady": (0.01, 1e-6, 4e-6, 0.0),
+    "smooth": (0.01, 1e-5, 2e-6, 0.25),
+    "broken": (0.06, 4e-6, 3e-6, 1.0),
+    "open": (0.06, 2e-5, 6e-6, 1.0),
+}
+#: Least force of a contact on the first grids, over its mean, below which jumps may open it.
+_OPENS = 0.5
+#: Time per unknown of a motion on stated points [s], and unknowns of the first grids up to which a
+#: trial motion shows what forces do.
+_STATED, _TRIAL = 6e-5, 2**15
+#: Time per line and sample of the record, and more for each coordinate; per sample of the closed
+#: line and coordinate [s].
+_SUMMED, _SUMMED_EACH, _ALONG = 1.2e-8, 2e-9, 3.5e-7
 #: Step error that causes a warning; part of the largest change with which a phase is refined too.
 _LIMIT, _WORST = 1e-2, 0.2
 #: Part of the step error that the error of a motion on the way to finer grids may have.
@@ -76,9 +92,37 @@ class Follower(NamedTuple):
     turns: tuple[tuple[int, ...], ...] = ()  #: cycles of the errors that turn with shafts
 
 
+class Work(NamedTuple):
+    """What the time of a motion depends on beside its grids."""
+
+    kind: str = "broken"  #: what forces do along the motion: a key of _WORK
+    size: int = 12  #: coordinates
+
+
+def work_of(system: System, frequency: Any, supports: Sequence[RadialClearance] = ()) -> Work:
+    """What the motion of a system over phases takes, from a trial on its first grids."""
+    search = _Search.of(system, read_frequencies(frequency, system.phases), supports)
+    residual = search.residual(_first_points(search))
+    tried = residual.ends[-1] <= _TRIAL
+    state = residual.at(search.still(residual))
+    if tried:
+        state = newton(residual, search.linear(residual), 1e-6, patience=_PATIENCE).state
+    kind = "smooth" if np.ptp(state.rate) or not tried else "steady"
+    contacts = [part.contacts for part in residual.parts]
+    jumps = any(isinstance(each, PhaseContacts) and each.jumps.line.size for each in contacts)
+    forces = [each.law.contact for each in state.each]
+    low = (each.min(axis=0) < _OPENS * each.mean(axis=0) for each in forces)
+    parted = any((each.law.side == 0.0).any() for each in state.each)
+    if parted or (jumps and any(map(np.any, low))):
+        kind = "open"
+    elif jumps:
+        kind = "broken"
+    return Work(kind, system.size)
+
+
 def phase_cost(
     followers: Sequence[Follower], frequency: Sequence[float], orders: Any = 0,
-    mesh: int | None = None,
+    mesh: int | None = None, work: Work | None = None,
 ) -> tuple[int, float, float]:  # fmt: skip
     """Unknowns, memory [byte] and time [s]; ``mesh`` are points of a mesh cycle, if stated."""
     fine, others = _points_of(followers, orders, mesh)
@@ -86,16 +130,25 @@ def phase_cost(
         int(np.prod(np.where(_axes(each.cycles, each.turns), fine, others))) for each in followers
     ]
     first = sum(each.contacts * size for each, size in zip(followers, grids, strict=True))
-    unknowns, sizes = max(first, min(2 * first, _MOST)) if mesh is None else first, [first]
-    while sizes[-1] < unknowns or (mesh is None and 2 * sizes[-1] <= _MOST):
-        sizes.append(min(2 * sizes[-1], _MOST))  # where forces bend or jump
-    memory = 2e8 + 1.4e8 * len(frequency) + _BYTES * unknowns
-    same = dict(zip([(tuple(each.cycles), each.turns) for each in followers], grids, strict=True))
-    lines = sum(same.values()) * sizes[-1] / first
+    phases, unknowns = len(frequency), max(first, min(2 * first, _MOST)) if mesh is None else first
+    memory = 2e8 + 1.4e8 * phases + _BYTES * unknowns
     if mesh is not None:
         return unknowns, memory, 0.1 + _STATED * unknowns
-    seconds = _SEARCHED * sum(sizes) + _SUMMED * lines * recorded(frequency)
-    return unknowns, memory, 0.3 + seconds
+    work = work or Work()
+    # Smooth forces need a second grid; others are refined until few changes are left.
+    least, most = {
+        "steady": (1, 1), "smooth": (2, 2**11), "broken": (2, 2**13), "open": (3, 2**14)
+    }[work.kind]  # fmt: skip
+    sizes = [first]
+    while len(sizes) < least or sizes[-1] < most:
+        sizes.append(2 * sizes[-1])
+    grid, part, phase, strong = _WORK[work.kind]
+    same = dict(zip([(tuple(each.cycles), each.turns) for each in followers], grids, strict=True))
+    seconds = len(sizes) * grid + (part * len(same) + phase * phases) * sum(sizes)
+    summed = strong * sum(same.values()) * sizes[-1] / first * recorded(frequency)
+    seconds += (_SUMMED + _SUMMED_EACH * work.size) * summed
+    samples = along_line(np.asarray(frequency, dtype=float))
+    return unknowns, memory, 0.02 + seconds + _ALONG * work.size * samples
 
 
 def given_points(follower: Follower, orders: Any, mesh: int) -> tuple[int, ...]:

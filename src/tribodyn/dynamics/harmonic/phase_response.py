@@ -372,6 +372,11 @@ def recorded(frequency: Any) -> int:
     return min(int(np.ceil(_RECORDED * float(max(frequency)) / float(min(frequency)))), _MOST)
 
 
+def along_line(frequency: Array) -> int:
+    """Number of samples along the closed line of a motion over phases, of not too many lines."""
+    return _SAMPLED * max(closed_line(frequency))
+
+
 def _recorded(response: PhaseResponse) -> PhaseResponse:
     """Motion with a record: a cycle of the slowest phase if that is short enough."""
     fastest = _RECORDED * float(response.frequencies.max())

@@ -33,6 +33,7 @@ from tribodyn.study.machine.first_look import (
 from tribodyn.study.machine.motion import Unit, unit_of
 
 if TYPE_CHECKING:
+    from tribodyn.dynamics.harmonic.phase_balance import Work
     from tribodyn.machine import Machine
     from tribodyn.study.case.pair import PairCase
     from tribodyn.study.machine.case import MachineCase
@@ -389,7 +390,7 @@ def faults_over_phases(case: MachineCase, machine: Machine) -> bool:
     return repeats_late(clock_cycles(fastest, excited, teeth, frequency))
 
 
-def fault_cost(case: MachineCase, machine: Machine) -> PhaseCost | None:
+def fault_cost(case: MachineCase, machine: Machine, work: Work | None = None) -> PhaseCost | None:
     """Cost of the motion with faults over phases; None over whole turns. Refuse too much."""
     turned, excited = _with_turns(case, machine), excitations_of(case)
     if not faults_over_phases(case, machine):
@@ -398,13 +399,13 @@ def fault_cost(case: MachineCase, machine: Machine) -> PhaseCost | None:
     phases = phases_with_faults(turned, excited)
     highest = highest_orders(turned.clock, excited, phases)
     shafts = [each.gear for each in excited]
-    return phase_cost_of(case.solver, turned, (phases, shafts), highest)
+    return phase_cost_of(case.solver, turned, (phases, shafts), highest, work)
 
 
-def check_motion(case: MachineCase) -> list[str]:
+def check_motion(case: MachineCase, work: Work | None = None) -> list[str]:
     """What the motions of a machine over phases cost; refuse what takes too much."""
     machine = case.machine()
-    sound = warn_of_motion(case.solver, machine)
-    faulty = fault_cost(case, machine) if case.faults else None
+    sound = warn_of_motion(case.solver, machine, work)
+    faulty = fault_cost(case, machine, work) if case.faults else None
     texts = [] if sound is None else [f"{sound}."]
     return texts if faulty is None else [*texts, f"With its faults: {faulty}."]

@@ -45,6 +45,7 @@ from tribodyn.types import Tree
 
 if TYPE_CHECKING:
     from tribodyn.dynamics import Response
+    from tribodyn.dynamics.harmonic.phase_balance import Work
     from tribodyn.faults.driven import Lead
     from tribodyn.machine import Machine, MachineStructure
     from tribodyn.study.machine.case import MachineCase
@@ -59,13 +60,29 @@ _SHORTER = (
 
 def rehearse_faults(case: MachineCase, state: Balanced) -> list[str]:
     """Costs of the motions over phases; refuse faulty teeth that cannot run, and too much."""
-    costs = check_motion(case)
+    costs = check_motion(case)  # refuses what takes too much
+    if costs:
+        costs = check_motion(case, _work(case, state))
     teeth = {n: f for n, f in case.faults.items() if f.gear and f.kind != "crack"}  # elements
     if teeth:
         cracked = [f"faults.{name}" for name in case.faults if name not in teeth]
         plain = case.replace(dict.fromkeys(cracked)) if cracked else case
         turning_machine(plain, state)
     return costs
+
+
+def _work(case: MachineCase, state: Balanced) -> Work:
+    """What the motion over phases takes, from a trial with the sound teeth."""
+    from tribodyn.dynamics.harmonic.phase_balance import Work, work_of
+    from tribodyn.machine import system as system_of
+
+    structure = state.structure(case)
+    system, supports = system_of(structure, phases=True), clearance_supports(structure)
+    if not system.phases:
+        return Work(size=system.size)
+    if supports:
+        system = without_clearance_supports(structure, system)
+    return work_of(system, structure.machine.phases.frequency, [*supports.values()])
 
 
 def turning_machine(case: MachineCase, sound: LoadResult | Balanced) -> Machine:

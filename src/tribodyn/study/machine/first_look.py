@@ -26,6 +26,7 @@ from tribodyn.study.pipeline.summary import PARTS
 from tribodyn.study.planetary.machine_stages import motion_of_stage
 
 if TYPE_CHECKING:
+    from tribodyn.dynamics.harmonic.phase_balance import Work
     from tribodyn.machine import Machine
     from tribodyn.machine.graph.clock import Phases
     from tribodyn.study.case.pair import PairCase
@@ -74,6 +75,7 @@ def phase_cost_of(
     machine: Machine,
     driven: tuple[Phases, Sequence[str]] | None = None,
     orders: Any = 0,
+    work: Work | None = None,
 ) -> PhaseCost:
     """Cost of the motion of a machine over phases; refuse what needs too much memory."""
     phases, shafts = driven or (machine.phases, ())
@@ -89,7 +91,7 @@ def phase_cost_of(
                 for each in machine.bearings.values())  # fmt: skip
     if loose:
         followers.append((2 * loose, (0,) * len(phases.frequency), 1, ()))
-    cost = cost_over_phases(phases, names, followers, orders)
+    cost = cost_over_phases(phases, names, followers, orders, work=work)
     remedy = "Raise solver.memory, compute a part of the machine, or give it fewer faults"
     refuse_memory(cost, solver.memory, "solver.memory", remedy)
     return cost
@@ -101,13 +103,14 @@ def cost_over_phases(
     followers: Sequence[tuple[Any, ...]],
     orders: Any,
     mesh: int | None = None,
+    work: Work | None = None,
 ) -> PhaseCost:
     """Cost of a motion over named phases, of the fields of each follower."""
     from tribodyn.dynamics.harmonic.phase_balance import Follower, phase_cost
 
     pairs = tuple(zip(names, phases.frequency, strict=True))
     listed = [Follower(*each) for each in followers]
-    return PhaseCost(pairs, *phase_cost(listed, phases.frequency, orders, mesh))
+    return PhaseCost(pairs, *phase_cost(listed, phases.frequency, orders, mesh, work))
 
 
 def refuse_memory(cost: PhaseCost, memory: float, key: str, remedy: str) -> None:
@@ -119,10 +122,12 @@ def refuse_memory(cost: PhaseCost, memory: float, key: str, remedy: str) -> None
         raise ComputationError(Problem(what, key, why, remedy))
 
 
-def warn_of_motion(solver: SolverTable, machine: Machine) -> PhaseCost | None:
+def warn_of_motion(
+    solver: SolverTable, machine: Machine, work: Work | None = None
+) -> PhaseCost | None:
     """Warn of a long period, or return the cost of the motion over phases; refuse too much."""
     if over_phases(solver, machine):
-        return phase_cost_of(solver, machine)
+        return phase_cost_of(solver, machine, work=work)
     warn_of_period(machine, solver.memory)
     return None
 

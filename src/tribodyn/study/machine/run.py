@@ -100,6 +100,10 @@ class Balanced(NamedTuple):
         """The machine with the force laws of its teeth."""
         return self.static.machine
 
+    def structure(self, case: MachineCase) -> MachineStructure:
+        """Structure of the machine for its motion."""
+        return structure_of(case, self.static.linearized())
+
 
 def run_machine(case: MachineCase, progress: Progress = SILENT) -> MachineResult:
     """Compute a machine under all its loads without raising the warnings, which the result has."""
@@ -131,7 +135,7 @@ def run_load(
     state = balanced_machine(case, load, progress)
     of_meshes += state.warnings
     progress.start(f"Motion: {load.name}")
-    structure = structure_of(case, state.static.linearized())
+    structure = state.structure(case)
     system = system_of(structure, phases=over_phases(case.solver, structure.machine))
     with friction_suspected(state.tables.values()):
         response = by_engine(case.solver.engine, steady_motion(structure, system, start))
