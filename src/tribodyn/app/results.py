@@ -179,7 +179,7 @@ def _parts(desk: TabSession, case: MachineCase) -> list[Any]:
     parts = [
         cards([[n.label, n.value, n.unit] for n in first]),
         *notice("Warnings", [str(warning) for warning in warnings]),
-        *(_sketched(*drawn) for drawn in (flat, (plot.machine_space, machine))),
+        *(_sketched(*picture) for picture in (flat, (plot.machine_space, machine))),
         html.Details(every, className="block"),
         *([html.Details(notes, className="block")] if assumed else []),
     ]

@@ -146,11 +146,11 @@ def forces(
     total = times(scales.force * unrepeated(rows.force, 1) + extra, inverse) - elastic
     total -= damped
     if scales is _SAME:
-        few = unrepeated(rows.force_direction, 2)
-        if len(few) == 1:
-            total -= _pushed(times(few, inverse), contact)
+        directions = unrepeated(rows.force_direction, 2)
+        if len(directions) == 1:
+            total -= _pushed(times(directions, inverse), contact)
         else:
-            total -= times(_pushed(few, contact), inverse)
+            total -= times(_pushed(directions, contact), inverse)
     else:
         total -= _pushed(times(unrepeated(rows.direction, 2), inverse), contact)
         rub = times(rows.force_direction - rows.direction, inverse)

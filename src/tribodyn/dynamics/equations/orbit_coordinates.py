@@ -351,9 +351,9 @@ class OverBases:
 
 def _components(directions: Array, into: Array) -> Array:
     """Components of directions (..., contacts, n); equal ones of two contacts are equal."""
-    few = unrepeated(directions, 2)
-    parts = [few[..., j, :] @ into for j in range(few.shape[-2])]
-    joined = np.stack(parts, axis=-2) if parts else np.zeros((*few.shape[:-1], into.shape[1]))
+    distinct = unrepeated(directions, 2)
+    parts = [distinct[..., j, :] @ into for j in range(distinct.shape[-2])]
+    joined = np.stack(parts, axis=-2) if parts else np.zeros((*distinct.shape[:-1], into.shape[1]))
     return np.broadcast_to(joined, (*directions.shape[:-1], into.shape[1]))
 
 

@@ -198,8 +198,8 @@ def by_engine(engine: str, response: Response) -> Response:
         return response
     why = "Harmonic balance finds motions that repeat; a march stands in for others"
     remedy = f'Set engine = "{AUTO}", or add damping'
-    found = f"no periodic motion was found: error {response.error:.2e}"
-    raise ComputationError(Problem(found, "solver.engine", why, remedy))
+    what = f"no periodic motion was found: error {response.error:.2e}"
+    raise ComputationError(Problem(what, "solver.engine", why, remedy))
 
 
 def engine_remark(case: PairCase) -> str:
@@ -247,8 +247,8 @@ def _balanced(
     )
     if not response.stable:
         multipliers = np.abs(response.floquet_multipliers)
-        found = f"largest multiplier {multipliers.max():.4g}" if multipliers.size else "none found"
-        reason = f"no stable motion repeats after a mesh cycle: {found}"
+        value = f"largest multiplier {multipliers.max():.4g}" if multipliers.size else "none found"
+        reason = f"no stable motion repeats after a mesh cycle: {value}"
         if engine == BALANCE:
             why = "Harmonic balance finds motions of one mesh cycle"
             remedy = f'Choose engine = "{AUTO}" or "{_ORBITS}", or add damping'

@@ -97,13 +97,13 @@ def lyapunov_exponents(
         structure = moving(case)
         progress.finish()
         structure = structure._replace(steps=steps or structure.steps)
-        few = cycles or _averaged(case, structure, transient, verdict=verdict)
+        averaged = cycles or _averaged(case, structure, transient, verdict=verdict)
         if transient is None:
-            transient = _BEFORE if cycles else min(_BEFORE, _BEFORE * few // _CYCLES)
+            transient = _BEFORE if cycles else min(_BEFORE, _BEFORE * averaged // _CYCLES)
         return compute(
             structure.system,
             structure.frequency,
-            cycles=few,
+            cycles=averaged,
             transient=transient,
             steps=structure.steps,
             verdict=verdict,
@@ -119,13 +119,13 @@ def _averaged(case: AnyCase, structure: Moving, transient: int | None, *, verdic
         return _CYCLES
     system, frequency, steps, _ = structure
     options: dict[str, Any] = {"transient": 0, "steps": steps, "verdict": False}
-    taken = []
-    for few in (2, 2, 6):  # the first time compiles
+    durations = []
+    for count in (2, 2, 6):  # the first time compiles
         begin = process_time()
         with collected():
-            compute(system, frequency, cycles=few, **options)
-        taken.append(process_time() - begin)
-    seconds = max(taken[2] - taken[1], 1e-6) / 4.0
+            compute(system, frequency, cycles=count, **options)
+        durations.append(process_time() - begin)
+    seconds = max(durations[2] - durations[1], 1e-6) / 4.0
     seconds *= 3.0 if verdict else 1.0  # half the step takes twice as long
     before = _BEFORE / _CYCLES if transient is None else 0.0
     count = int((_PATIENCE / seconds - (transient or 0)) / (1.0 + before))
