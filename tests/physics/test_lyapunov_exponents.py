@@ -15,6 +15,7 @@ from tribodyn.analysis import lyapunov_exponents
 from tribodyn.dynamics import Contact, System, simulate
 from tribodyn.dynamics._engine.blocks import march
 from tribodyn.dynamics.equations.compiled import compile_for
+from tribodyn.dynamics.modal.modal_march import compile_modal
 from tribodyn.errors import ComputationError, InputError
 from tribodyn.nonlinear.lyapunov_carrier import Carrier, grouped_products
 from tribodyn.nonlinear.lyapunov_tangent import TangentTables
@@ -161,6 +162,22 @@ def test_chaotic_exponent_agrees_with_the_independent_computation():
     assert result.largest == pytest.approx(value, rel=0.025)
     assert result.exponents.sum() == pytest.approx(-CHAOTIC["c"], rel=1e-9)
     assert 1.6 < result.kaplan_yorke_dimension < 1.8
+
+
+@pytest.mark.parametrize(("derivatives", "cycles"), [(2e9, 1000), (96 * 4 * 70, 70), (1.0, 20)])
+def test_motions_that_do_not_repeat_are_averaged_over_fewer_cycles(
+    derivatives: float, cycles: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """A step has four derivatives of the two states; a motion that repeats has all its cycles."""
+    monkeypatch.setattr("tribodyn.nonlinear.lyapunov._DERIVATIVES", derivatives)
+    monkeypatch.setattr("tribodyn.nonlinear.lyapunov.compile_motion", compile_modal)
+    options = {"transient": 120, "steps": 96, "verdict": False, "start": ([1.3], [0.1])}
+    chaos = lyapunov_exponents(chaotic_system(), CHAOTIC["W"] / TURN, **options)
+    assert chaos.cycles == cycles
+    assert chaos.repeats == 0
+    # the motion settles for as long whatever the number of derivatives is
+    same = lyapunov_exponents(chaotic_system(), CHAOTIC["W"] / TURN, cycles=cycles, **options)
+    assert np.array_equal(same.exponents, chaos.exponents)
 
 
 def test_sum_is_the_damping_of_the_contact_while_it_touches():

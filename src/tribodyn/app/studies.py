@@ -143,8 +143,10 @@ STUDIES: dict[str, Study] = {
         "Lyapunov exponents",
         "Whether the motion is chaos.",
         {
-            "cycles": integer(None, 2, 100000, _GUARD, meaning="mesh cycles of the mean"),
-            "transient": integer(None, 0, 100000, _GUARD, meaning="mesh cycles before"),
+            "cycles": integer(
+                None, 2, 100000, _GUARD, meaning="mesh cycles of the mean, 1000 or fewer"
+            ),
+            "transient": integer(300, 0, 100000, _GUARD, meaning="mesh cycles before"),
         },
     ),
     "sobol": Study(

@@ -7,6 +7,7 @@ from collections.abc import Callable, Sequence
 from importlib import import_module
 from importlib.abc import MetaPathFinder
 from importlib.machinery import ModuleSpec, PathFinder
+from importlib.util import find_spec
 from types import ModuleType
 
 from tribodyn.aliases import names_of_stub, old_module
@@ -38,6 +39,13 @@ class _Guarding(MetaPathFinder):
         return spec
 
 
+def _part(page: str, name: str) -> ModuleType | None:
+    """Module of a package, which is there without an import of its own too."""
+    if name.startswith("_") or find_spec(f"{page}.{name}") is None:
+        return None
+    return import_module(f"{page}.{name}")
+
+
 def public_page(
     page: str, file: str
 ) -> tuple[list[str], Callable[[str], object], Callable[[], list[str]]]:
@@ -64,7 +72,7 @@ def public_page(
 
     def find(name: str) -> object:
         if name not in homes:
-            return old(name)
+            return _part(page, name) or old(name)
         value = guarded(getattr(import_module(homes[name]), name), page)
         setattr(sys.modules[page], name, value)
         return value

@@ -13,6 +13,7 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import ArrayLike
 
+from tribodyn.compiled import announce
 from tribodyn.dynamics.equations.orbit_coordinates import OrbitCoordinates, static_start
 from tribodyn.dynamics.equations.system import System
 from tribodyn.dynamics.modal.modal_march import compile_motion
@@ -31,6 +32,9 @@ from tribodyn.record import Parts, Record, fact, quantity, record
 from tribodyn.types import Array, Mask
 
 _BLOCKS = 32
+#: Mesh cycles that are averaged by default, and of a motion that does not repeat the fewest, and
+#: the derivatives of its states in them.
+_CYCLES, _FEWEST, _DERIVATIVES = 1000, 20, 2e9
 #: Mesh cycles over which a motion that repeats is integrated with half the step.
 _FEW = 64
 #: Standard errors by which the largest exponent of a chaotic motion is above zero.
@@ -172,7 +176,7 @@ def lyapunov_exponents(
     mesh_frequency: float,
     *,
     start: tuple[ArrayLike, ArrayLike] | None = None,
-    cycles: int = 1000,
+    cycles: int | None = None,
     transient: int = 200,
     steps: int = 512,
     extra_force: ArrayLike | None = None,
@@ -190,8 +194,9 @@ def lyapunov_exponents(
     start : (position, velocity), optional
         Two (n,) arrays [m or rad, m/s or rad/s]; the static equilibrium at mean stiffness by
         default.
-    cycles : int
-        Mesh cycles over which to average.
+    cycles : int, optional
+        Mesh cycles over which to average; by default 1000, or of a motion that does not repeat as
+        many as 2e9 derivatives reach, and at least 20.
     transient : int
         Mesh cycles marched before.
     steps : int
@@ -235,7 +240,8 @@ def lyapunov_exponents(
     >>> bool(np.allclose(spectrum.exponents, -0.1, rtol=1e-6))
     True
     """
-    require_whole("cycles", cycles)
+    if cycles is not None:
+        require_whole("cycles", cycles)
     require_whole("transient", transient, 0)
     compiled = compile_motion(system, mesh_frequency, steps)
     extra = read_force(system, extra_force)
@@ -246,8 +252,14 @@ def lyapunov_exponents(
         what = "no coordinate is restrained by a spring or a contact"
         why = "Nothing vibrates, so that every exponent is zero"
         raise InputError(what, "System.stiffness", why, "Restrain at least one coordinate")
-    progress.start("Mesh cycles", int(cycles + transient))
-    carrier.carry(carrier.settle(int(transient), progress), progress)
+    progress.start("Mesh cycles", int((cycles or _CYCLES) + transient))
+    turning = carrier.settle(int(transient), progress)
+    costly = compiled.engine is not None and not carrier.period
+    cycles = cycles or (_affordable(compiled.grid.steps, system.size) if costly else _CYCLES)
+    if costly and turning > cycles:
+        carrier.march(turning - cycles)  # without derivatives, which cost more than the mean then
+        turning = cycles
+    carrier.carry(turning, progress)
     growth, divergence = carrier.carry(int(cycles), progress)
     progress.finish()
     spectrum = _summarize(carrier, growth, divergence, 2 * system.size)
@@ -267,6 +279,19 @@ def lyapunov_exponents(
     except ComputationError:
         return replace(spectrum, verdict="step-limited")
     return replace(spectrum, verdict=exponent_verdict(spectrum, refined))
+
+
+def _affordable(steps: int, coordinates: int) -> int:
+    """Mesh cycles whose derivatives are not too many, with a notice where they are few."""
+    count = int(_DERIVATIVES / (steps * (2.0 * coordinates) ** 2))
+    if count >= _CYCLES:
+        return _CYCLES
+    count = max(count, _FEWEST)
+    announce(
+        f"the motion does not repeat: averaging over {count} periods, some minutes; cycles "
+        "(--cycles) asks for others"
+    )
+    return count
 
 
 def _summarize(carrier: Carrier, growth: Array, divergence: Array, count: int) -> LyapunovExponents:

@@ -46,6 +46,7 @@ class Carrier:
         self.braked = np.vstack((np.zeros((k - len(braked), braked.shape[1])), braked))
         self.share = np.zeros(k)
         self.length = self.elapsed = 0
+        self.period = 0  #: cycles after which the motion repeats, once that is known
         self.last: deque[Array] = deque(maxlen=_COMPARED)
         #: Frame at the beginning of the last cycles, and how it grew in each.
         self.frames: deque[tuple[Array, Array]] = deque(maxlen=PERIODS)
@@ -54,11 +55,12 @@ class Carrier:
         """March without disturbances; returns the cycles that are left for them to turn in."""
         left = min(cycles, ALIGN)
         for first in range(0, cycles - left, ALIGN):
-            self._march(min(ALIGN, cycles - left - first), None)
+            self.march(min(ALIGN, cycles - left - first))
         progress.advance(cycles - left)
         return left
 
-    def _march(self, cycles: int, record: Array | None) -> None:
+    def march(self, cycles: int, record: Array | None = None) -> None:
+        """Advance the motion without disturbances."""
         frequency = self.tables.mesh_frequency
         state = march(
             self.tables.compiled,
@@ -106,7 +108,7 @@ class Carrier:
         chunk = max(1, _MOST_VALUES // (steps * (k * k + self.state.shape[1])))
         count = min(chunk, cycles)
         record = np.empty((count * steps + 1, self.state.shape[1], 1))
-        self._march(count, record)
+        self.march(count, record)
         matrices, traces = self._matrices(record[:, :, 0])
         matrices = matrices.reshape(count, steps, k, k)
         self.length = self.length or safe_length(matrices[0])
@@ -175,18 +177,17 @@ class ModalCarrier(Carrier):
         most = max(1, compiled.grid.steps // 2)
         self._sections = min(most, math.ceil(fastest / frequency / math.log(SPREAD)))
         self._place: Array | None = None
-        self._period = 0  # cycles after which the motion repeats, once that is known
 
     def settle(self, cycles: int, progress: Progress) -> int:
         """March until the motion repeats; if it does not, as far as other motions."""
         begin, reduce = self.state, self.tables.coordinates.reduce
         states = deque([reduce(begin)[0]], maxlen=PERIODS + 1)
         for cycle in range(cycles):
-            self._march(1, None)
+            self.march(1)
             states.append(reduce(self.state)[0])
             distance = np.linalg.norm(np.array(states) - states[-1], axis=1)[-2::-1]
             if distance.min() <= _CLOSED * np.linalg.norm(states[-1]):
-                self._period = 1 + int(np.argmax(distance <= _CLOSED * np.linalg.norm(states[-1])))
+                self.period = 1 + int(np.argmax(distance <= _CLOSED * np.linalg.norm(states[-1])))
                 progress.advance(cycle + 1)
                 return cycles
         self.state, self.elapsed = begin, 0
@@ -194,7 +195,7 @@ class ModalCarrier(Carrier):
 
     def ended(self, done: int) -> bool:
         """Whether further mesh cycles than those ``done`` show nothing new."""
-        period = self._period
+        period = self.period
         if period:
             if len(self.last) < 2 * period:
                 return False
@@ -207,10 +208,10 @@ class ModalCarrier(Carrier):
         return full and repeats_after(self.last)[1] <= _EXACTLY
 
     def _cycles(self, cycles: int) -> Iterator[tuple[Array, float]]:
-        if self._period and len(self.last) == 2 * self._period and not repeats_after(self.last)[0]:
-            self._period = 0  # what grazes a contact repeats, and its disturbances do not
-        if self._period and len(self.last) >= 2 * self._period:
-            products = self.last[-self._period]
+        if self.period and len(self.last) == 2 * self.period and not repeats_after(self.last)[0]:
+            self.period = 0  # what grazes a contact repeats, and its disturbances do not
+        if self.period and len(self.last) >= 2 * self.period:
+            products = self.last[-self.period]
         else:
             if self._place is None:
                 motion = self.tables.compiled.engine.motion

@@ -121,7 +121,7 @@ _VERDICTS = {
 def lyapunov_report_data(
     case: AnyCase,
     cycles: int | None = None,
-    transient: int | None = None,
+    transient: int = 300,
     progress: Progress = SILENT,
 ) -> StudyReportData:
     """Lyapunov exponents of the response of a case."""

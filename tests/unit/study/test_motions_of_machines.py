@@ -171,8 +171,10 @@ def test_starts_of_a_machine_are_as_many_as_one_waits_for(
     """Each start takes thrice the steps of its settling; twice as many values have four times."""
     told: list[str] = []
     monkeypatch.setattr(nonlinear, "announce", told.append)
-    monkeypatch.setattr("tribodyn.nonlinear.bifurcation.period_seconds", lambda *_: 1.0)
-    settling = settling_periods(moving(small, "second"))
+    rehearsed = moving(small, "second")
+    steps = rehearsed.steps * rehearsed.system.cycles
+    monkeypatch.setattr(nonlinear, "_STEP", 1.0 / (steps * rehearsed.system.size))
+    settling = settling_periods(rehearsed)
     for each, count in ((9.0, 3), (36.0, 6), (1e9, 41)):
         monkeypatch.setattr(nonlinear, "_PATIENCE", 3.0 * settling * (each + 0.5))
         assert nonlinear._starts(small, "second", 500, None) == count
@@ -180,31 +182,6 @@ def test_starts_of_a_machine_are_as_many_as_one_waits_for(
     monkeypatch.setattr(nonlinear, "_PATIENCE", 3.0 * settling * 8.5)
     with pytest.raises(InputError, match="3 x 3 starts take"):
         nonlinear._starts(small, "second", 500, None)
-
-
-def test_exponents_of_a_machine_are_averaged_as_long_as_one_waits(
-    small: Any, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    told: list[str] = []
-    monkeypatch.setattr(nonlinear, "announce", told.append)
-    structure = moving(small)._replace(steps=128)
-    clock = iter(np.array([0.0, 9.0, 9.0, 12.0, 12.0, 16.0]).tolist() * 4)  # 1/4 s a period
-    monkeypatch.setattr(nonlinear, "process_time", lambda: next(clock))
-    # 0.3 times as many before, or 30; half the step takes twice as long once more.
-    cases = (
-        (1e9, None, False, 1000),
-        (32.5, None, False, 100),
-        (97.5, 30, True, 100),
-        (1.0, 0, False, 20),
-    )
-    for patience, transient, verdict, count in cases:
-        monkeypatch.setattr(nonlinear, "_PATIENCE", patience)
-        assert nonlinear._averaged(small, structure, transient, verdict=verdict) == count
-    assert [text.split(" periods")[0] for text in told] == [
-        "averaging over 100",
-        "averaging over 100",
-        "averaging over 20",
-    ]
 
 
 def test_the_time_of_a_long_diagram_is_said_before_it_is_computed(

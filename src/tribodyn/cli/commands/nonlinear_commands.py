@@ -170,7 +170,7 @@ def lyapunov(
     /,
     *,
     cycles: int | None = None,
-    transient: int | None = None,
+    transient: int = 300,
     at: Place = USUAL,
 ) -> None:
     """Find the Lyapunov exponents of the motion of a case: whether it is chaos.
@@ -178,9 +178,9 @@ def lyapunov(
     Parameters
     ----------
     cycles : int
-        Mesh cycles over which to average: 1000, of a machine as many as take about two minutes.
+        Mesh cycles over which to average: 1000, of a machine that does not repeat fewer.
     transient : int
-        Mesh cycles before: 300, of fewer 0.3 times as many.
+        Mesh cycles before.
     """
 
     def compute(ready: Any, progress: Progress) -> StudyReportData:
@@ -188,7 +188,7 @@ def lyapunov(
 
         return lyapunov_report_data(ready, cycles, transient, progress)
 
-    _check_lengths(2 if cycles is None else cycles, transient or 0)
+    _check_lengths(2 if cycles is None else cycles, transient)
     answer("lyapunov", case, at, compute)
 
 

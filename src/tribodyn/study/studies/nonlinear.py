@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from functools import partial
-from time import process_time
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -12,7 +11,7 @@ import numpy as np
 from tribodyn.compiled import announce
 from tribodyn.dynamics.orbits.solution_branch import of_contact
 from tribodyn.dynamics.orbits.system_family import family_of
-from tribodyn.errors import Argument, InputError, collected
+from tribodyn.errors import Argument, InputError
 from tribodyn.progress import SILENT, Progress
 from tribodyn.study.machine.case import AnyCase
 from tribodyn.study.studies.case_grid import (
@@ -34,17 +33,16 @@ if TYPE_CHECKING:
 _WIDE = 5.0
 #: Values of each coordinate of the starts of a pair, least ones of a machine.
 _STARTS, _LEAST = 41, 3
-#: Periods that exponents are averaged over by default and at least, and those before.
-_CYCLES, _FEWEST, _BEFORE = 1000, 20, 300
-#: Seconds that the starts of a machine take by default, and steps of each over those of one motion.
-_PATIENCE, _FOLLOWED = 120.0, 3
+#: Seconds that the starts of a machine take by default, steps of each over those of one motion, and
+#: seconds of a step for each coordinate: a usual figure, so that all processors follow as many.
+_PATIENCE, _FOLLOWED, _STEP = 120.0, 3, 4e-8
 
 
 def lyapunov_exponents(
     case: AnyCase,
     *,
     cycles: int | None = None,
-    transient: int | None = None,
+    transient: int = 300,
     steps: int | None = None,
     verdict: bool = True,
     progress: Progress = SILENT,
@@ -56,10 +54,10 @@ def lyapunov_exponents(
     case : Case
         From :func:`tribodyn.load_case`. The motion starts at its static equilibrium.
     cycles : int, optional
-        Mesh cycles over which to average, of a machine periods of its clock: 1000 by default, or as
-        many as take about two minutes.
-    transient : int, optional
-        Those that are simulated before: 300 by default, 0.3 times as many where there are fewer.
+        Mesh cycles over which to average, of a machine periods of its clock: by default as in
+        :func:`tribodyn.analysis.lyapunov_exponents`.
+    transient : int
+        Those that are simulated before.
     steps : int, optional
         Steps per mesh cycle; by default those of the case, else a quarter of those of a single run
         and at least 512.
@@ -96,48 +94,15 @@ def lyapunov_exponents(
         progress.start("Tooth contact")
         structure = moving(case)
         progress.finish()
-        structure = structure._replace(steps=steps or structure.steps)
-        averaged = cycles or _averaged(case, structure, transient, verdict=verdict)
-        if transient is None:
-            transient = _BEFORE if cycles else min(_BEFORE, _BEFORE * averaged // _CYCLES)
         return compute(
             structure.system,
             structure.frequency,
-            cycles=averaged,
+            cycles=cycles,
             transient=transient,
-            steps=structure.steps,
+            steps=steps or structure.steps,
             verdict=verdict,
             progress=progress,
         )
-
-
-def _averaged(case: AnyCase, structure: Moving, transient: int | None, *, verdict: bool) -> int:
-    """Periods over which exponents are averaged that take no longer than one waits for."""
-    from tribodyn.analysis import lyapunov_exponents as compute
-
-    if case.lumped:
-        return _CYCLES
-    system, frequency, steps, _ = structure
-    options: dict[str, Any] = {"transient": 0, "steps": steps, "verdict": False}
-    durations = []
-    for count in (2, 2, 6):  # the first time compiles
-        begin = process_time()
-        with collected():
-            compute(system, frequency, cycles=count, **options)
-        durations.append(process_time() - begin)
-    seconds = max(durations[2] - durations[1], 1e-6) / 4.0
-    seconds *= 3.0 if verdict else 1.0  # half the step takes twice as long
-    before = _BEFORE / _CYCLES if transient is None else 0.0
-    count = int((_PATIENCE / seconds - (transient or 0)) / (1.0 + before))
-    if count >= _CYCLES:
-        return _CYCLES
-    count = max(count, _FEWEST)
-    minutes = (count * (1.0 + before) + (transient or 0)) * seconds / 60.0
-    announce(
-        f"averaging over {count} periods of the clock, {minutes:.2g} min; cycles (--cycles) asks "
-        "for others"
-    )
-    return count
 
 
 def basins(
@@ -242,14 +207,10 @@ def _starts(case: AnyCase, name: str, cycles: int, steps: int | None) -> int:
 
     The motions are those of a rehearsal, so that the teeth are computed only if they are followed.
     """
-    from tribodyn.dynamics.modal.modal_march import compile_motion
-    from tribodyn.nonlinear.bifurcation import period_seconds
-
     rehearsed = moving(case, name, rehearsal=True)
     rehearsed = rehearsed._replace(steps=steps or rehearsed.steps)
-    compiled = compile_motion(rehearsed.system, rehearsed.frequency, rehearsed.steps)
-    periods = min(cycles, settling_periods(rehearsed))
-    seconds = _FOLLOWED * periods * period_seconds(compiled, rehearsed.frequency)
+    system, periods = rehearsed.system, min(cycles, settling_periods(rehearsed))
+    seconds = _FOLLOWED * periods * _STEP * rehearsed.steps * system.cycles * system.size
     count = min(int(np.sqrt(_PATIENCE / seconds)), _STARTS)
     if count >= _LEAST:
         announce(
