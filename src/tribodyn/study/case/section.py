@@ -191,11 +191,11 @@ def named_rows(value: object) -> list[tuple[str, ByName]]:
     return [(str(row.get("name", number)), row) for number, row in enumerate(value, 1)]
 
 
-class Rows(dict[str, Any]):
+class Rows(Tree):
     """Tables of a list of tables, by their names or numbers."""
 
 
-def keyed_rows(data: Any) -> Any:
+def keyed_rows(data: object) -> object:
     """Copy of tables in which the rows of lists have their names or numbers as keys."""
     if isinstance(data, Mapping):
         return {key: keyed_rows(value) for key, value in data.items()}
@@ -205,7 +205,7 @@ def keyed_rows(data: Any) -> Any:
     return rows or data
 
 
-def listed_rows(data: Any) -> Any:
+def listed_rows(data: object) -> object:
     """Tables with the rows of lists as lists again, without lists whose rows have all gone."""
     if not isinstance(data, dict):
         return data

@@ -12,7 +12,7 @@ from contextlib import suppress
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from itertools import islice
-from typing import Any, NamedTuple
+from typing import Any, NamedTuple, cast
 
 import numpy as np
 
@@ -396,7 +396,7 @@ def changed_tables(
 
 def with_values(data: ByName, values: ByName) -> Tree:
     """Return a copy of tables with dotted keys set, of lists and their rows too; None removes."""
-    result: Any = keyed_rows(data)
+    result = cast(Tree, keyed_rows(data))
     for key, value in values.items():
         *tables, name = key.split(".")
         table: Tree = result
@@ -413,8 +413,7 @@ def with_values(data: ByName, values: ByName) -> Tree:
                 table.pop(_row(table, name, key), None)
             else:
                 table[_row(table, name, key)] = value
-    changed: Tree = listed_rows(result)
-    return changed
+    return cast(Tree, listed_rows(result))
 
 
 def _row(table: Tree, name: str, key: str) -> str:
