@@ -25,6 +25,10 @@ WAIT = 120_000
 MACHINE = GEARED.partition("[[load_cases]]")[0]
 
 
+#: What the browser says of the speed with which any figure in space is drawn.
+DRAWING = "willReadFrequently", "GPU stall due to ReadPixels"
+
+
 class Visit:
     """A tab of the browser, and what it had to say."""
 
@@ -33,11 +37,16 @@ class Visit:
         self.tab.set_default_timeout(WAIT)
         self.messages: list[str] = []
         self.requests: list[str] = []
-        self.tab.on("console", lambda message: self.messages.append(message.text))
+        self.tab.on("console", lambda message: self.note(message.text))
         self.tab.on("pageerror", lambda error: self.messages.append(str(error)))
         self.tab.on("request", lambda request: self.requests.append(request.url))
         self.tab.goto(page.address)
         self.wait_for_drawing()
+
+    def note(self, text: str) -> None:
+        """Keep a message of the page; advice of the browser on drawing in space is none."""
+        if not any(advice in text for advice in DRAWING):
+            self.messages.append(text)
 
     def wait_for_drawing(self) -> None:
         self.tab.wait_for_selector("#bench .main-svg")

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass, field
 
 from tribodyn.errors import Argument, InputError, require_between, require_positive
@@ -83,6 +84,9 @@ class RatedGear:
         Degree of running-in of the flank, pure number from 0 (new) to 1.
     stress_ratio : float
         Least over greatest root stress R, pure number: 0 for pulsating load, -1.2 for an idler.
+    inertia_share : float
+        Part of its inertia that moves with one mesh, for K_v, pure number: 1/p for the sun of p
+        planets, infinity for a ring that does not turn.
 
     Raises
     ------
@@ -111,6 +115,7 @@ class RatedGear:
     micropitting_factor: float | None = None
     running_in: float = 1.0
     stress_ratio: float = 0.0
+    inertia_share: float = 1.0
 
     def __post_init__(self) -> None:
         for name in ("pitch_deviation", "profile_deviation", "helix_deviation"):
@@ -127,6 +132,8 @@ class RatedGear:
             if getattr(self, name) is not None:
                 require_between(name, getattr(self, name), 0.1, 3.0)
         require_between("stress_ratio", self.stress_ratio, -2.0, 1.0 - 1e-9)
+        if self.inertia_share != math.inf:
+            require_between("inertia_share", self.inertia_share, 1e-3, 1e3)
 
     @property
     def roughness_ra(self) -> float:

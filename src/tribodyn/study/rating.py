@@ -384,6 +384,7 @@ class RatedMesh:
     computed: Mapping[str, float]  #: factors of the motion and the load distribution
     meshes_per_turn: tuple[int, int] = (1, 1)
     reversed: tuple[bool, bool] = (False, False)
+    inertia_shares: tuple[float, float] = (1.0, 1.0)
     planets: int = 1
     share: float | None = None  #: of the required life, of a load case
     table: MeshTable | None = None  #: tooth contact at this load
@@ -403,8 +404,11 @@ class RatedMesh:
                 root_roughness=data.root_roughness,
                 meshes_per_turn=count,
                 stress_ratio=-1.2 if idler else 0.0,
+                inertia_share=share,
             )
-            for role, count, idler in zip(_ROLES, self.meshes_per_turn, self.reversed, strict=True)
+            for role, count, idler, share in zip(
+                _ROLES, self.meshes_per_turn, self.reversed, self.inertia_shares, strict=True
+            )
         )
         conditions = conditions_of(self.case, self.planets)
         if self.share is not None and conditions["required_life"] is not None:

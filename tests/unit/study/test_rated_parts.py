@@ -196,6 +196,34 @@ def test_pins_of_planets_carry_both_meshes():
     assert first.lives[0].basic_life == pytest.approx(life, rel=1e-6)
 
 
+@pytest.mark.filterwarnings("ignore")
+def test_masses_of_a_stage_are_those_of_one_of_its_meshes():
+    """A third of the sun moves with one of three planets; a held ring is infinitely heavy."""
+    stage = td.load_case("planetary-stage")
+    ratings = td.run(stage.replace({"rating.required_life": "1e4 h", "load_cases": None})).rating
+    sun, ring = (mesh.rated.case.gear_pair for mesh in ratings.ratings)
+
+    def disc(gear: Any) -> tuple[float, float]:
+        """Mean radius, and share of a full disc of this radius outside of the bore."""
+        depth = gear.rack.dedendum_coefficient - gear.profile_shift_coefficient
+        mean = 0.5 * (gear.tip_radius + gear.reference_radius - depth * gear.normal_module)
+        return mean, 1.0 - (gear.rim_radius / mean) ** 4
+
+    def mass(pinion: Any) -> float:
+        """The pinion as the standard has it [kg/m]; steel of 7800 kg/m^3."""
+        return 0.5 * math.pi * 7800.0 * disc(pinion)[0] ** 4 / pinion.base_radius**2
+
+    wheel = mass(sun.pinion) * disc(sun.wheel)[1] * (sun.wheel.teeth / sun.pinion.teeth) ** 2
+    of_sun, planet = mass(sun.pinion) * disc(sun.pinion)[1] / 3.0, mass(ring.pinion)
+    expected = 1.0 / (1.0 / wheel + 1.0 / of_sun), planet * disc(ring.pinion)[1]
+    found = [mesh.standard.factors["m_red"] for mesh in ratings.ratings]
+    assert found == pytest.approx(expected, rel=1e-9)
+    # alone, both gears of the mesh move
+    oil = td.rating.GearOil(kinematic_viscosity_at_40=220e-6)
+    free = td.rating.rate_pair(ring, torque=100.0, speed=10.0, oil=oil)
+    assert free.factors["m_red"] < planet
+
+
 @pytest.mark.parametrize(
     ("changes", "text"),
     [

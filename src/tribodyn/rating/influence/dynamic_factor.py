@@ -29,6 +29,9 @@ from tribodyn.rating.factor import check_range
 from tribodyn.rating.mesh_load import PART_1, MeshLoad, mean_profile_allowance, nominal_root_radius
 from tribodyn.stiffness import iso6336_mesh_stiffness, iso6336_single_stiffness
 
+#: Addition to the rule of the reduced mass in a planetary stage.
+_OF_STAGE = ", of a sun for one of its planets, of a held ring infinite (clause 6.5.9, from memory)"
+
 
 def mesh_stiffness(mesh: MeshLoad) -> tuple[float, float]:
     """C' and c_gamma,alpha [N/m^2]."""
@@ -132,23 +135,26 @@ def dynamic_factor(
 
 def reduced_mass(mesh: MeshLoad) -> tuple[float, str]:
     """m_red of both gears per face width [kg/m], and its rule."""
+    shares = [rated.inertia_share for rated in mesh.rated]
+    alone = shares == [1.0, 1.0]
     inertias = [gear.moment_of_inertia for gear in mesh.gears]
     if None not in inertias:
-        masses = [
-            inertia / (gear.face_width * gear.base_radius**2)
-            for gear, inertia in zip(mesh.gears, inertias, strict=True)
+        inverse = sum(
+            gear.face_width * gear.base_radius**2 / (inertia * share)
+            for gear, inertia, share in zip(mesh.gears, inertias, shares, strict=True)
             if inertia is not None
-        ]
-        return masses[0] * masses[1] / sum(masses), "moments of inertia as stated"
+        )
+        return 1.0 / inverse, "moments of inertia as stated" + _OF_STAGE * (not alone)
     means = [gear.tip_radius + nominal_root_radius(gear) for gear in mesh.gears]
     hollow = [
         abs(1.0 - (2.0 * gear.rim_radius / mean) ** 4)
         for gear, mean in zip(mesh.gears, means, strict=True)
     ]
-    inverse = 1.0 / (hollow[0] * mesh.pinion.material.density)
-    inverse += 1.0 / (hollow[1] * mesh.wheel.material.density * mesh.ratio**2)
+    inverse = 1.0 / (hollow[0] * mesh.pinion.material.density * shares[0])
+    inverse += 1.0 / (hollow[1] * mesh.wheel.material.density * mesh.ratio**2 * shares[1])
     shape = (0.5 * means[0] / mesh.pair.pinion.base_radius) ** 2 * means[0] ** 2
-    return math.pi / 8.0 * shape / inverse, "solid bodies between bore and mean diameter"
+    rule = "solid bodies between bore and mean diameter"
+    return math.pi / 8.0 * shape / inverse, rule + _OF_STAGE * (not alone)
 
 
 def _relief(mesh: MeshLoad) -> tuple[float, str]:

@@ -171,7 +171,7 @@ def phase_names(machine: Machine, phases: Phases, driven: Sequence[str] = ()) ->
     names = []
     for axis, unit in enumerate(phase_units(machine, phases, driven)):
         meshes = [name for name, cycles in phases.cycles.items() if cycles[axis]]
-        more = f" and {len(meshes) - 1} others" if len(meshes) > 1 else ""
+        more = f" and {len(meshes) - 1} more" if len(meshes) > 1 else ""
         names.append(f"{meshes[0]}{more}" if meshes else unit.part)
         if meshes and unit.name:
             names[-1] += f" over {unit.part}"

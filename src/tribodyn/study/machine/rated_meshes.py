@@ -104,6 +104,10 @@ def _rated_mesh(
         computed=factors,
         meshes_per_turn=counts,
         reversed=reversed_,
+        inertia_shares=(
+            _inertia_share(case, load, (mesh, pinion), len(equal)),
+            _inertia_share(case, load, (mesh, wheel), len(equal)),
+        ),
         planets=len(equal) if mesh in case._stage_of else 1,
         share=load.load.share if name != "operation" else None,
         table=load.tables.get(mesh),
@@ -117,6 +121,20 @@ def _force_over_mean(load: LoadResult, mesh: str) -> tuple[Array, Array]:
     force = motion.mesh_force[:, column]
     phase = load.machine.meshes[mesh].offset + motion.cycles[column] * motion.clock
     return phase, force / float(motion.mean(force))
+
+
+def _inertia_share(
+    case: MachineCase, load: LoadResult, place: tuple[str, str], planets: int
+) -> float:
+    """Part of the inertia of a gear that moves with one mesh: all but of a sun or a ring."""
+    mesh, gear = place
+    if mesh not in case._stage_of:
+        return 1.0
+    table, machine = case._stage_of[mesh][0].table, load.machine
+    if gear not in (table.sun, table.ring):
+        return 1.0
+    turns = machine.kinematics.shafts[machine.gears[gear].shaft].speed
+    return 1.0 / planets if abs(turns) > 1e-12 * abs(load.load.speed) else math.inf
 
 
 def _flanks(load: LoadResult, gear: str, mesh: str) -> tuple[int, bool]:
