@@ -167,7 +167,7 @@ LINES: dict[str, int] = {
     "scope": 38,
     "signals": 1727,
     "stiffness": 5257,
-    "study": 20106,
+    "study": 20104,
     "surrogate": 767,
     "types": 13,
     "uncertainty": 291,

@@ -6,7 +6,7 @@ from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import asdict, dataclass, field, replace
 from functools import cached_property, partial
 from itertools import chain
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, cast
 
 from tribodyn.errors import ModelWarning, collected
 from tribodyn.rating import (
@@ -395,6 +395,7 @@ class RatedMesh:
         """Read what is common to all ratings of the mesh."""
         data = self.case.rating
         assert data is not None
+        each = zip(_ROLES, self.meshes_per_turn, self.reversed, self.inertia_shares, strict=True)
         pinion, wheel = (
             RatedGear(
                 material=gear_material(self.case, role),
@@ -406,21 +407,18 @@ class RatedMesh:
                 stress_ratio=-1.2 if idler else 0.0,
                 inertia_share=share,
             )
-            for role, count, idler, share in zip(
-                _ROLES, self.meshes_per_turn, self.reversed, self.inertia_shares, strict=True
-            )
+            for role, count, idler, share in each
         )
         conditions = conditions_of(self.case, self.planets)
         if self.share is not None and conditions["required_life"] is not None:
             conditions["required_life"] *= self.share
-        common = {"oil": gear_oil(self.case), "pinion": pinion, "wheel": wheel, **conditions}
-        object.__setattr__(self, "_common", common)
+        gears = {"oil": gear_oil(self.case), "pinion": pinion, "wheel": wheel}
+        object.__setattr__(self, "_common", {**gears, **conditions})
 
     @property
     def common(self) -> Tree:
         """Arguments of a rating other than the load."""
-        common: Tree = vars(self)["_common"]
-        return common
+        return cast(Tree, vars(self)["_common"])
 
 
 def rate_mesh(mesh: RatedMesh) -> MeshRating:
