@@ -222,7 +222,11 @@ def test_repr_is_one_line(result: Any) -> None:
 @pytest.mark.parametrize(
     ("old", "new", "place"),
     [
-        ('"900 rpm"', '"1 rpm"', "pair.toml:28: solver.steps_per_mesh_cycle: "),
+        (
+            'method = "steady"',
+            'method = "steady"\nsteps_per_mesh_cycle = 64',
+            "pair.toml:30: solver.steps_per_mesh_cycle: ",
+        ),
         (
             'model = "rectangular"\npair_stiffness = "2e8 N/m"',
             'model = "table"\nphase = [0.0, 0.6, 0.5]\nvalues = ["2e8 N/m", "2e8 N/m", "2e8 N/m"]',

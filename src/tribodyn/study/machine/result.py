@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 from tribodyn.aliases import warn_of_old_name
 from tribodyn.drawing import draw
-from tribodyn.errors import Argument, InputError
+from tribodyn.errors import Argument, InputError, collected
 from tribodyn.gear import Misalignment, MisalignmentStudy, misalignment_study
 from tribodyn.machine.static.supports import clearance_supports, without_clearance_supports
 from tribodyn.record import Parts
@@ -23,6 +23,7 @@ from tribodyn.study.machine.motion import MachineMotion, machine_motion
 from tribodyn.study.machine.summary import summary_of
 from tribodyn.study.pipeline.result_of_case import Result
 from tribodyn.study.pipeline.stored_motion import of_passes
+from tribodyn.study.pipeline.tooth_contact import repeat
 from tribodyn.study.planetary.stage_result import StageResult
 
 if TYPE_CHECKING:
@@ -48,23 +49,42 @@ if TYPE_CHECKING:
     from tribodyn.study.rating import RatedMesh
 
 
-#: Steps per cycle of the fastest mesh, and at least of the only one of a lone stage.
-STEPS, _OF_STAGE = 128, 240
+#: Steps per cycle of the fastest mesh, at least of the only one of a lone stage, and those after
+#: which they are not doubled any more.
+STEPS, _OF_STAGE, _MOST = 128, 240, 1024
 
 
 def steady_motion(
     structure: MachineStructure, system: System, start: Response | None = None
 ) -> Response:
-    """Motion of a machine on one clock or over phases; a start fits if its coordinates do."""
-    from tribodyn.dynamics import PhaseResponse, clearance_motion, harmonic_balance
+    """Motion of a machine on one clock, with steps that suffice, or over phases.
+
+    A start fits if its coordinates do.
+    """
+    from tribodyn.dynamics import PhaseResponse
+    from tribodyn.dynamics.harmonic.harmonic_balance import STEP_LIMIT
 
     if start is not None and start.names != tuple(system.names):
         start = None
-    search: dict[str, Any] = {"start": start, "steps": steps_of(structure)}
-    frequency: Any = structure.machine.clock.frequency
     if system.phases:
-        search = {"start": start if isinstance(start, PhaseResponse) else None}
-        frequency = structure.machine.phases.frequency
+        start = start if isinstance(start, PhaseResponse) else None
+        return _motion(structure, system, structure.machine.phases.frequency, start=start)
+    steps = steps_of(structure)
+    while True:
+        search = {"start": start, "steps": steps}
+        with collected() as model_warnings:
+            response = _motion(structure, system, structure.machine.clock.frequency, **search)
+        if not response.step_error > STEP_LIMIT or steps >= _MOST:
+            break
+        steps *= 2
+    repeat(model_warnings)
+    return response
+
+
+def _motion(structure: MachineStructure, system: System, frequency: Any, **search: Any) -> Response:
+    """Motion with bearings that may be loose."""
+    from tribodyn.dynamics import clearance_motion, harmonic_balance
+
     if supports := clearance_supports(structure):
         system = without_clearance_supports(structure, system)
         return clearance_motion(system, [*supports.values()], frequency, **search)
