@@ -108,7 +108,7 @@ def test_harmonic_balance_of_a_pair_equals_the_march(case: td.Case) -> None:
     marched = td.run(fine)
     assert spectra.response.engine == "harmonic-balance"
     error = spectra.response.step_error + marched.response.step_error
-    assert error < 1e-5
+    assert error < 1e-4
     for name in ("mean_mesh_force", "rms_mesh_force", "rms_dynamic_transmission_error"):
         assert spectra.summary()[name] == pytest.approx(marched.summary()[name], rel=3.0 * error)
     multipliers = [abs(each.response.floquet_multipliers[0]) for each in (spectra, marched)]
@@ -143,12 +143,12 @@ def test_an_automatic_engine_judges_what_harmonic_balance_finds() -> None:
     spectra, marched = td.run(automatic), td.run(helical)
     assert spectra.response.engine == "harmonic-balance"
     error = spectra.response.step_error + marched.response.step_error
-    assert error < 1e-5
+    assert error < 1e-4
     for name in ("mean_mesh_force", "rms_mesh_force", "rms_dynamic_transmission_error"):
         assert spectra.summary()[name] == pytest.approx(marched.summary()[name], rel=3.0 * error)
     coarse = td.run(automatic.replace({"solver.steps_per_mesh_cycle": 64})).response
     assert coarse.engine == "runge-kutta-4"
-    assert "with 64 steps, limit 1e-05" in coarse.reason
+    assert "with 64 steps, limit 1e-04" in coarse.reason
     speed = {"operation.speed": marched.summary()["resonance_speed"]}
     parting = td.run(automatic.replace({**PARTING, **speed})).response
     assert parting.engine == "runge-kutta-4"

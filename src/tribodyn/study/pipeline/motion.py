@@ -34,7 +34,7 @@ if TYPE_CHECKING:
 #: Engine whose periodic orbits are solved directly.
 _ORBITS = "runge-kutta-4"
 #: Steps per mesh cycle of harmonic balance that is tried, and step error with which it is taken.
-_TRIED, _FINE = 256, 1e-5
+_TRIED, _FINE = 256, 1e-4
 #: Change of the compression from one period to the next, over its size, that counts as none.
 _REPEATS = 1e-8
 #: Periods between two checks of that change, and largest number of mesh cycles.
