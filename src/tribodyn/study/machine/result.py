@@ -57,10 +57,7 @@ STEPS, _OF_STAGE, _MOST = 128, 240, 1024
 def steady_motion(
     structure: MachineStructure, system: System, start: Response | None = None
 ) -> Response:
-    """Motion of a machine on one clock, with steps that suffice, or over phases.
-
-    A start fits if its coordinates do.
-    """
+    """Motion on one clock, with steps that suffice, or over phases; coordinates of a start fit."""
     from tribodyn.dynamics import PhaseResponse
     from tribodyn.dynamics.harmonic.harmonic_balance import STEP_LIMIT
 
