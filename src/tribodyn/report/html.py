@@ -130,10 +130,10 @@ def template(name: str) -> Any:
     from jinja2 import Environment, FileSystemBytecodeCache, FileSystemLoader, StrictUndefined
 
     folder = _FOLDER / "__pycache__"
-    kept = not sys.dont_write_bytecode and os.access(folder, os.W_OK)
+    cacheable = not sys.dont_write_bytecode and os.access(folder, os.W_OK)
     environment = Environment(
         loader=FileSystemLoader(_FOLDER),
-        bytecode_cache=FileSystemBytecodeCache(str(folder)) if kept else None,
+        bytecode_cache=FileSystemBytecodeCache(str(folder)) if cacheable else None,
         autoescape=True,
         undefined=StrictUndefined,
         trim_blocks=True,

@@ -10,6 +10,8 @@ import pytest
 
 import tribodyn as td
 from tribodyn.dynamics import PhaseResponse
+from tribodyn.dynamics.harmonic.phase_balance import _ALONG, Work
+from tribodyn.dynamics.harmonic.phase_response import along_line, recorded
 from tribodyn.study.machine.first_look import over_phases, phase_cost_of, warn_of_motion
 from tribodyn.study.machine.motion import line_cause, line_numbers
 
@@ -98,7 +100,7 @@ def test_the_period_decides_and_the_case_overrides() -> None:
 
 
 def test_cost_is_stated_before_the_run_and_does_not_depend_on_the_teeth() -> None:
-    """The record and the closed line have other numbers of samples."""
+    """But for the samples of the record, whose weight they share, and of the closed line."""
     primes = {"z1": 101, "z2": 211, "z3": 103, "z4": 199, "z5": 107, "z6": 193}
     # The teeth of the first gear turn all meshes alike, those of the last one none.
     alike, others = {**TEETH, "z1": 101, "z6": 193}, {**TEETH, "z2": 97}
@@ -106,7 +108,16 @@ def test_cost_is_stated_before_the_run_and_does_not_depend_on_the_teeth() -> Non
     few, same, *costs = (warn_of_motion(case().solver, each) for each in machines)
     assert same[1:3] == few[1:3]
     assert same.time == pytest.approx(few.time, rel=1e-9)
-    assert [cost.time for cost in costs] == pytest.approx([few.time] * 2, rel=0.3)
+    frequencies = [np.array(each.phases.frequency) for each in (machines[0], *machines[2:])]
+    samples = [recorded(each) - recorded(frequencies[0]) for each in frequencies[1:]]
+    assert len({0, *samples}) == 3
+    per_sample = _ALONG * Work().size
+    later = [
+        cost.time - few.time - per_sample * (along_line(each) - along_line(frequencies[0]))
+        for cost, each in zip(costs, frequencies[1:], strict=True)
+    ]
+    assert later[0] * samples[1] == pytest.approx(later[1] * samples[0], rel=1e-9)
+    assert later[0] * samples[0] > 0.0
     assert all(cost[1:3] == few[1:3] and "3 phases" in str(cost) for cost in costs)
     small = case(memory="100 MB")
     with pytest.raises(td.ComputationError, match=r"GB are allowed by solver.memory"):

@@ -182,10 +182,10 @@ class ClosedStructure:
             free_rows,
         ))  # fmt: skip
         moved = self.respond(omega, force, output)
-        elastic, braked, held = np.split(moved, [size, size + c.braked.shape[1]], axis=1)
+        elastic, braked, resisting = np.split(moved, [size, size + c.braked.shape[1]], axis=1)
         still = omega == 0.0
         per_omega = np.divide(1.0, 1j * omega, where=~still, out=zero(omega.size, complex))[:, None]
-        pushed = (force @ (c.free.T @ self.push).T - held) * per_omega**2
+        pushed = (force @ (c.free.T @ self.push).T - resisting) * per_omega**2
         turned = (c.moving @ c.braked).T @ c.inverse
         x = elastic + (braked * per_omega) @ turned + pushed @ (c.free.T @ c.inverse)
         rate = 1j * omega[:, None] * x

@@ -99,7 +99,7 @@ class StaticModel:
 
     @property
     def content(self) -> Arrays:
-        """What the balance under given forces follows from: arrays, and parts that are kept."""
+        """What the balance under given forces follows from: arrays, and bearings and laws."""
         laws: list[object] = [self.law(name) for name in self.meshes]
         numbers = [np.ravel(v) for law in laws if is_dataclass(law) for v in vars(law).values()]
         parts: list[object] = [*self.machine.bearings.values(), *map(type, laws)]
