@@ -197,9 +197,7 @@ def _loaded_position(
 ) -> Array:
     """Position of least energy, by Newton's method with halved steps over the set in contact."""
     every = spring > 0.0
-    position = np.asarray(
-        np.linalg.solve(*_linear(matrix, load, spring, along, error, every)), dtype=float
-    )
+    position = _solved(*_linear(matrix, load, spring, along, error, every))
 
     def energy(at: Array) -> float:
         pressed = np.maximum(along @ at - error, 0.0)
@@ -207,7 +205,7 @@ def _loaded_position(
 
     for _ in range(_ROUNDS):
         closed = along @ position > error
-        target = np.linalg.solve(*_linear(matrix, load, spring, along, error, closed))
+        target = _solved(*_linear(matrix, load, spring, along, error, closed))
         if np.array_equal(along @ target > error, closed):
             return np.asarray(target)
         step, start = 1.0, energy(position)
@@ -217,6 +215,12 @@ def _loaded_position(
             break
         position = position + step * (target - position)
     return np.asarray(position)
+
+
+def _solved(matrix: Array, load: Array) -> Array:
+    """Position under a load, refined once, as what weak springs hold is sensitive to rounding."""
+    position = np.linalg.solve(matrix, load)
+    return np.asarray(position + np.linalg.solve(matrix, load - matrix @ position))
 
 
 def _linear(
