@@ -9,17 +9,14 @@ is at least twice the frequency of the highest order at the highest speed.
 
 from __future__ import annotations
 
-import math
-from functools import lru_cache
-
 import numpy as np
 
-from tribodyn.compiled.cache import cached_njit
 from tribodyn.errors import Argument, InputError, require_between, require_one_of, require_positive
 from tribodyn.nomenclature import require_whole
 from tribodyn.record import Record, fact, quantity, record
 from tribodyn.signals.angular_resampling import checked_signal
 from tribodyn.signals.order_map import OrderMap
+from tribodyn.signals.uneven_transform import uneven_transform
 from tribodyn.types import Array, ComplexArray
 
 #: Cosine sums over the block: G. Heinzel, A. Ruediger, R. Schilling, Spectrum and spectral density
@@ -29,12 +26,6 @@ WINDOWS = {
     "hann": (1.0, -1.0),
     "flattop": (1.0, -1.9383379, 1.3045202, -0.4028270, 0.0350665),  # HFT95
 }
-#: Points of the even grid for each of the two sums of a line and its mirror image.
-_OVER = 2.0
-#: Half width of the kernel in grid points, and its shape: relative error about 1e-12 with a grid
-#: twice as fine as needed (2.30 times the width: Barnett et al. 2019, section 3.2).
-_HALF = 7
-_SHAPE = 2.30 * 2 * _HALF
 
 
 @record
@@ -246,13 +237,9 @@ def order_map(
 def _checked(signal: object, angle: object, max_order: float) -> tuple[Array, Array]:
     """Validate samples and angles, and that the sampling resolves the highest order."""
     values = checked_signal(signal, 16)
-    turned = checked_signal(angle, 16, "angle")
+    turned = checked_signal(angle, 16, "angle", values.size)
     require_positive("max_order", max_order)
     where = Argument("angle")
-    if turned.size != values.size:
-        what = f"angle has {turned.size} samples, the signal has {values.size}"
-        why = "Each sample of the signal needs one angle"
-        raise InputError(what, where, why, "Pass the shaft angle at each sample")
     steps = np.diff(turned)
     if steps.min() < 0.0:
         at = int(np.argmin(steps))
@@ -295,47 +282,7 @@ def _lines(
     count = int(np.floor(2.0 * max_order * revolutions + 1e-9)) + 1
     # A large offset would leak into orders. A product by BLAS would wait for its threads.
     mean = float(np.sum(values * weights) / np.sum(weights))
-    sums = _uneven_transform((values - mean) * weights, 0.5 * inside, count)
+    sums = uneven_transform((values - mean) * weights, 0.5 * inside, count)
     lines = 2.0 * sums * np.exp(-1j * np.arange(count) * start / (2.0 * revolutions))
     lines[0] = 0.5 * lines[0] + mean
     return np.asarray(lines)
-
-
-def _uneven_transform(strength: Array, position: Array, count: int) -> ComplexArray:
-    """Sums of strength times exp(-2 pi i k position) for k from 0 to count - 1.
-
-    The strengths are spread onto an even grid by a kernel whose transform is divided out after
-    the fast Fourier transform: A. H. Barnett, J. Magland and L. af Klinteberg, SIAM J. Sci.
-    Comput. 41 (2019) C479, equations (1.8) and (3.12).
-    """
-    size, kernel_transform = _grid(count)
-    grid = np.zeros(size)
-    _spread(strength, position, grid)
-    return np.asarray(np.fft.rfft(grid)[:count] / kernel_transform)
-
-
-@lru_cache(maxsize=16)
-def _grid(count: int) -> tuple[int, Array]:
-    """Size of the even grid for so many sums, and the transform of the kernel."""
-    from scipy.fft import next_fast_len
-
-    size = int(next_fast_len(int(2 * _OVER * count) + 4 * _HALF, real=True))
-    nodes, shares = np.polynomial.legendre.leggauss(64)
-    kernel = np.exp(_SHAPE * (np.sqrt(1.0 - nodes**2) - 1.0))
-    waves = np.cos(2.0 * np.pi / size * np.outer(np.arange(count), _HALF * nodes))
-    return size, np.asarray(waves @ (_HALF * shares * kernel))
-
-
-@cached_njit(nogil=True)
-def _spread(strength: Array, place: Array, grid: Array) -> None:
-    """Add each strength to the points of a periodic grid around its place, which is 0 to 1."""
-    size = grid.size
-    for index in range(strength.size):
-        on_grid = place[index] * size
-        first = math.ceil(on_grid - _HALF)
-        for step in range(2 * _HALF):
-            away = (first + step - on_grid) / _HALF
-            inner = 1.0 - away * away
-            if inner > 0.0:
-                share = math.exp(_SHAPE * (math.sqrt(inner) - 1.0))
-                grid[(first + step) % size] += strength[index] * share

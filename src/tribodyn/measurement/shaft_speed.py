@@ -29,6 +29,9 @@ T = TypeVar("T")
 _SLOW = 0.1
 #: Mesh harmonics of an average.
 _HARMONICS = 5
+#: Indicators of gears, in the order of the figures.
+_OF_GEARS = ("fm0", "fm4", "m6a", "m8a", "na4", "na4_star", "nb4", "energy_ratio",
+             "sideband_index", "sideband_level_factor")  # fmt: skip
 #: Names of the shafts: that of the tachometer and of --speed, and the one of its mate.
 SHAFT, MATE = "shaft", "mate"
 
@@ -125,20 +128,9 @@ def average_figures(
         "difference_rms": float(np.std(average.difference())),
     }
     if indicators is not None:
-        numbers |= {
-            "average_crest_factor": indicators.crest_factor,
-            "average_kurtosis": indicators.kurtosis,
-            "fm0": indicators.fm0,
-            "fm4": indicators.fm4,
-            "m6a": indicators.m6a,
-            "m8a": indicators.m8a,
-            "na4": indicators.na4,
-            "na4_star": indicators.na4_star,
-            "nb4": indicators.nb4,
-            "energy_ratio": indicators.energy_ratio,
-            "sideband_index": indicators.sideband_index,
-            "sideband_level_factor": indicators.sideband_level_factor,
-        }
+        of_any_signal = ("crest_factor", "kurtosis")
+        numbers |= {f"average_{name}": getattr(indicators, name) for name in of_any_signal}
+        numbers |= {name: getattr(indicators, name) for name in _OF_GEARS}
     return {f"{name}{ending}": value for name, value in numbers.items() if np.isfinite(value)}
 
 

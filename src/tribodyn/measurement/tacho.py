@@ -295,8 +295,7 @@ def _pulses_passed(moments: Array, count: Array, time: Array, unsure: float) -> 
 
 def _smoothed_count(moments: Array, count: Array, time: Array, unsure: float) -> Array:
     """Number of pulses passed at each time, by a smoothing spline through the pulse times."""
-    from scipy.interpolate import BSpline, make_interp_spline
-    from scipy.sparse.linalg import spsolve
+    from scipy.interpolate import make_interp_spline, make_lsq_spline
 
     if moments.size == 1:
         return np.full(time.size, count[0])
@@ -310,8 +309,7 @@ def _smoothed_count(moments: Array, count: Array, time: Array, unsure: float) ->
                 np.repeat(moments[-1], 4),
             )
         )
-        basis = BSpline.design_matrix(moments, knots, 3)
-        fit = BSpline(knots, spsolve((basis.T @ basis).tocsc(), basis.T @ count), 3)
+        fit = make_lsq_spline(moments, count, knots)
         freedom = 1.0 - (knots.size - 4) / moments.size
         residual = float(np.mean((fit(moments) - count) ** 2))
         score = residual / freedom**2

@@ -132,7 +132,7 @@ def track_orders(
     from scipy.linalg import LinAlgError, solveh_banded
 
     values = checked_signal(signal, 16)
-    shaft_angles = checked_signal(angle, 16, "angle")
+    shaft_angles = checked_signal(angle, 16, "angle", values.size)
     shaft_orders = np.atleast_1d(real_numbers(Argument("orders"), orders))
     require_positive("orders", shaft_orders)
     require_positive("sample_rate", sample_rate, "Hz")
@@ -162,10 +162,6 @@ def _check_inputs(values: Array, angles: Array, orders: Array) -> None:
     if orders.ndim != 1 or np.unique(orders).size != orders.size:
         what, why = f"orders = {orders.tolist()}", "Each order can be tracked only once"
         raise InputError(what, Argument("orders"), why, "Pass a list of distinct orders")
-    if angles.size != values.size:
-        what = f"angle has {angles.size} samples, the signal has {values.size}"
-        why = "Each sample of the signal needs one angle"
-        raise InputError(what, Argument("angle"), why, "Pass the shaft angle at each sample")
     if values.size * orders.size > _MAX_UNKNOWNS:
         what = f"{orders.size} orders over {values.size} samples"
         why = f"At most {_MAX_UNKNOWNS} unknowns can be solved at once"

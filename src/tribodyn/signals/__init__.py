@@ -17,6 +17,7 @@ and the methods of diagnosis can be imported from this page too.
 | ``run_up_orders`` | orders and levels of a run-up, and the natural modes of its peaks |
 | ``spectrum`` | how strong each frequency is |
 | ``synchronous_average`` | what repeats with the rotation, and its variance before a damage |
+| ``uneven_transform`` | Fourier sums over uneven places |
 """
 
 from tribodyn.arguments.pages import public_page

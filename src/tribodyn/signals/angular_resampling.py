@@ -11,7 +11,9 @@ from tribodyn.errors import Argument, InputError, real_numbers, require_positive
 from tribodyn.types import Array
 
 
-def checked_signal(signal: object, least: int = 8, name: str = "signal") -> Array:
+def checked_signal(
+    signal: object, least: int = 8, name: str = "signal", size: int | None = None
+) -> Array:
     """Return a signal as floats; raise an InputError that names its first defect."""
     where = f"argument {name}"
     samples = np.asarray(signal if hasattr(signal, "dtype") else real_numbers(where, signal))
@@ -32,16 +34,16 @@ def checked_signal(signal: object, least: int = 8, name: str = "signal") -> Arra
     if values.size < least:
         what = f"{name} has {values.size} samples"
         raise InputError(what, where, f"At least {least} are needed", "Record longer")
+    if size is not None and values.size != size:
+        what = f"{name} has {values.size} samples, the signal has {size}"
+        why = "Each sample of the signal has its own value"
+        raise InputError(what, where, why, f"Give {size} values")
     return values
 
 
 def checked_rising(values: object, size: int, name: str, unit: str) -> Array:
     """Return times or rotation angles that rise from sample to sample."""
-    rising = checked_signal(values, 2, name)
-    if rising.size != size:
-        what = f"{name} has {rising.size} samples, the signal has {size}"
-        why = "Each sample of the signal has its own value"
-        raise InputError(what, f"argument {name}", why, f"Give {size} values")
+    rising = checked_signal(values, 2, name, size)
     falls = np.flatnonzero(np.diff(rising) <= 0.0)
     if falls.size:
         first = int(falls[0])
@@ -131,13 +133,8 @@ def shaft_rotation(rotation: object, speed: object, time: Array) -> Array:
     values = real_numbers(Argument("speed"), speed)
     if values.ndim == 0:
         values = np.full(time.size, float(values))
-    values = checked_signal(values, 2, "speed")
+    values = checked_signal(values, 2, "speed", time.size)
     require_positive("speed", values, "rad/s", remedy="Cut the standstill off the record")
-    if values.size != time.size:
-        what = f"speed has {values.size} samples, time has {time.size}"
-        why = "Each sample of the signal has its own speed"
-        remedy = "Give one speed for all, or one for each sample"
-        raise InputError(what, "argument speed", why, remedy)
     return np.asarray(CubicSpline(time, values).antiderivative()(time))
 
 

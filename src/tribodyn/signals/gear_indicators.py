@@ -54,31 +54,24 @@ def _standardized(values: Array, order: int) -> float:
     return float(np.mean(away**order) / np.mean(away**2) ** (0.5 * order))
 
 
-def _rms(average: SynchronousAverage) -> float:
-    """Alternating rms of the mean revolution."""
-    return float(np.std(average.signal))
-
-
 def _checked(average: SynchronousAverage, part: Array) -> Array:
     """Residual, difference or envelope; raise an error if nothing is left in it."""
-    if np.std(part) <= _NOTHING * _rms(average):
-        raise ComputationError(
-            "the mean revolution has nothing but mesh harmonics",
-            why="The indicators compare what is left over with the mesh harmonics",
-            remedy="Check the number of teeth, and that the shaft is the one measured",
-        )
+    _refuse_nothing(average, float(np.std(part)), "has nothing but mesh harmonics")
     return part
+
+
+def _refuse_nothing(average: SynchronousAverage, size: float, finding: str) -> None:
+    """Raise an error where a part of the mean revolution is rounding."""
+    if size <= _NOTHING * float(np.std(average.signal)):
+        why = "The indicators compare what is left over with the mesh harmonics"
+        remedy = "Check the number of teeth, and that the shaft is the one measured"
+        raise ComputationError(f"the mean revolution {finding}", why=why, remedy=remedy)
 
 
 def mesh_sum(average: SynchronousAverage, mesh_harmonics: int) -> float:
     """Sum of the amplitudes of the mesh harmonics."""
     mesh = float(average.mesh_amplitudes(mesh_harmonics).sum())
-    if mesh <= _NOTHING * _rms(average):
-        raise ComputationError(
-            "the mean revolution has no mesh harmonics",
-            why="The indicators compare what is left over with the mesh harmonics",
-            remedy="Check the number of teeth, and that the shaft is the one measured",
-        )
+    _refuse_nothing(average, mesh, "has no mesh harmonics")
     return mesh
 
 

@@ -14,7 +14,7 @@ from tribodyn.measurement import (
     synthetic_run_up,
     track_orders,
 )
-from tribodyn.measurement.orders import _uneven_transform
+from tribodyn.signals.uneven_transform import uneven_transform
 
 ORDERS = {1: 1.0, 14.5: 0.3, 29: 2.0, 58: 0.5}
 UP_AND_DOWN = (0.0, 3000.0 * np.pi / 30.0, 0.0)
@@ -34,7 +34,7 @@ def test_the_uneven_transform_equals_its_sum() -> None:
     random = np.random.default_rng(0)
     strength, place = random.normal(size=400), random.uniform(0.0, 0.5, 400)
     sums = np.exp(-2j * np.pi * np.outer(np.arange(80), place)) @ strength
-    np.testing.assert_allclose(_uneven_transform(strength, place, 80), sums, atol=1e-10)
+    np.testing.assert_allclose(uneven_transform(strength, place, 80), sums, atol=1e-10)
 
 
 def test_orders_of_a_run_from_rest_to_rest_to_a_thousandth(run, angle) -> None:
