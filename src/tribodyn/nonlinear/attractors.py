@@ -12,6 +12,7 @@ import os
 import threading
 from collections.abc import Iterator, Sequence
 from contextlib import suppress
+from itertools import islice
 from typing import Any
 
 import numpy as np
@@ -47,6 +48,10 @@ _ROUNDING = 1e-12
 _MOST_RECORDED = 2_000_000
 #: Part of the change after fewer cycles that is left whole periods later, where it settles.
 _FALLS = 0.999
+
+
+#: What a checkpoint has of each motion, in this order, before its last states.
+_KEPT = ("start", "state", "force", "period", "change", "rate")
 
 
 class Motions:
@@ -88,24 +93,16 @@ class Motions:
                 self._restore(index, stored)
 
     def _restore(self, index: int, stored: Any) -> None:
-        self.start[index], self.state[index], self.force[index] = stored[:3]
-        self.period[index], self.change[index], self.rate[index] = stored[3:6]
+        for name, value in zip(_KEPT, stored, strict=False):
+            getattr(self, name)[index] = value
         if len(self.recent):
-            self.recent[index] = stored[6]
+            self.recent[index] = stored[-1]
         self.finished[index] = True
 
     def _stored(self, index: int) -> list[Any]:
         """Return the stored values of a motion."""
         recent = self.recent[index] if len(self.recent) else None
-        return [
-            self.start[index],
-            self.state[index],
-            self.force[index],
-            self.period[index],
-            self.change[index],
-            self.rate[index],
-            recent,
-        ]
+        return [*(getattr(self, name)[index] for name in _KEPT), recent]
 
     def queue(self, indices: Any) -> None:
         """Queue motions for time integration."""
@@ -114,12 +111,7 @@ class Motions:
     def take(self, count: int) -> list[int]:
         """Take motions out of the queue."""
         with self._lock:
-            jobs = []
-            for item in self._waiting:
-                jobs.append(item)
-                if len(jobs) == count:
-                    break
-            return jobs
+            return list(islice(self._waiting, count))
 
     def store(self, index: int, state: Array, facts: tuple[int, float, Array, Array]) -> int:
         """Keep what became of a motion."""

@@ -28,7 +28,6 @@ from tribodyn.nonlinear.survey import (
     Surveyed,
     march_points,
     signal_name,
-    step_verdict,
 )
 from tribodyn.progress import SILENT, Progress
 from tribodyn.record import Parts, fact, quantity, record
@@ -205,7 +204,7 @@ def _diagram(
         return np.array([getattr(row, name) for row in of])
 
     verdicts = [
-        [_judge(values.step_number[i], i, row, new) for i in range(values.count)]
+        [row.verdict(i, values.step_number[i], new) for i in range(values.count)]
         for row, new in zip(rows, fine, strict=True)
     ]
     return Bifurcation(
@@ -330,18 +329,6 @@ def _refined_steps(values: Points) -> Index:
     halvings = np.ceil(np.log2(np.maximum(2.0 * values.step_number / LIMIT, 2.0)))
     halvings = np.where(values.step_number > LIMIT, halvings, 1.0)
     return np.asarray(values.steps * 2 ** halvings.astype(np.int64))
-
-
-def _judge(number: float, i: int, row: Outcomes, fine: Outcomes) -> str:
-    if not (row.finished[i] and fine.finished[i]):
-        return ""
-    return step_verdict(
-        float(number),
-        int(row.period[i]),
-        float(row.rms[i]),
-        int(fine.period[i]),
-        float(fine.rms[i]),
-    )
 
 
 def _largest_exponents(

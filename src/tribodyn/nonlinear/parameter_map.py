@@ -22,7 +22,6 @@ from tribodyn.nonlinear.survey import (
     comes_back,
     march_points,
     signal_name,
-    step_verdict,
 )
 from tribodyn.progress import SILENT, Progress
 from tribodyn.record import Parts, fact, quantity, record
@@ -229,13 +228,7 @@ def _judged(
     chosen = outcomes.finished & alive & ~same
     march_points(finer, survey, (again, chosen), progress=progress)
     for n in np.flatnonzero(again.finished):
-        verdicts[n] = step_verdict(
-            float(step_number[n]),
-            int(outcomes.period[n]),
-            float(outcomes.rms[n]),
-            int(again.period[n]),
-            float(again.rms[n]),
-        )
+        verdicts[n] = outcomes.verdict(int(n), step_number[n], again)
     return verdicts
 
 

@@ -206,6 +206,13 @@ class Outcomes:
         self.repeats, self.rate = np.zeros(count, dtype=np.int64), np.ones(count)
         self.finished = np.zeros(count, dtype=bool)
 
+    def verdict(self, number: int, step_number: float, finer: Outcomes) -> str:
+        """What shorter steps say of a motion; empty where one of both is not finished."""
+        if not (self.finished[number] and finer.finished[number]):
+            return ""
+        facts = [(int(row.period[number]), float(row.rms[number])) for row in (self, finer)]
+        return step_verdict(float(step_number), *facts[0], *facts[1])
+
     def fill(self, survey: Survey, motions: Motions, indices: Index, numbers: Index) -> None:
         """Measure those of some motions that are finished."""
         done = motions.finished[indices]

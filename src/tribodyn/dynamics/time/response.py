@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field, replace
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 
@@ -251,26 +251,24 @@ def _step_samples(
 ) -> FineSamples:
     nodes, grid = compiled.nodes, compiled.grid
     cycles = (states.shape[0] - 1) // grid.steps
-    parts = [states[c * grid.steps : (c + 1) * grid.steps + 1] for c in range(cycles)]
-    ends = np.stack(parts) if cycles > 1 else states[None]
+    rows = [states[c * grid.steps : (c + 1) * grid.steps + 1] for c in range(cycles)]
+    ends = np.stack(rows) if cycles > 1 else states[None]
     q, v = with_middles(grid.width / mesh_frequency, ends) if within is None else within
     moved = forces(compiled.system, nodes, mesh_frequency, q, v, extra=extra_force)
     phase = np.arange(cycles)[:, None, None] + nodes.phase
     weight = np.broadcast_to(nodes.weight / cycles, phase.shape)
+    parts = _named(phase, q, v, moved) | {"weight": weight}
+    count = 3 * cycles * grid.steps
+    flat = {name: values.reshape(count, *values.shape[3:]) for name, values in parts.items()}
+    return FineSamples(time=flat["phase"] / mesh_frequency, **flat)
 
-    def flat(values: Array) -> Array:
-        return values.reshape(3 * cycles * grid.steps, values.shape[-1])
 
-    return FineSamples(
-        phase=phase.reshape(-1),
-        time=phase.reshape(-1) / mesh_frequency,
-        weight=weight.reshape(-1),
-        position=flat(q),
-        velocity=flat(v),
-        acceleration=flat(moved.acceleration),
-        deflection=flat(moved.deflection),
-        contact_force=flat(moved.contact),
-    )
+def _named(phase: Array, q: Array, v: Array, moved: Forces) -> dict[str, Array]:
+    """Samples by their names in :class:`FineSamples`."""
+    return {
+        "phase": phase, "position": q, "velocity": v, "acceleration": moved.acceleration,
+        "deflection": moved.deflection, "contact_force": moved.contact,
+    }  # fmt: skip
 
 
 def _without_jumps(
@@ -288,23 +286,13 @@ def _without_jumps(
     new = resample_crossings(compiled, mesh_frequency, states, extra, at_ends)
     if new is None:
         return samples
-
-    def replaced(values: Array, by: Array) -> Array:
-        out = values.reshape(-1, 3, *values.shape[1:]).copy()
-        out[new.step] = by
-        return out.reshape(values.shape)
-
-    phase = replaced(samples.phase, new.phase)
-    return FineSamples(
-        phase=phase,
-        time=phase / mesh_frequency,
-        weight=replaced(samples.weight, new.weight),
-        position=replaced(samples.position, new.position),
-        velocity=replaced(samples.velocity, new.velocity),
-        acceleration=replaced(samples.acceleration, new.forces.acceleration),
-        deflection=replaced(samples.deflection, new.forces.deflection),
-        contact_force=replaced(samples.contact_force, new.forces.contact),
-    )
+    step, parts = new
+    for name, values in parts.items():
+        old = getattr(samples, name)
+        every = old.reshape(-1, 3, *old.shape[1:]).copy()
+        every[step] = values
+        parts[name] = every.reshape(old.shape)
+    return FineSamples(time=parts["phase"] / mesh_frequency, **parts)
 
 
 _HALVINGS = 48
@@ -312,21 +300,10 @@ _HALVINGS = 48
 _TOGETHER = 1e-9
 
 
-class Resampled(NamedTuple):
-    """Three new samples for each of some steps."""
-
-    step: Index  #: numbers of the steps, counted from the start
-    phase: Array  #: [-]
-    weight: Array  #: [-]
-    position: Array  #: [m or rad, ...]
-    velocity: Array  #: [m or rad, ...]
-    forces: Forces
-
-
 def resample_crossings(
     compiled: Compiled, mesh_frequency: float, states: Array, extra_force: Array, sides: Array
-) -> Resampled | None:
-    """Resample steps in which a contact opens or closes, together with a neighbour of each."""
+) -> tuple[Index, dict[str, Array]] | None:
+    """Three samples for each step in which a contact opens or closes, and for a neighbour of it."""
     crossed = np.any(sides[:, 0] != sides[:, 1], axis=1)
     if not crossed.any() or compiled.step_number > LIMIT:
         return None
@@ -349,11 +326,11 @@ def resample_crossings(
     end = cycle + outer + grid.width[first % grid.steps] + grid.width[(first + 1) % grid.steps]
     left = _part(points, step, (cycle + outer, cut), (states[first], middle), before)
     right = _part(points, step, (cut, end), (middle, states[first + 2]), after)
-    phase, q, v = (np.concatenate(pair) for pair in zip(left[:3], right[:3], strict=True))
-    joined = Forces(*(np.concatenate(pair) for pair in zip(left[3], right[3], strict=True)))
-    weight = np.multiply.outer(phase[:, 2] - phase[:, 0], [1.0, 4.0, 1.0])
-    weight *= grid.steps / (6.0 * sides.shape[0])
-    return Resampled(np.concatenate((first, first + 1)), phase, weight, q, v, joined)
+    new = {name: np.concatenate((values, right[name])) for name, values in left.items()}
+    width = new["phase"][:, 2] - new["phase"][:, 0]
+    new["weight"] = np.multiply.outer(width, [1.0, 4.0, 1.0])
+    new["weight"] *= grid.steps / (6.0 * len(sides))
+    return np.concatenate((first, first + 1)), new
 
 
 def _with_neighbours(crossed: Mask, after_event: Mask) -> tuple[Index, Mask]:
@@ -408,10 +385,10 @@ def _part(
     phase: tuple[Array, Array],
     ends: tuple[Array, Array],
     side: Array,
-) -> tuple[Array, Array, Array, Forces]:
+) -> dict[str, Array]:
     """Both ends and the middle of a part of two steps, on one side of the contacts."""
     duration = (phase[1] - phase[0])[:, None] / points.beat
     q, v = (item[:, 0] for item in with_middles(duration, np.stack(ends, axis=1)))
     at = np.stack((phase[0], 0.5 * (phase[0] + phase[1]), phase[1]), axis=1)
     number, tau = within_steps(points.grid, step // points.grid.steps, at)
-    return at, q, v, points.forces(number, tau, q, v, side[:, None])
+    return _named(at, q, v, points.forces(number, tau, q, v, side[:, None]))
