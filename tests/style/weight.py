@@ -160,7 +160,7 @@ LINES: dict[str, int] = {
     "machine": 5525,
     "measurement": 3337,
     "members": 3,
-    "mesh": 5550,
+    "mesh": 5549,
     "model": 229,
     "nomenclature": 98,
     "notebook": 63,

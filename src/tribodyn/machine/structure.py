@@ -314,7 +314,7 @@ class MachineStructure:
         if bearing.node is None:
             return motion
         axes = self.machine.placement.axes[bearing.shaft]
-        return motion - np.kron(np.eye(2), axes.T) @ self.housing_node(bearing.node)
+        return motion - (axes.T @ self.housing_node(bearing.node).reshape(2, 3, -1)).reshape(6, -1)
 
     def twist(self, name: str) -> Array:
         """Twist of a coupling per coordinate.

@@ -21,8 +21,9 @@ from tribodyn.types import Array, ComplexArray, Index
 
 #: Cubic interpolation needs three intervals; Simpson's rule an even number.
 _LEAST_INTERVALS = 4
-#: Sets of phases whose knots are remembered, and their sizes.
-_CACHED_PLACES, _FEWEST_CACHED, _MOST_CACHED = 8, 512, 65536
+#: The last sets of phases with their knots and weights, and sizes of those that are remembered.
+_located_places: Memo[tuple[Index, Array]] = Memo(8)
+_FEWEST_CACHED, _MOST_CACHED = 512, 65536
 
 
 @dataclass(frozen=True, eq=False)
@@ -79,17 +80,14 @@ class PhaseGrid:
             return np.asarray(np.einsum("k...,k...c->c...", weights, columns[knots]))
         if phase.size <= _MOST_CACHED:
             # Tables of one case and of all its operating points are evaluated at the same phases.
-            knots, weights = self._places.get((phase,), lambda: self._located(phase.ravel()))
+            key = phase, self.phase
+            knots, weights = _located_places.get(key, lambda: self._located(phase.ravel()))
         else:
             knots, weights = self._located(phase.ravel())
         interpolated = np.empty((columns.shape[1], phase.size))
         for column, place in zip(np.ascontiguousarray(columns.T), interpolated, strict=True):
             np.einsum("kp,kp->p", weights, column.take(knots), out=place)
         return interpolated.reshape(-1, *phase.shape)
-
-    @cached_property
-    def _places(self) -> Memo[tuple[Index, Array]]:
-        return Memo(_CACHED_PLACES)
 
     def _located(self, phase: Array) -> tuple[Index, Array]:
         folded = np.mod(phase, 1.0)

@@ -12,6 +12,7 @@ from tribodyn.dynamics.equations.orbit_coordinates import direction_basis
 from tribodyn.dynamics.harmonic.harmonic_balance import prepare
 from tribodyn.dynamics.harmonic.newton import solve_linear
 from tribodyn.dynamics.harmonic.orbit_response import series
+from tribodyn.dynamics.harmonic.tangent_march import TangentMarch
 from tribodyn.dynamics.modal.closed_structure import ClosedStructure
 from tribodyn.errors import quiet
 from tribodyn.mesh import phase_grid
@@ -236,3 +237,17 @@ def test_a_system_is_evaluated_once():
     machine = two_mesh_system()
     assert prepare(machine, CLOCK) is prepare(machine, 2.0 * CLOCK)
     assert prepare(two_mesh_system(), CLOCK) is not prepare(machine, CLOCK)
+
+
+@pytest.mark.parametrize("seed", [18, 3, 5])
+def test_leading_multiplier_is_that_of_all(seed):
+    machine = random_machine(seed, depth=0.3)
+    frequency = 0.7 / machine.cycles
+    residual = prepare(machine, frequency).residual(64 * machine.cycles, frequency)
+    start = prepare(machine, frequency).equilibrium.position @ (
+        residual.structure.coordinates.lower @ residual.structure.along
+    )
+    march = TangentMarch.of(residual, residual.at(np.tile(start, (64 * machine.cycles, 1))))
+    modes = np.eye(march._parts[0].size)
+    values = np.linalg.eigvals(np.stack([march.moved(row) for row in modes], axis=1))
+    assert march.leading_multiplier() == pytest.approx(np.abs(values).max(), rel=1e-4)

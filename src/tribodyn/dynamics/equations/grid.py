@@ -38,6 +38,8 @@ _TOGETHER = 2**22
 #: phases, if these are no more than so many: those of a study are often the same.
 _tables: Memo[tuple[Any, Memo[Array]]] = Memo(8)
 _CACHED = 2**18
+#: Derivatives of the last tables on nodes, which a study does not change either.
+_derivatives: Memo[Array] = Memo(16)
 #: Widest stencil of the numerical derivative in phase.
 _STENCIL = 1e-4
 #: Derivatives of the Lagrange polynomials on -2..2: factors of the powers 0 to 3 of the place.
@@ -212,8 +214,19 @@ class RowEvaluator:
         """Derivatives with respect to phase on the nodes, from a five-point stencil."""
         if not varies(entry):
             return np.broadcast_to(0.0, (*self.nodes.shape, size))
-        if (narrow := narrower(entry)) is not None:
-            return times(self.derivatives(where, narrow[0], len(narrow[1])), narrow[1].T)
+        if (narrow := narrower(entry)) is None:
+            return self._differences(where, entry, size)
+        table, onto = narrow
+        compute = partial(self._differences, where, table, len(onto))
+        looked_up = table_of(table)
+        assert looked_up is not None
+        of_table = looked_up[0].values, looked_up[0].grid.phase, np.array(looked_up[1:])
+        key = (self.nodes, self._low, self._high, *of_table)
+        few = self.nodes.size * len(onto) <= _CACHED
+        return times(_derivatives.get(key, compute) if few else compute(), onto.T)
+
+    def _differences(self, where: str, entry: Entry, size: int) -> Array:
+        """Derivatives by a five-point stencil."""
         span = self._high - self._low
         step = np.minimum(_STENCIL / getattr(entry, "cycles", 1), span / 8.0)
         centre = np.clip(self.nodes, self._low + 2.0 * step, self._high - 2.0 * step)

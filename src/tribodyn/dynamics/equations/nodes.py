@@ -204,21 +204,7 @@ def evaluate_rows(system: System, rows: RowEvaluator) -> Nodes:
     parts = ((contacts, CONTACT_ENTRIES), (system.clocked_frictions, FRICTION_ENTRIES))
     rows.look_up(getattr(part, name) for each, names in parts for part in each for name in names)
 
-    def scalar(name: str, take: Callable[..., Array]) -> Array:
-        entries = [getattr(contact, name) for contact in contacts]
-        if len(entries) == 1:
-            return take(f"contacts[0].{name}", entries[0])
-        still = not any(map(varies, entries))
-        table = np.empty((1 if still else shape[0], shape[1], len(entries)))
-        for j in range(len(entries)):
-            if (same := _evaluated_before(entries, j)) is not None:
-                table[..., j] = table[..., same]
-            else:
-                values = take(f"contacts[{j}].{name}", entries[j])
-                table[..., j] = values[: len(table), :, 0]
-        return _one_row(table[0, 0], shape) if still else table
-
-    def vector(name: str, take: Callable[..., Array]) -> Array:
+    def vector(name: str, take: Callable[..., Array], size: int = size) -> Array:
         if len(contacts) == 1 and (entry := getattr(contacts[0], name)) is not None:
             return take(f"contacts[0].{name}", entry, size)[:, :, None]
         entries = [getattr(contact, name) for contact in contacts]
@@ -230,6 +216,9 @@ def evaluate_rows(system: System, rows: RowEvaluator) -> Nodes:
             elif entry is not None and (varies(entry) or take == rows.values):
                 table[:, :, j] = take(f"contacts[{j}].{name}", entry, size)[: len(table)]
         return _one_row(table[0, 0], shape) if still else table
+
+    def scalar(name: str, take: Callable[..., Array]) -> Array:
+        return vector(name, take, 1)[..., 0]
 
     direction = vector("direction", rows.values)
     for j in np.flatnonzero(~unrepeated(direction, 2).any(axis=(0, 1, 3))):

@@ -250,11 +250,11 @@ def direction_basis(
     basis = _span([_counted(*each, inverse) for each in zip(some, least, strict=True)])
     # Most rows repeat what some span; components along random directions show those that do not.
     random = np.random.default_rng(0).standard_normal((size, _PROBES)) / np.sqrt(_PROBES)
-    probes, left = inverse.T @ random, inverse.T @ (random - basis @ (basis.T @ random))
+    probes = inverse.T @ np.concatenate((random, random - basis @ (basis.T @ random)), axis=1)
     outside = []
     for part, short in zip(rows, least, strict=True):
-        length = np.maximum(np.linalg.norm(part @ probes, axis=1), short)
-        outside.append(part[np.linalg.norm(part @ left, axis=1) > _DEPENDENT * length])
+        length, left = np.linalg.norm((part @ probes).reshape(-1, 2, _PROBES), axis=2).T
+        outside.append(part[left > _DEPENDENT * np.maximum(length, short)])
     others = [_counted(*each, inverse) for each in zip(outside, least, strict=True)]
     return _span([basis.T, *others]), np.concatenate((*some, *outside))
 

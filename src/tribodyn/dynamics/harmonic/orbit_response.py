@@ -10,6 +10,7 @@ import numpy as np
 
 from tribodyn.dynamics.equations.compiled import Compiled
 from tribodyn.dynamics.harmonic.newton import State, uncorrected
+from tribodyn.dynamics.harmonic.phase_grid import polynomial_shares
 from tribodyn.dynamics.harmonic.residual import ClockResidual
 from tribodyn.dynamics.time.response import Response, build_response
 from tribodyn.types import Array, ComplexArray, Index
@@ -131,13 +132,15 @@ def starting_state(residual: ClockResidual, state: State) -> tuple[Array, Array]
 
 def series(amplitudes: ComplexArray, steps: int, phase: Array) -> Array:
     """Fourier series with amplitudes (k, n) of a motion on ``steps`` samples, at any phases."""
+    from scipy import fft
+
     # On equal steps all phases are samples of the series.
     count = 2 * (phase.size // 3)
     if count < steps or np.abs(phase * count - np.rint(phase * count)).max() > 1e-7:
         count = _REFINED * steps
     padded = np.zeros((count // 2 + 1, amplitudes.shape[1]), dtype=complex)
     padded[: len(amplitudes)] = amplitudes
-    fine = np.fft.irfft(padded, count, axis=0, norm="forward")
+    fine = fft.irfft(padded, count, axis=0, norm="forward")
     place = phase * count
     nearest = np.rint(place)
     if np.abs(place - nearest).max() < 1e-7:
@@ -145,17 +148,8 @@ def series(amplitudes: ComplexArray, steps: int, phase: Array) -> Array:
     from scipy.sparse import csr_matrix
 
     first = np.floor(place).astype(np.int64) - _POINTS // 2 + 1
-    columns = (first[:, None] + np.arange(_POINTS)) % count
-    ends = np.arange(0, columns.size + 1, _POINTS)
-    shares = _lagrange(place - first).reshape(-1), columns.reshape(-1), ends
-    return np.asarray(csr_matrix(shares, (phase.size, count)) @ fine)
-
-
-def _lagrange(place: Array) -> Array:
-    """Weights of the polynomial through points 0, 1, ... at places (p,), (p, points)."""
-    points = np.arange(_POINTS)
-    weights = np.ones((place.size, _POINTS))
-    for point in points:
-        for other in np.delete(points, point):
-            weights[:, point] *= (place - other) / (point - other)
-    return weights
+    nodes = first[:, None] + np.arange(_POINTS)
+    shares = polynomial_shares(place[:, None] - nodes).reshape(-1)
+    ends = np.arange(0, nodes.size + 1, _POINTS)
+    table = csr_matrix((shares, nodes.reshape(-1) % count, ends), (phase.size, count))
+    return np.asarray(table @ fine)

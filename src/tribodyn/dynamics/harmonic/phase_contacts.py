@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 from numpy.polynomial import legendre
 
-from tribodyn.dynamics.harmonic.phase_grid import PhaseGrid
+from tribodyn.dynamics.harmonic.phase_grid import PhaseGrid, polynomial_shares
 from tribodyn.dynamics.harmonic.phase_rows import Mesh, PhaseRows
 from tribodyn.dynamics.harmonic.radial_clearance import clearance_forces
 from tribodyn.dynamics.modal.contact_equations import (
@@ -118,15 +118,11 @@ class Pieces:
     def at_cuts(self) -> csr_matrix:
         """The same at the points that are none of the uncut pieces."""
         from scipy.sparse import csr_matrix
-        from scipy.special import binom
 
         count = _REFINED * self.grid.shape[self.axis]
         offsets = np.arange(_POINTS)
         first = np.floor(self.at.place * count)[:, None] - _POINTS // 2 + 1
-        distance = self.at.place[:, None] * count - first - offsets
-        distance[distance == 0.0] = 1e-200  # all weight at this point
-        share = (-1.0) ** offsets * binom(_POINTS - 1, offsets) / distance
-        share /= share.sum(axis=1, keepdims=True)
+        share = polynomial_shares(self.at.place[:, None] * count - first - offsets)
         columns = self.at.line[:, None] * count + (first + offsets).astype(np.int64) % count
         ends = np.arange(0, share.size + 1, _POINTS)
         size = len(share), _REFINED * self.grid.size

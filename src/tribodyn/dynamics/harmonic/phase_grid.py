@@ -97,3 +97,13 @@ class PhaseGrid:
     def lines(self, axis: int) -> Index:
         """First points of all lines along a phase."""
         return np.arange(self.size).reshape(self.shape).take(0, axis).reshape(-1)
+
+
+def polynomial_shares(distance: Array) -> Array:
+    """Weights of even points in the polynomial through them, at distances in steps (p, points)."""
+    from scipy.special import binom
+
+    orders = np.arange(distance.shape[1])
+    distance = np.where(distance == 0.0, 1e-200, distance)  # all weight at this point
+    share = (-1.0) ** orders * binom(orders[-1], orders) / distance
+    return np.asarray(share / share.sum(axis=1, keepdims=True))

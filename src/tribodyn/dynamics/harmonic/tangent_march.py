@@ -27,10 +27,8 @@ if TYPE_CHECKING:
 
 #: Part of the start that is left when the motion is recorded.
 _LEFT = 1e-4
-#: Part of a disturbance that is left after a period, below which none grows.
-_FORGOTTEN = 1e-6
-#: Coordinates up to which all multipliers are computed.
-_DENSE = 24
+#: Residual of the leading multiplier over its size, and of one that is as good as none.
+_ACCURATE, _FORGOTTEN = 1e-4, 1e-6
 _OPTIONS: dict[str, Any] = {
     "nogil": True, "fastmath": {"contract", "nsz", "reassoc"}, "error_model": "numpy",
 }  # fmt: skip
@@ -91,19 +89,23 @@ class TangentMarch:
         """Size of the largest Floquet multiplier, to the second order of the step."""
         size = self._parts[0].size
         start = np.random.default_rng(0).standard_normal(size)
-        if np.linalg.norm(self.moved(start)) <= _FORGOTTEN * np.linalg.norm(start):
-            return 0.0
-        if size <= _DENSE:
-            values = np.linalg.eigvals(np.stack([self.moved(row) for row in np.eye(size)], axis=1))
-        else:
-            from scipy.sparse.linalg import ArpackNoConvergence, LinearOperator, eigs
-
-            operator = LinearOperator((size, size), matvec=self.moved, dtype=float)
-            try:
-                values = eigs(operator, 1, v0=start, tol=1e-4, return_eigenvectors=False)
-            except ArpackNoConvergence as error:
-                values = np.append(error.eigenvalues, 1.0)
-        return float(np.abs(values).max(initial=0.0))
+        basis, product = np.zeros((size + 1, size)), np.zeros((size + 1, size))
+        basis[0] = start / np.linalg.norm(start)
+        # Source: Arnoldi (1951), Quart. Appl. Math. 9, 17.
+        for count in range(1, size + 1):
+            vector = self.moved(basis[count - 1])
+            for _ in range(2):  # twice is enough for orthogonality
+                along = basis[:count] @ vector
+                vector -= along @ basis[:count]
+                product[:count, count - 1] += along
+            length = product[count, count - 1] = np.linalg.norm(vector)
+            values, shapes = np.linalg.eig(product[:count, :count])
+            leading = int(np.argmax(np.abs(values)))
+            left = length * abs(shapes[-1, leading])
+            if left <= max(_ACCURATE * abs(values[leading]), _FORGOTTEN):
+                break
+            basis[count] = vector / length
+        return float(abs(values[leading]))
 
 
 def _tangents(residual: ClockResidual, state: State) -> Array:

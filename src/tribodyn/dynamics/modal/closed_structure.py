@@ -66,7 +66,7 @@ class ClosedStructure:
     def modes(self) -> tuple[ComplexArray, ComplexArray, ComplexArray] | None:
         """Eigenvalues, right modes and left modes; None if they do not span all motions."""
         values, right = np.linalg.eig(self.matrix)
-        if not np.linalg.cond(right) < _ILL_CONDITIONED:
+        if not np.linalg.cond(right, 1) < _ILL_CONDITIONED:
             return None
         return values.astype(complex), right.astype(complex), np.linalg.inv(right).astype(complex)
 

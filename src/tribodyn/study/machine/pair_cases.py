@@ -22,7 +22,7 @@ from tribodyn.study.case.sections import Operation
 from tribodyn.study.case.to_models import usual_backlash
 from tribodyn.study.case.user_input import Source
 from tribodyn.study.case.values import FaultError, KeyedProblems, Plain, read_value
-from tribodyn.study.machine.read_parts import completed, is_faulty, parts_of, read_loads
+from tribodyn.study.machine.read_parts import is_faulty, parts_of, read_loads
 from tribodyn.study.machine.tables import (
     HEAT,
     MESH_KEYS,
@@ -47,6 +47,8 @@ _OF_CYLINDRICAL = ("stiffness", "materials", "rating")
 _OF_MACHINE = (*HEAT, *PartRating.fields, *HISTORY)
 #: The machine is what vibrates: its pairs have no supports of their own.
 _WITHOUT_SUPPORTS = {"model": "torsional"}
+#: Tables with what a change of speed or torque needs.
+_OF_LOADS = ("operation", "load_cases", "rating")
 _ROLES = ("pinion", "wheel")
 #: Names of gears that are words, which have an article.
 _WORDS = (*_ROLES, "sun", "planet", "ring")
@@ -318,12 +320,12 @@ def take_loads(case: MachineCase, before: MachineCase, numbers: Mapping[str, flo
     if any(key not in senses or number * senses[key] <= 0.0 for key, number in numbers.items()):
         return False
     problems: KeyedProblems = []
-    tables = case._read_tables(completed(case.data), problems)
+    # A number of the operation leaves all other tables valid.
+    tables = case._read_tables({n: case.data[n] for n in _OF_LOADS if n in case.data}, problems)
     loads = read_loads(case.data, tables, parts_of(tables, "load_cases"), problems)
     if loads is None or problems:
         return False
-    state = {"_teeth": before._teeth, "_machines": dict(before._machines)}
-    vars(case).update(state, operating_point=loads.operating_point, load_cases=loads.load_cases)
+    vars(case).update(loads._asdict(), _teeth=before._teeth, _machines=dict(before._machines))
     try:
         check_loads(case)
     except InputError:  # whose message says what was replaced
