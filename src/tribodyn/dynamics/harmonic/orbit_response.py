@@ -87,15 +87,15 @@ def orbit_response(
     force, torque = structure.balanced(spectrum, structure.contact_stiffness @ state.y.mean(axis=0))
     phase, shape = compiled.nodes.phase.reshape(-1), (1, compiled.grid.steps, 3, -1)
     into_motion = structure.push.T @ structure.coordinates.inverse
-    amplitudes, jumped = [], []
+    amplitudes, jumped = structure.motion(residual.omega, force), []
     # Harmonics beyond those of the samples are those that jumps of the acceleration cause.
-    for amplitude, power in zip(structure.motion(residual.omega, force), (3, 2), strict=True):
+    for amplitude, power in zip(amplitudes, (3, 2), strict=True) if jumps.step.size else ():
         scale = residual.frequency ** (1.0 - power) * into_motion
         amplitude[1:-1] -= pulses / _orders(len(pulses)) ** power @ scale
-        amplitudes.append(amplitude)
         jumped.append(jumps.polynomials(phase, power) @ scale)
     motion = series(np.concatenate(amplitudes, axis=1), steps, phase)
-    motion += np.concatenate(jumped, axis=1)
+    if jumped:
+        motion += np.concatenate(jumped, axis=1)
     q, v = (np.ascontiguousarray(part).reshape(shape) for part in np.split(motion, 2, axis=1))
     ends = np.concatenate((q[0, :, 0], v[0, :, 0]), axis=1)
     states = np.concatenate((ends, ends[:1]))
