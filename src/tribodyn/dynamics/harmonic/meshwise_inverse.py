@@ -21,8 +21,10 @@ if TYPE_CHECKING:
 #: Part of the largest variation of a stiffness that is too small to matter.
 _SMALL = 0.02
 #: Bytes of the inverse of the lines of one phase alone, and of those that others shift; with more,
-#: only its lowest lines are coupled.
-_CENTRAL, _OTHERS = 2**24, 2**26
+#: only the lines at which the structure yields most are coupled.
+_CENTRAL, _OTHERS = 2**25, 2**27
+#: Bytes of the matrices that are inverted at once.
+_AT_ONCE = 2**22
 
 
 class MeshwiseInverse:
@@ -68,34 +70,29 @@ class _Block(NamedTuple):
     """Inverse for some rows of lines: those of different numbers of the other phases."""
 
     rows: Index
-    low: Index  #: lines of the row that are coupled
-    gain: ComplexArray  #: motion per force (m, n, r, a)
-    rate: ComplexArray
-    inverse: ComplexArray
-    spring: ComplexArray
-    damper: ComplexArray
+    chosen: Index  #: lines of each row that are coupled (m, l)
+    moved: ComplexArray  #: change of these lines with the motion that is felt (m, l r, l w)
 
     @classmethod
     def of(
-        cls, rows: Index, low: Index, gain: ComplexArray, rate: ComplexArray, along: Array,
+        cls, rows: Index, most: float, gain: ComplexArray, rate: ComplexArray, along: Array,
         waves: list[Array],
     ) -> _Block:  # fmt: skip
-        """Solve the equations of some rows."""
-        gain, size = gain[np.ix_(rows, low)], len(low) * len(along)
-        rate = np.repeat(rate[np.ix_(rows, low)], len(along), axis=1)
-        forces = [_between_lines(wave, low) for wave in waves]
-        felt = along @ gain  # motion felt per force of the same line (m, l, w, a)
-        loop, damped = ((felt @ force).reshape(-1, size, size) for force in forces)
-        inverse = np.asarray(np.linalg.inv(np.eye(size) - loop - damped * rate[:, None]), complex)
-        spring, damper = (force.reshape(-1, size).T for force in forces)
-        return cls(rows, low, gain, rate, inverse, spring, damper)
-
-    def moved(self, felt: ComplexArray) -> ComplexArray:
-        """Change of the lines with the motion that is felt (m, l w, 1)."""
-        motion = (self.inverse @ felt)[..., 0]
-        force = motion @ self.spring + (self.rate * motion) @ self.damper
-        force = force.reshape(*self.gain.shape[:2], -1, 1)
-        return np.asarray((self.gain @ force)[..., 0])
+        """Solve the equations of some rows, with a matrix of at most so many bytes for each."""
+        chosen = _softest(gain[rows], int(np.sqrt(most / 16.0) / len(along)))
+        size = chosen.shape[1] * len(along)
+        some = max(1, _AT_ONCE // (16 * size**2))
+        moved = [np.zeros((0, chosen.shape[1] * gain.shape[2], size), dtype=complex)]
+        for first in range(0, len(rows), some):
+            lines = chosen[first : first + some]
+            place = rows[first : first + some, None], lines
+            spring, damper = (_between_lines(wave, lines) for wave in waves)
+            force = spring + damper * np.repeat(rate[place], len(along), axis=1)[:, None, None]
+            change = gain[place] @ force  # of the lines with their motion (m, l, r, l w)
+            loop = np.eye(size) - (along @ change).reshape(-1, size, size)
+            change = change.reshape(len(lines), -1, size)
+            moved.append(np.asarray(change @ np.linalg.inv(loop), dtype=complex))
+        return cls(rows, chosen, np.concatenate(moved))
 
 
 class _OnePhase:
@@ -129,11 +126,10 @@ class _OnePhase:
         gain = self._by_tooth(self.base @ receptances @ push)  # (m, n, r, a)
         rate = self._by_tooth(rate / np.abs(omega).max())
         others = np.delete(numbers[:, 0], axis, axis=1).any(axis=1).repeat(self.teeth)
-        # Most of a motion has this phase alone: its lines are all coupled, of others the lowest.
+        # Most of a motion has this phase alone: its lines are all coupled, of others the softest.
         self.blocks = []
         for rows, most in ((np.flatnonzero(~others), _CENTRAL), (np.flatnonzero(others), _OTHERS)):
-            low = _lowest(gain.shape[1], most / len(rows), len(self.along))
-            self.blocks.append(_Block.of(rows, low, gain, rate, self.along, waves))
+            self.blocks.append(_Block.of(rows, most / len(rows), gain, rate, self.along, waves))
 
     def solved(self, y: Array, *, first: bool) -> Array:
         """Solution (p, r) for the right-hand side, or for one that the mean has solved already."""
@@ -142,9 +138,9 @@ class _OnePhase:
             lines = (self.base @ lines[..., None])[..., 0]
         lines = self._by_tooth(lines)
         for block in self.blocks:
-            place = np.ix_(block.rows, block.low)
+            place = block.rows[:, None], block.chosen
             felt = (lines[place] @ self.along.T).reshape(len(block.rows), -1, 1)
-            lines[place] += block.moved(felt)
+            lines[place] += (block.moved @ felt).reshape(*block.chosen.shape, -1)
         table = lines.reshape(-1, self.teeth, *lines.shape[1:]).swapaxes(1, 2)
         return self._values(table.reshape(-1, self.shape[self.axis], lines.shape[-1]))
 
@@ -199,15 +195,14 @@ def _bases(varying: list[Array]) -> tuple[Array, Array]:
     return left[:, size > _SMALL * size[0]], right[length > _SMALL * length[0]]
 
 
-def _between_lines(part: Array, low: Index) -> ComplexArray:
-    """Force of each line per motion of each other one (l, a, l w), of a stiffness (n, a, w)."""
-    count = len(part)
-    waves = np.fft.fft(part, axis=0)[(low[:, None] - low) % count] / count  # (l, l, a, w)
-    return np.asarray(np.moveaxis(waves, 2, 1).reshape(len(low), part.shape[1], -1), dtype=complex)
+def _between_lines(part: Array, chosen: Index) -> ComplexArray:
+    """Force of lines of each row per motion of others (m, l, a, l w), of a stiffness (n, a, w)."""
+    between = (chosen[:, :, None] - chosen[:, None]) % len(part)
+    waves = (np.fft.fft(part, axis=0) / len(part))[between]  # (m, l, l, a, w)
+    return np.asarray(np.moveaxis(waves, 3, 2).reshape(*chosen.shape, part.shape[1], -1))
 
 
-def _lowest(count: int, most: float, width: int) -> Index:
-    """Places of the lines of a phase with the lowest numbers, whose matrix has so many bytes."""
-    numbers = np.abs(np.rint(np.fft.fftfreq(count) * count))
-    highest = max(1, (int(np.sqrt(most / 16.0) / width) - 1) // 2)
-    return np.flatnonzero(numbers <= highest)
+def _softest(gain: ComplexArray, most: int) -> Index:
+    """Places of the lines of each row with the largest motion per force (m, n, r, a)."""
+    size = np.linalg.norm(gain.reshape(*gain.shape[:2], -1), axis=-1)
+    return np.sort(np.argsort(-size, axis=1, kind="stable")[:, : max(most, 3)], axis=1)

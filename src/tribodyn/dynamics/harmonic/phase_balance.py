@@ -20,7 +20,15 @@ from tribodyn.dynamics.equations.phases import read_frequencies
 from tribodyn.dynamics.equations.system import System, contact_label
 from tribodyn.dynamics.harmonic.newton import Solution, State, newton
 from tribodyn.dynamics.harmonic.phase_contacts import PhaseContacts
-from tribodyn.dynamics.harmonic.phase_grid import PhaseGrid
+from tribodyn.dynamics.harmonic.phase_grid import (
+    Fields,
+    Follower,
+    PhaseGrid,
+    Points,
+    doubled,
+    most_points,
+    points_of,
+)
 from tribodyn.dynamics.harmonic.phase_residual import Part, PhaseResidual, parts_of
 from tribodyn.dynamics.harmonic.phase_response import (
     PhaseResponse,
@@ -39,16 +47,18 @@ from tribodyn.errors import ComputationError, InputError, warn
 from tribodyn.nomenclature import require_whole
 from tribodyn.types import Array, Index, Mask
 
-#: Points over a phase of meshes, and over one that only turns shafts, with which an automatic
-#: choice starts, and those with which it tries at last to find a motion.
-_MESH, _SHAFT, _LAST = 24, 8, 96
-#: Points of the first grids over phases that a part does not follow, by the number of phases.
-_OTHERS = 12, 12, 12, 8, 4
+#: Points over a phase with which a motion is tried to be found at last.
+_LAST = 96
 #: Most unknowns of any grids of an automatic choice, and of those where forces bend or jump.
 _MANY, _MOST = 2**17, 3 * 2**14
 #: Changes of the motion with twice the points at which it stops, each with the most unknowns for
 #: it: while they fall to less than a part from grid to grid, and where forces bend or jump.
 _SMOOTH, _FALLING, _BROKEN = ((2e-7, _MANY),), 0.1, ((1e-5, 2**13), (2e-3, _MOST))
+#: Change above which grids grow further where it is largest, and the most unknowns for it.
+_ROUGHLY, _LARGE = 9e-3, 2**18
+#: Times the points over its phase with which a mesh that jumps is looked at too, and the ratio of
+#: the changes above which lines that few points leave out are those of a natural frequency.
+_AHEAD, _RINGS = 8, 2.0
 #: Memory of a motion per unknown [byte].
 _BYTES = 1.5e3
 #: Time of a grid, per unknown of it for each part of the system and for each phase [s], and part of
@@ -83,15 +93,6 @@ _GROWS, _HIGH = 1.001, 50.0
 _ROUGH, _PATIENCE = 0.1, 8
 
 
-class Follower(NamedTuple):
-    """Contacts of a mesh, and what they follow."""
-
-    contacts: int
-    cycles: Any  #: periods of the entries over each phase
-    period: int = 1  #: mesh cycles in them
-    turns: tuple[tuple[int, ...], ...] = ()  #: cycles of the errors that turn with shafts
-
-
 class Work(NamedTuple):
     """What the time of a motion depends on beside its grids."""
 
@@ -121,11 +122,12 @@ def work_of(system: System, frequency: Any, supports: Sequence[RadialClearance] 
 
 
 def phase_cost(
-    followers: Sequence[Follower], frequency: Sequence[float], orders: Any = 0,
+    fields: Sequence[Fields], frequency: Sequence[float], orders: Any = 0,
     mesh: int | None = None, work: Work | None = None,
 ) -> tuple[int, float, float]:  # fmt: skip
-    """Unknowns, memory [byte] and time [s]; ``mesh`` are points of a mesh cycle, if stated."""
-    fine, others = _points_of(followers, orders, mesh)
+    """Unknowns, memory [byte] and time [s] of the fields of followers, or points of a mesh."""
+    followers = [Follower(*each) for each in fields]
+    fine, others = points_of(followers, orders, mesh)
     grids = [
         int(np.prod(np.where(_axes(each.cycles, each.turns), fine, others))) for each in followers
     ]
@@ -151,23 +153,9 @@ def phase_cost(
     return unknowns, memory, 0.02 + seconds + _ALONG * work.size * samples
 
 
-def given_points(follower: Follower, orders: Any, mesh: int) -> tuple[int, ...]:
-    """Points over each phase of one mesh, with so many over its mesh cycle."""
-    return tuple(_points_of([follower], orders, mesh)[0].tolist())
-
-
 def _axes(cycles: Any, turns: Sequence[Any]) -> Mask:
     """Phases that contacts follow."""
     return np.asarray(np.any(np.array([cycles, *turns]) != 0, axis=0))
-
-
-#: Points over each phase of the grids of all parts.
-Points = tuple[tuple[int, ...], ...]
-
-
-def doubled(points: Points, which: Mask) -> Points:
-    """Twice the points of some parts over some phases (parts, phases)."""
-    return tuple(tuple(row) for row in (np.array(points) * np.where(which, 2, 1)).tolist())
 
 
 @dataclass
@@ -250,16 +238,18 @@ class _Search:
         phases = range(self.rows.frequency.size)
         return np.array([[axis in part.axes for axis in phases] for part in self.parts])
 
-    def poor(self, points: Points, errors: Array, smooth: bool) -> Mask:
-        """Grids whose points are doubled: those with the largest errors; none if they are small."""
+    def poor(self, points: Points, errors: Array, times: Index, smooth: bool) -> Mask:
+        """Grids whose points are too few: those with the largest errors; none if they are small."""
         chosen = np.zeros(errors.shape, dtype=bool)
-        for limit, most in _SMOOTH if smooth else _BROKEN:
+        for limit, most in (*(_SMOOTH if smooth else _BROKEN), (_ROUGHLY, _LARGE)):
             large = errors > (limit / errors.size if smooth else _WORST * errors.max())
-            if errors.sum() <= limit or chosen.any():
+            left = errors.sum()
+            if left <= limit or chosen.any():
                 break
             for place in np.argsort(-errors, axis=None)[: np.count_nonzero(large)]:
-                chosen.flat[place] = True
-                chosen.flat[place] = self.size(doubled(points, chosen)) <= most
+                chosen.flat[place] = most != _LARGE or left > limit
+                chosen.flat[place] &= self.size(doubled(points, chosen, times)) <= most
+                left -= errors.flat[place] * chosen.flat[place]
         return chosen
 
     def size(self, points: Points) -> int:
@@ -281,16 +271,28 @@ class _Search:
 
     def changes(
         self, points: Points, residual: PhaseResidual, state: State, again: Mask, before: Array
-    ) -> Array:
-        """Change of a motion with twice the points of each part over each phase, or of before."""
-        errors = before.copy()
-        for place in np.argwhere(again):
+    ) -> tuple[Array, Index]:
+        """Change with more points of each part over each phase, or of before; times the points."""
+        # Twice; more where the lines between excite a natural frequency.
+        errors, times = before.copy(), np.full(before.shape, 2)
+
+        def change(place: Index, factor: int) -> float:
             which = np.zeros(errors.shape, dtype=bool)
             which[*place] = True
-            finer = self.residual(doubled(points, which), residual)
-            change = np.abs(finer.change(residual, state, place[0])).max()
-            errors[*place] = float(change) / state.size
-        return errors
+            grids = doubled(points, which, factor)
+            if factor > 2 and self.size(grids) > _LARGE:
+                return 0.0
+            change = self.residual(grids, residual).change(residual, state, place[0])
+            return float(np.abs(change).max()) / state.size
+
+        for place in np.argwhere(again):
+            errors[*place] = change(place, 2)
+            jumps = state.each[place[0]].cell is not None
+            if jumps and place[1] == self.parts[place[0]].axis:
+                ahead = change(place, _AHEAD)
+                if ahead > _RINGS * errors[*place]:
+                    errors[*place], times[*place] = ahead, _AHEAD
+        return errors, times
 
 
 def _supported(
@@ -324,33 +326,35 @@ def phase_balance(
     points = _first_points(search) if steps is None else _read_steps(steps, search)
     _refuse_large(search, points)
     points, residual, solution = search.first(points, start, tolerance, steps is None)
-    step_error, limit = float("nan"), tolerance
-    converged_motion = points, residual, solution, step_error
+    limit, errors = tolerance, np.full(np.shape(points), np.nan)
+    converged_motion = points, residual, solution, errors
     smooth = all(part.cell is None for part in solution.state.each)
     poor, before = np.zeros(np.shape(points), dtype=bool), np.zeros(np.shape(points))
     while solution.error <= limit:
         again = poor | (before >= _AGAIN * before.max())
-        errors = search.changes(points, residual, solution.state, again, before)
+        errors, times = search.changes(points, residual, solution.state, again, before)
         smooth &= bool(errors[poor].sum() <= _FALLING * before[poor].sum())
-        step_error = float(errors.sum())
         if solution.error <= tolerance:
-            converged_motion = points, residual, solution, step_error
-        poor, before = search.poor(points, errors, smooth), errors
+            converged_motion = points, residual, solution, errors
+        poor, before = search.poor(points, errors, times, smooth), errors
         if steps is not None or not poor.any():
             break
-        points, limit = doubled(points, poor), max(tolerance, _NEARLY * step_error)
+        points, limit = doubled(points, poor, times), max(tolerance, _NEARLY * errors.sum())
         finer = search.residual(points, residual)
         start_y = residual.refined(solution.state.y, finer)
         residual, solution = finer, newton(finer, start_y, 0.01 * tolerance, patience=_PATIENCE)
-    points, residual, solution, step_error = converged_motion
-    converged = bool(solution.error <= tolerance)
+    points, residual, solution, errors = converged_motion
+    step_error, converged = float(errors.sum()), bool(solution.error <= tolerance)
     error = max(solution.error, float(np.finfo(float).eps))
     facts = {"error": error, "step_error": step_error, "converged": converged}
-    motion = phase_response(search.rows, residual, solution.state, points=_most(points), **facts)
+    motion = phase_response(
+        search.rows, residual, solution.state, points=most_points(points), **facts
+    )
     if not converged:
         return _integrated(search, residual, solution, tolerance, motion)
     if step_error > _LIMIT:
-        warn("step-size", _coarse(_most(points), step_error, steps is None), stacklevel=3)
+        text = _coarse(search, points, errors, steps is None)
+        warn("step-size", text, stacklevel=3)
     from tribodyn.dynamics.harmonic.tangent_march import warn_of_growth
 
     grows = math.exp(min(growth(residual, solution.state, motion) / float(frequency.max()), _HIGH))
@@ -363,7 +367,7 @@ def _refuse_large(search: _Search, points: Points) -> None:
     limit = machine_memory()
     size = search.size(points)
     if size * _BYTES > limit:
-        counts = " x ".join(map(str, _most(points)))
+        counts = " x ".join(map(str, most_points(points)))
         what = f"{counts} points over the phases are {size:.3g} unknowns"
         why = (
             f"They need about {1e-9 * _BYTES * size:.3g} GB; this machine has {1e-9 * limit:.3g} GB"
@@ -405,27 +409,9 @@ def _first_points(search: _Search) -> Points:
     force, lead = (
         getattr(part, "orders", 0) for part in (search.rows.system.force, search.rows.system.lead)
     )
-    fine, others = _points_of(followers, np.maximum(force, lead))
+    fine, others = points_of(followers, np.maximum(force, lead))
     shapes = np.where(search.followed(), fine, others)
     return tuple(tuple(shape) for shape in shapes.tolist())
-
-
-def _points_of(
-    followers: Sequence[Follower], orders: Any, mesh: int | None = None
-) -> tuple[Index, Index]:
-    """First points over each phase, of those that follow it and others; orders are of forces."""
-    # A mesh whose teeth differ has all cycles of its period.
-    cycles = np.abs([each.cycles for each in followers])
-    periods = np.array([each.period for each in followers])[:, None]
-    turns = [np.abs(term) for each in followers for term in each.turns]
-    shafts = np.max([np.ones(cycles.shape[1]), *turns], axis=0)
-    meshes, driven = (cycles * periods).max(axis=0), _SHAFT * np.asarray(orders)
-    fine = np.maximum(
-        np.where(meshes > 0, (mesh or _MESH) * meshes, _SHAFT * shafts), driven
-    ).astype(int)
-    others = _OTHERS[min(len(fine), len(_OTHERS)) - 1]
-    felt = np.maximum(others * np.where(cycles > 0, periods, 1).max(axis=0), driven)
-    return fine, np.minimum(fine, felt).astype(int)
 
 
 def _read_steps(steps: Any, search: _Search) -> Points:
@@ -439,19 +425,29 @@ def _read_steps(steps: Any, search: _Search) -> Points:
     return (tuple(listed),) * len(search.parts)
 
 
-def _most(points: Points) -> tuple[int, ...]:
-    """Points over each phase of the finest grid over it."""
-    return tuple(max(counts) for counts in zip(*points, strict=True))
-
-
-def _coarse(points: tuple[int, ...], step_error: float, automatic: bool) -> str:
-    counts = " x ".join(map(str, points))
+def _coarse(search: _Search, points: Points, errors: Array, automatic: bool) -> str:
+    """Message that names the contacts and the phase over which points lack most."""
+    counts, rows = " x ".join(map(str, most_points(points))), search.rows
+    number, axis = np.unravel_index(int(np.argmax(errors)), errors.shape)
+    part = search.parts[number]
+    name = contact_label(rows.system, int(part.members[0]))
+    meshes = [mesh for mesh in rows.meshes if mesh.cycles[axis]]
+    whose = "of what turns with it"
+    if axis == part.axis:
+        whose = "of its teeth"
+    elif meshes:
+        whose = f"of {contact_label(rows.system, int(meshes[0].contacts[0]))}"
     remedy = "Give more steps, or omit them for an automatic choice"
     if automatic:
-        remedy = "Forces that jump or bend with the teeth need more; give steps for more points"
+        remedy = (
+            "A smoother change of the teeth (tip relief, a finite-element stiffness) or more "
+            "damping needs fewer; in Python steps gives more"
+        )
     return (
-        f"the motion changes by {100.0 * step_error:.2g} % of its size with twice the points, "
-        f"limit {100.0 * _LIMIT:g} %: {counts} points over the phases. {remedy}"
+        f"the motion changes by {100.0 * errors.sum():.2g} % of its size with twice the points, "
+        f"limit {100.0 * _LIMIT:g} %: {counts} points over the phases. Most of it, "
+        f"{100.0 * errors.max():.2g} %, is that of {name} over the phase {whose} "
+        f"({rows.frequency[axis]:.6g} Hz), {points[number][axis]} points. {remedy}"
     )
 
 

@@ -8,13 +8,20 @@ The line of the whole numbers ``k`` has the frequency ``k.f``; a derivative over
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from tribodyn.types import Array, ComplexArray, Index, Mask
 
+#: Points over a phase of meshes, and over one that only turns shafts, with which an automatic
+#: choice starts.
+_MESH, _SHAFT = 24, 8
+#: Points of the first grids over phases that a part does not follow, by the number of phases.
+_OTHERS = 12, 12, 12, 8, 4
 #: Part of the largest frequency that is none.
 _STILL = 1e-12
 
@@ -107,3 +114,53 @@ def polynomial_shares(distance: Array) -> Array:
     distance = np.where(distance == 0.0, 1e-200, distance)  # all weight at this point
     share = (-1.0) ** orders * binom(orders[-1], orders) / distance
     return np.asarray(share / share.sum(axis=1, keepdims=True))
+
+
+#: Points over each phase of the grids of all parts.
+Points = tuple[tuple[int, ...], ...]
+
+
+def doubled(points: Points, which: Mask, times: Index | int = 2) -> Points:
+    """Twice the points of some parts over some phases (parts, phases), or so many times."""
+    return tuple(tuple(row) for row in (np.array(points) * np.where(which, times, 1)).tolist())
+
+
+def most_points(points: Points) -> tuple[int, ...]:
+    """Points over each phase of the finest grid over it."""
+    return tuple(max(counts) for counts in zip(*points, strict=True))
+
+
+#: Fields of a follower.
+Fields = tuple[Any, ...]
+
+
+class Follower(NamedTuple):
+    """Contacts of a mesh, and what they follow."""
+
+    contacts: int
+    cycles: Any  #: periods of the entries over each phase
+    period: int = 1  #: mesh cycles in them
+    turns: tuple[tuple[int, ...], ...] = ()  #: cycles of the errors that turn with shafts
+
+
+def points_of(
+    followers: Sequence[Follower], orders: Any, mesh: int | None = None
+) -> tuple[Index, Index]:
+    """First points over each phase, of those that follow it and others; orders are of forces."""
+    # A mesh whose teeth differ has all cycles of its period.
+    cycles = np.abs([each.cycles for each in followers])
+    periods = np.array([each.period for each in followers])[:, None]
+    turns = [np.abs(term) for each in followers for term in each.turns]
+    shafts = np.max([np.ones(cycles.shape[1]), *turns], axis=0)
+    meshes, driven = (cycles * periods).max(axis=0), _SHAFT * np.asarray(orders)
+    fine = np.maximum(
+        np.where(meshes > 0, (mesh or _MESH) * meshes, _SHAFT * shafts), driven
+    ).astype(int)
+    others = _OTHERS[min(len(fine), len(_OTHERS)) - 1]
+    felt = np.maximum(others * np.where(cycles > 0, periods, 1).max(axis=0), driven)
+    return fine, np.minimum(fine, felt).astype(int)
+
+
+def given_points(follower: Follower, orders: Any, mesh: int) -> tuple[int, ...]:
+    """Points over each phase of one mesh, with so many over its mesh cycle."""
+    return tuple(points_of([follower], orders, mesh)[0].tolist())

@@ -256,7 +256,7 @@ class PairTurns:
 
     def points(self, mesh: int) -> tuple[int, ...]:
         """Points over each phase, with so many over a mesh cycle."""
-        from tribodyn.dynamics.harmonic.phase_balance import Follower, given_points
+        from tribodyn.dynamics.harmonic.phase_grid import Follower, given_points
 
         follower, highest = self._followed
         return given_points(Follower(*follower), highest, mesh)

@@ -27,6 +27,7 @@ from tribodyn.study.planetary.machine_stages import motion_of_stage
 
 if TYPE_CHECKING:
     from tribodyn.dynamics.harmonic.phase_balance import Work
+    from tribodyn.dynamics.harmonic.phase_grid import Fields
     from tribodyn.machine import Machine
     from tribodyn.machine.graph.clock import Phases
     from tribodyn.study.case.pair import PairCase
@@ -100,17 +101,16 @@ def phase_cost_of(
 def cost_over_phases(
     phases: Phases,
     names: Sequence[str],
-    followers: Sequence[tuple[Any, ...]],
+    followers: Sequence[Fields],
     orders: Any,
     mesh: int | None = None,
     work: Work | None = None,
 ) -> PhaseCost:
     """Cost of a motion over named phases, of the fields of each follower."""
-    from tribodyn.dynamics.harmonic.phase_balance import Follower, phase_cost
+    from tribodyn.dynamics.harmonic.phase_balance import phase_cost
 
     pairs = tuple(zip(names, phases.frequency, strict=True))
-    listed = [Follower(*each) for each in followers]
-    return PhaseCost(pairs, *phase_cost(listed, phases.frequency, orders, mesh, work))
+    return PhaseCost(pairs, *phase_cost(followers, phases.frequency, orders, mesh, work))
 
 
 def refuse_memory(cost: PhaseCost, memory: float, key: str, remedy: str) -> None:

@@ -1,0 +1,62 @@
+"""Slow meshes whose jumps ring: points of their phases that reach the natural frequency."""
+
+from __future__ import annotations
+
+from functools import cache
+
+import numpy as np
+import pytest
+
+from tribodyn.dynamics import Contact, System, harmonic_balance
+from tribodyn.errors import ModelWarning
+
+SLOW, FAST = 20.0, 311.7
+
+
+def gears(phases):
+    """A slow mesh whose stiffness jumps, and a fast one of constant stiffness."""
+    slow, fast = ((1, 0), (0, 1)) if phases else (1, 1)
+    first = Contact(
+        [1.0, -1.0, 0.0], lambda x: np.where(np.asarray(x) % 1.0 < 0.6, 2.6e8, 1.8e8), 2000.0,
+        cycles=slow, events=(0.0, 0.6), name="slow",
+    )  # fmt: skip
+    second = Contact([0.0, 1.0, -1.0], 2.4e8, 2000.0, cycles=fast, name="fast")
+    # Natural frequencies of about 1.0 and 2.1 kHz are multiples 50 and 105 of the slow mesh.
+    masses, ground = np.diag([8.0, 12.0, 3.0]), np.diag([0.0, 0.0, 2e8])
+    return System(masses, np.diag([300.0] * 3), ground, [5e4, 0.0, 0.0], [first, second])
+
+
+@cache
+def over_phases():
+    """Motion over the phases of both meshes."""
+    return harmonic_balance(gears(phases=True), (SLOW, FAST))
+
+
+def test_ringing_of_a_slow_mesh_is_that_of_one_clock():
+    clock = harmonic_balance(gears(phases=False), SLOW, steps=8192).fine
+    response = over_phases()
+    forces = response.fine.contact_force
+    assert response.points[0] >= 4 * 48  # 24 points leave out the multiples that ring
+    assert response.step_error < 1e-2
+    for contact in (0, 1):
+        one = clock.contact_force[:, contact]
+        rms = np.sqrt(clock.mean((one - clock.mean(one)) ** 2))
+        assert forces[:, contact].std() == pytest.approx(rms, rel=0.02)
+        assert forces[:, contact].max() == pytest.approx(one.max(), rel=0.02)
+
+
+def test_the_warning_names_mesh_and_phase():
+    with pytest.warns(
+        ModelWarning, match=r"that of slow over the phase of its teeth \(20 Hz\), 16"
+    ):
+        harmonic_balance(gears(phases=True), (SLOW, FAST), steps=16)
+
+
+def test_the_stated_error_counts_lines_that_ring_beyond_twice_the_points():
+    exact = over_phases()
+    with pytest.warns(ModelWarning, match="step-size"):
+        few = harmonic_balance(gears(phases=True), (SLOW, FAST), steps=(24, 8))
+    times = np.linspace(0.0, 10.0 / SLOW, 20_011)
+    motions = [each.at(times).position[:, :2] @ [1.0, -1.0] for each in (exact, few)]
+    change = np.abs(motions[1] - motions[0]).max() / np.abs(motions[0]).max()
+    assert 0.2 < change < few.step_error < 1.5 * change
