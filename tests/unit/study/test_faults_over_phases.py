@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from functools import cache
 from typing import Any
 
@@ -134,6 +135,23 @@ def test_costs_are_stated_and_refused_before_the_run() -> None:
     small = faulty.replace({"solver.memory": "100 MB"})
     with pytest.raises(td.ComputationError, match=r"allowed by solver.memory"):
         fault_cost(small, small.machine())
+
+
+def test_a_refusal_names_the_faults_without_which_the_motion_fits() -> None:
+    faulty = hunting().case
+    cost = fault_cost(faulty, faulty.machine())
+    assert cost is not None
+    tight = faulty.replace({"solver.memory": 0.99 * cost.memory})
+    with pytest.raises(
+        td.ComputationError, match=r"fewer faults: without (\w+) it takes"
+    ) as refused:
+        fault_cost(tight, tight.machine())
+    found = re.search(r"without (\w+) it takes about (\S+) GB", str(refused.value))
+    assert found is not None
+    fits = tight.replace({f"faults.{found[1]}": None})
+    less = fault_cost(fits, fits.machine())
+    assert less is not None
+    assert 1e-9 * less.memory == pytest.approx(float(found[2]), rel=0.01)
 
 
 def test_teeth_that_would_be_clamped_name_their_mesh_before_the_run() -> None:

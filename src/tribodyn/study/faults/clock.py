@@ -6,7 +6,7 @@ import math
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
-from functools import cached_property
+from functools import cached_property, partial
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
@@ -392,14 +392,37 @@ def faults_over_phases(case: MachineCase, machine: Machine) -> bool:
 
 def fault_cost(case: MachineCase, machine: Machine, work: Work | None = None) -> PhaseCost | None:
     """Cost of the motion with faults over phases; None over whole turns. Refuse too much."""
+    return _cost_within(case.solver.memory, case, machine, work)
+
+
+def _cost_within(
+    memory: float, case: MachineCase, machine: Machine, work: Work | None = None
+) -> PhaseCost | None:
+    """Cost as of :func:`fault_cost` with so much memory [byte]."""
     turned, excited = _with_turns(case, machine), excitations_of(case)
     if not faults_over_phases(case, machine):
-        warn_of_period(turned, case.solver.memory)
+        warn_of_period(turned, memory)
         return None
     phases = phases_with_faults(turned, excited)
     highest = highest_orders(turned.clock, excited, phases)
     shafts = [each.gear for each in excited]
-    return phase_cost_of(case.solver, turned, (phases, shafts), highest, work)
+    fewer = partial(_fewer_faults, case, machine)
+    return phase_cost_of(memory, turned, (phases, shafts), highest, work, fewer)
+
+
+def _fewer_faults(case: MachineCase, machine: Machine) -> str:
+    """Faults without which the motion takes little enough memory, and what it takes then."""
+    left, gone, memory = case, [], math.inf
+    while left.faults and memory > case.solver.memory:
+        costs = {}
+        for name in left.faults:
+            cost = _cost_within(math.inf, left.replace({f"faults.{name}": None}), machine)
+            costs[name] = 0.0 if cost is None else cost.memory
+        name = min(costs, key=lambda each: costs[each])
+        left, memory = left.replace({f"faults.{name}": None}), costs[name]
+        gone.append(name)
+    takes = f"about {1e-9 * memory:.3g} GB" if memory else "little, on one clock"
+    return f"without {' and '.join(gone)} it takes {takes}"
 
 
 def check_motion(case: MachineCase, work: Work | None = None) -> list[str]:

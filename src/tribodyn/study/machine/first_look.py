@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from tribodyn.arrays.memory import machine_memory
@@ -72,13 +72,14 @@ class PhaseCost(NamedTuple):
 
 
 def phase_cost_of(
-    solver: SolverTable,
+    memory: float,
     machine: Machine,
     driven: tuple[Phases, Sequence[str]] | None = None,
     orders: Any = 0,
     work: Work | None = None,
+    fewer: Callable[[], str] | None = None,
 ) -> PhaseCost:
-    """Cost of the motion of a machine over phases; refuse what needs too much memory."""
+    """Cost of the motion of a machine over phases; refuse too much, with what makes it less."""
     phases, shafts = driven or (machine.phases, ())
     names = phase_names(machine, phases, shafts)
     followers = [
@@ -93,8 +94,10 @@ def phase_cost_of(
     if loose:
         followers.append((2 * loose, (0,) * len(phases.frequency), 1, ()))
     cost = cost_over_phases(phases, names, followers, orders, work=work)
-    remedy = "Raise solver.memory, compute a part of the machine, or give it fewer faults"
-    refuse_memory(cost, solver.memory, "solver.memory", remedy)
+    remedy = "Raise solver.memory, or compute a part of the machine"
+    if fewer is not None and cost.memory > memory:
+        remedy = f"Raise solver.memory, or give fewer faults: {fewer()}"
+    refuse_memory(cost, memory, "solver.memory", remedy)
     return cost
 
 
@@ -127,7 +130,7 @@ def warn_of_motion(
 ) -> PhaseCost | None:
     """Warn of a long period, or return the cost of the motion over phases; refuse too much."""
     if over_phases(solver, machine):
-        return phase_cost_of(solver, machine, work=work)
+        return phase_cost_of(solver.memory, machine, work=work)
     warn_of_period(machine, solver.memory)
     return None
 
