@@ -43,7 +43,6 @@ _CONFIG = {
     "modeBarButtons": [["toImage"], ["zoom2d", "pan2d"], ["resetScale2d"]],
     "toImageButtonOptions": {"format": "svg"},
 }
-_STATES = {"done": "done", "failed": "failed", "stopped": "stopped", "waiting": "waiting"}
 
 
 def button(text: object, do: str, of: str = "", **more: object) -> html.Button:
@@ -108,8 +107,7 @@ def _tab(desk: TabSession, view: str, text: object) -> html.Button:
 
 
 def _mark(job: Job) -> html.Span:
-    text = _STATES.get(job.state, "running")
-    return html.Span(text, className=f"state {text}")
+    return html.Span(job.state, className=f"state {job.state}")
 
 
 def _runs(desk: TabSession) -> html.Div:
@@ -213,6 +211,10 @@ def _sketched(figure: Any, subject: Any) -> html.Section:
     return _block(block.__dict__, f"pair-{figure.name}", json.loads(block.json))
 
 
+def _section(heading: str, *inner: object, of: str = "") -> html.Section:
+    return html.Section([html.H3(heading), *inner], className=f"block {of}".rstrip())
+
+
 def _block(block: Any, name: str, figure: Any) -> html.Section:
     inner: list[Any] = [html.H3(block["heading"])]
     if block["missing"]:
@@ -272,8 +274,7 @@ def _topics(content: Tree) -> dict[str, list[Any]]:
 
 def _part(job: Job, part: Tree) -> html.Section:
     if "rows" in part:
-        inner = [html.H3(part["heading"]), table(part["head"], part["rows"])]
-        return html.Section(inner, className="block")
+        return _section(part["heading"], table(part["head"], part["rows"]))
     figure = None if part["missing"] else job.figure(part["name"])
     return _block(part, f"job-{job.number}-{part['name']}", figure)
 
@@ -338,28 +339,15 @@ def files(desk: TabSession) -> list[Any]:
     name = dcc.Input(id="case-name", value=desk.name or "my-gears.toml", autoComplete="off")
     write = button("Save", "save", id="save", data_from="case-name")
     over = button("Replace", "replace", data_from="case-name", className="plain")
+    save = [html.Label("File", htmlFor="case-name"), " ", name, " ", write, " ", over]
+    where = f"In the folder {desk.folder.root}"
+    new = button("A short case to fill in", "open", "new:", className="plain")
     empty = html.P(f"There is no case file in {desk.folder.root.name} yet.", className="missing")
     return [
-        html.Section(
-            [
-                html.H3("Save this case"),
-                html.P([html.Label("File", htmlFor="case-name"), " ", name, " ", write, " ", over]),
-                html.P(f"In the folder {desk.folder.root}", className="caption"),
-            ],
-            className="block tools",
-        ),
-        html.Section(
-            [html.H3("Open a case of the folder"), html.Ul(links) if links else empty],
-            className="block",
-        ),
-        html.Section([html.H3("Built-in cases"), html.Ul(built)], className="block"),
-        html.Section(
-            [
-                html.H3("New case"),
-                html.P(button("A short case to fill in", "open", "new:", className="plain")),
-            ],
-            className="block",
-        ),
+        _section("Save this case", html.P(save), html.P(where, className="caption"), of="tools"),
+        _section("Open a case of the folder", html.Ul(links) if links else empty),
+        _section("Built-in cases", html.Ul(built)),
+        _section("New case", html.P(new)),
     ]
 
 
@@ -375,7 +363,7 @@ def studies(desk: TabSession) -> list[Any]:
         for kind, study in STUDIES.items()
         if offered(kind, desk.case)
     ]
-    parts: list[Any] = [html.Section([html.H3("Studies"), html.Ul(kinds)], className="block kinds")]
+    parts: list[Any] = [_section("Studies", html.Ul(kinds), of="kinds")]
     if desk.study:
         start = button(f"Start: {STUDIES[desk.study].title}", "start", id="start", className="main")
         form = [html.Div(id="study-form"), html.P(start)]

@@ -22,7 +22,6 @@ from typing import Final
 from tribodyn.gear import CylindricalGear, CylindricalPair
 from tribodyn.rating.conditions import RatingConditions
 from tribodyn.rating.factor import Factors
-from tribodyn.rating.materials import GearMaterial
 from tribodyn.rating.rated_gear import RatedGear
 from tribodyn.rating.tolerances import Deviations
 
@@ -121,43 +120,31 @@ class MeshLoad:
         return math.prod(self.factors[name] for name in names)
 
 
-def _limit(material: GearMaterial, speed: float, widest: tuple[float, float, float]) -> float:
-    """Greatest allowance of the profile [um]; over sigma_Hlim for steel."""
-    slow, fast, hard = widest
-    if material.running_in_group == "hard":
-        return hard
-    if speed <= 5.0:
-        return math.inf
-    limit = slow if speed <= 10.0 else fast
-    steel = material.running_in_group == "steel"
-    return limit / (material.sigma_Hlim * 1e-6) if steel else limit
-
-
-def profile_allowance(material: GearMaterial, deviation: float, speed: float) -> float:
-    """y_alpha of a base pitch deviation, or y_f of a form deviation [m]."""
-    steel = material.running_in_group == "steel"
-    share = {"steel": 160e6 / material.sigma_Hlim, "cast iron": 0.275, "hard": 0.075}
-    limits = (12800.0, 6400.0, 3.0) if steel else (22.0, 11.0, 3.0)
-    allowance = share[material.running_in_group] * deviation
-    return min(allowance, 1e-6 * _limit(material, speed, limits))
-
-
-def lead_allowance(material: GearMaterial, deviation: float, speed: float) -> float:
-    """y_beta of the initial equivalent misalignment F_bx [m]; of steel at most F_bx itself."""
-    steel = material.running_in_group == "steel"
-    share = {"steel": 320e6 / material.sigma_Hlim, "cast iron": 0.55, "hard": 0.15}
-    limits = (25600.0, 12800.0, 6.0) if steel else (45.0, 22.0, 6.0)
-    allowance = min(share[material.running_in_group], 1.0) * deviation
-    return min(allowance, 1e-6 * _limit(material, speed, limits))
-
-
 def mean_profile_allowance(mesh: MeshLoad, deviation: float) -> float:
-    """Mean of the allowances of both gears [m]."""
-    speed = mesh.pitch_line_speed
-    return sum(profile_allowance(gear.material, deviation, speed) for gear in mesh.rated) / 2.0
+    """Mean over both gears of y_alpha of a pitch deviation, or y_f of a form deviation [m]."""
+    return _mean_allowance(
+        mesh, deviation, (160.0, 12800.0, 6400.0), (0.275, 22.0, 11.0), (0.075, 3.0, 3.0)
+    )
 
 
 def mean_lead_allowance(mesh: MeshLoad, deviation: float) -> float:
-    """Mean of the allowances of both gears along the face [m]."""
-    speed = mesh.pitch_line_speed
-    return sum(lead_allowance(gear.material, deviation, speed) for gear in mesh.rated) / 2.0
+    """Mean over both gears of y_beta of the initial equivalent misalignment F_bx [m]."""
+    return _mean_allowance(
+        mesh, deviation, (320.0, 25600.0, 12800.0), (0.55, 45.0, 22.0), (0.15, 6.0, 6.0)
+    )
+
+
+def _mean_allowance(mesh: MeshLoad, deviation: float, *rules: tuple[float, float, float]) -> float:
+    """Mean of a share of the deviation, at most all of it and a limit [m]."""
+    # Share and limits [um] up to 10 m/s and above, of steel over sigma_Hlim [MPa]. There is no
+    # limit up to 5 m/s except for hard teeth.
+    allowances = []
+    for material in (gear.material for gear in mesh.rated):
+        group = material.running_in_group
+        share, slow, fast = rules[("steel", "cast iron", "hard").index(group)]
+        over = material.sigma_Hlim * 1e-6 if group == "steel" else 1.0
+        limit = 1e-6 * (slow if mesh.pitch_line_speed <= 10.0 else fast) / over
+        if group != "hard" and mesh.pitch_line_speed <= 5.0:
+            limit = math.inf
+        allowances.append(min(min(share / over, 1.0) * deviation, limit))
+    return sum(allowances) / 2.0

@@ -251,15 +251,15 @@ def _cards(analysis: SignalAnalysis) -> list[tuple[str, str]]:
     return cards
 
 
+def _row(name: str, value: float, unit: str, meaning: str) -> list[str]:
+    return [name, significant(value, _DIGITS), unit, meaning]
+
+
 def _rows(analysis: SignalAnalysis, numbers: dict[str, float]) -> list[list[str]]:
     """Table of all indicators and peaks."""
     unit = readable(analysis.unit)
-
-    def row(name: str, value: float, unit: str, meaning: str) -> list[str]:
-        return [name, significant(value, _DIGITS), unit, meaning]
-
-    rows = [row(n, numbers[k], unit, m) for k, (n, m) in _LEVELS.items()]
-    rows += [row(n, numbers[k], "", m) for k, (n, m) in _SHAPES.items()]
+    rows = [_row(n, numbers[k], unit, m) for k, (n, m) in _LEVELS.items()]
+    rows += [_row(n, numbers[k], "", m) for k, (n, m) in _SHAPES.items()]
     for key, name in (("spectrum", "Spectrum"), ("envelope", "Envelope")):
         for k in range(1, 6):
             if f"{key}_peak_{k}_frequency" in numbers:
@@ -267,40 +267,36 @@ def _rows(analysis: SignalAnalysis, numbers: dict[str, float]) -> list[list[str]
                 size = numbers[f"{key}_peak_{k}_amplitude"]
                 meaning = f"peak amplitude at {at} Hz"
                 meaning += ", smeared by the changing speed" if analysis.smeared else ""
-                rows.append(row(f"{name}, peak {k}", size, unit, meaning))
+                rows.append(_row(f"{name}, peak {k}", size, unit, meaning))
     if analysis.speed is not None:
-        rows.append(row("Speed", numbers["speed"] * _RPM, "rpm", f"by {analysis.speed.source}"))
-        ends = [numbers[f"{end}_speed"] * _RPM for end in ("lowest", "highest")]
-        if analysis.speed.varies:
-            rows += [
-                row(f"Speed, {end}", value, "rpm", "mean over a revolution")
-                for end, value in zip(("lowest", "highest"), ends, strict=True)
-            ]
-    rows += [row(n, numbers[k], u, m) for k, (n, u, m) in _IMPACTS.items() if k in numbers]
+        rows.append(_row("Speed", numbers["speed"] * _RPM, "rpm", f"by {analysis.speed.source}"))
+        for end in ("lowest", "highest") if analysis.speed.varies else ():
+            value = numbers[f"{end}_speed"] * _RPM
+            rows.append(_row(f"Speed, {end}", value, "rpm", "mean over a revolution"))
+    rows += [_row(n, numbers[k], u, m) for k, (n, u, m) in _IMPACTS.items() if k in numbers]
     rows += _order_rows(numbers, unit)
     for shaft in analysis.averages:
         ending = "" if shaft == SHAFT else f"_{shaft}"
         for key, (name, kind, meaning) in _AVERAGE.items():
             if f"{key}{ending}" in numbers:
                 size = numbers[f"{key}{ending}"]
-                rows.append(row(f"{_NAMES[shaft]}, {name}", size, unit if kind else "", meaning))
+                rows.append(_row(f"{_NAMES[shaft]}, {name}", size, unit if kind else "", meaning))
     return rows
 
 
 def _order_rows(numbers: dict[str, float], unit: str) -> list[list[str]]:
     rows = []
     if "mesh_frequency" in numbers:
-        value = significant(numbers["mesh_frequency"], _DIGITS)
-        rows.append(["Mesh frequency", value, "Hz", "mean over the recording"])
+        mean = numbers["mesh_frequency"]
+        rows.append(_row("Mesh frequency", mean, "Hz", "mean over the recording"))
     for k in range(1, 6):
-        if f"mesh_harmonic_{k}_amplitude" in numbers:
-            size = significant(numbers[f"mesh_harmonic_{k}_amplitude"], _DIGITS)
-            rows.append([f"Mesh harmonic {k}", size, unit, "peak amplitude over the orders"])
+        if (size := numbers.get(f"mesh_harmonic_{k}_amplitude")) is not None:
+            rows.append(_row(f"Mesh harmonic {k}", size, unit, "peak amplitude over the orders"))
     for k in range(1, 6):
-        if f"order_peak_{k}" in numbers:
-            size = significant(numbers[f"order_peak_{k}_amplitude"], _DIGITS)
-            order = significant(numbers[f"order_peak_{k}"], _DIGITS)
-            rows.append([f"Orders, peak {k}", size, unit, f"peak amplitude at order {order}"])
+        if (order := numbers.get(f"order_peak_{k}")) is not None:
+            size, meaning = numbers[f"order_peak_{k}_amplitude"], "peak amplitude at order "
+            meaning += significant(order, _DIGITS)
+            rows.append(_row(f"Orders, peak {k}", size, unit, meaning))
     return rows
 
 

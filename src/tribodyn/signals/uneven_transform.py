@@ -17,14 +17,12 @@ _SHAPE = 2.30 * 2 * _HALF
 
 
 def uneven_transform(strength: Array, position: Array, count: int) -> ComplexArray:
-    """Sums of strength times exp(-2 pi i k position) for k from 0 to count - 1.
-
-    The strengths are spread onto an even grid by a kernel whose transform is divided out after
-    the fast Fourier transform: A. H. Barnett, J. Magland and L. af Klinteberg, SIAM J. Sci.
-    Comput. 41 (2019) C479, equations (1.8) and (3.12).
-    """
+    """Sums of strength times exp(-2 pi i k position) for k from 0 to count - 1."""
     from scipy.fft import rfft
 
+    # The strengths are spread onto an even grid by a kernel whose transform is divided out after
+    # the fast Fourier transform: A. H. Barnett, J. Magland and L. af Klinteberg, SIAM J. Sci.
+    # Comput. 41 (2019) C479, equations (1.8) and (3.12).
     size, kernel_transform = _grid(count)
     grid = np.zeros(size)
     _spread(strength, position, grid)
