@@ -149,7 +149,7 @@ LINES: dict[str, int] = {
     "cookbook": 102,
     "drawing": 204,
     "dynamics": 15754,
-    "ehl": 9244,
+    "ehl": 9327,
     "errors": 224,
     "exchange": 2164,
     "faults": 1657,

@@ -9,12 +9,12 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Literal, NamedTuple
+from typing import Literal, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from tribodyn.ehl.solver.contact_case import ContactProblem, DiscreteContact
+from tribodyn.ehl.solver.contact_case import ContactProblem, DiscreteContact, SolvedContact
 from tribodyn.ehl.solver.fallbacks import solve_problem
 from tribodyn.ehl.solver.grid import estimate_film
 from tribodyn.errors import (
@@ -26,9 +26,6 @@ from tribodyn.errors import (
 )
 from tribodyn.record import from_parts
 from tribodyn.types import Array, ComplexArray
-
-if TYPE_CHECKING:
-    from tribodyn.ehl.steady.solution import LineContactSolution
 
 #: Change of ln(w) for the slope of the estimated film.
 _STEP = 1e-4
@@ -46,7 +43,7 @@ class InletChange(NamedTuple):
     load_film: float
 
 
-def inlet_change(solution: LineContactSolution) -> InletChange:
+def inlet_change(solution: SolvedContact) -> InletChange:
     """How pressure and load of the inlet follow the load, as in the solver."""
     from tribodyn.ehl._kernel.inlet import inlet_slopes
 
@@ -80,7 +77,7 @@ class FilmSlopes(NamedTuple):
     distance: float  #: of the distance that the film keeps, see :func:`film_distance`
 
 
-def film_slopes(solution: LineContactSolution) -> FilmSlopes:
+def film_slopes(solution: SolvedContact) -> FilmSlopes:
     """How central film and distance follow the load, by one linear solve with the tangent."""
     from tribodyn.ehl._kernel.steady import tangent_of_film
 
@@ -108,32 +105,32 @@ def film_slopes(solution: LineContactSolution) -> FilmSlopes:
     return FilmSlopes(float(central) * unit, change * unit)
 
 
-def film_distance(solution: LineContactSolution) -> float:
+def film_distance(solution: SolvedContact) -> float:
     """Distance that the film keeps between the bodies: Hertz's approach less theirs [m]."""
     grid = solution._grid
     before = _by_inlet(solution, 0.5 * np.pi - grid.load)
     return (grid.H0 - _DRY_OFFSET + before) * solution.film_unit
 
 
-def _by_inlet(solution: LineContactSolution, load: float) -> float:
+def _by_inlet(solution: SolvedContact, load: float) -> float:
     """Offset that a load before the first node adds: there the pressure falls as 1/x^3."""
     return load / math.pi * (math.log(-float(solution._grid.X[0])) + 0.5)
 
 
-def approach_stiffness(solution: LineContactSolution, length: float = 1.0) -> float:
+def approach_stiffness(solution: SolvedContact, length: float = 1.0) -> float:
     """Slope of the load over the approach of the bodies less Hertz's."""
     what = "distance that the film keeps", "stiffness", "secant"
     return _stiffness(solution, film_slopes(solution).distance, length, *what)
 
 
-def tangent_stiffness(solution: LineContactSolution, length: float = 1.0) -> float:
+def tangent_stiffness(solution: SolvedContact, length: float = 1.0) -> float:
     """Slope of the load over the central film, ``K = -l dw/dh_c``."""
     what = "central film", "tangent stiffness", "approach"
     return _stiffness(solution, film_slopes(solution).central, length, *what)
 
 
 def _stiffness(
-    solution: LineContactSolution, slope: float, length: float, distance: str, name: str, other: str
+    solution: SolvedContact, slope: float, length: float, distance: str, name: str, other: str
 ) -> float:
     """Stiffness from the slope of a distance over ln(w) [m]; warn if it is negative."""
     if slope >= 0.0:
@@ -147,7 +144,7 @@ def _stiffness(
     return -0.5 * np.pi * solution.hertz_pressure * solution.half_width * length / slope
 
 
-def _reason(solution: LineContactSolution, other: str) -> str:
+def _reason(solution: SolvedContact, other: str) -> str:
     """Why a film rises with the load, and another kind of stiffness."""
     if solution.inlet == "flooded":
         return (
@@ -161,14 +158,14 @@ def _reason(solution: LineContactSolution, other: str) -> str:
     )
 
 
-def secant_stiffness(solution: LineContactSolution, length: float = 1.0) -> float:
+def secant_stiffness(solution: SolvedContact, length: float = 1.0) -> float:
     """Sum of the nodal forces over their films, ``K = sum p_i A_i/h_i``."""
     require_positive("length", length, "m")
     grid, stiffness = solution._grid, solution.hertz_pressure / solution.film_unit
     return float(np.sum(grid.P / grid.H)) * grid.dx * solution.half_width * length * stiffness
 
 
-def seed_stiffness(solution: LineContactSolution, length: float = 1.0) -> float:
+def seed_stiffness(solution: SolvedContact, length: float = 1.0) -> float:
     """Sum as printed in the study "vibration-with-film" of the sources; not a stiffness."""
     require_positive("length", length, "m")
     grid = solution._grid
@@ -196,7 +193,7 @@ KINDS = {
 }
 
 
-def film_stiffness(solution: LineContactSolution, length: float, kind: str) -> float:
+def film_stiffness(solution: SolvedContact, length: float, kind: str) -> float:
     """Stiffness of one kind over the length of the contact line."""
     require_one_of("kind", kind, KINDS)
     return float(KINDS[kind](solution, length))
@@ -209,7 +206,7 @@ _SLOW = 1e-5
 
 
 def frequency_response(
-    solution: LineContactSolution,
+    solution: SolvedContact,
     frequencies: ArrayLike,
     length: float = 1.0,
     *,
@@ -232,7 +229,7 @@ def frequency_response(
 
 
 def film_compliance(
-    solution: LineContactSolution,
+    solution: SolvedContact,
     frequencies: ArrayLike,
     length: float = 1.0,
     *,
@@ -255,7 +252,7 @@ def film_compliance(
     return np.asarray(unit * result.reshape(values.shape), dtype=complex)[()]
 
 
-def _units(solution: LineContactSolution, length: float) -> tuple[float, float]:
+def _units(solution: SolvedContact, length: float) -> tuple[float, float]:
     """Deflection over load at a unit change of film over ln(w), and ``u_e/b``."""
     load = 0.5 * np.pi * solution.hertz_pressure * solution.half_width
     return (solution.film_unit / (load * length), solution.entrainment_speed / solution.half_width)
@@ -310,7 +307,7 @@ def _linearize(grid: DiscreteContact, inlet: InletChange) -> _Linear:
     return _Linear(steady, squeeze, middle, inlet)
 
 
-def _on_coarse_grid(solution: LineContactSolution) -> DiscreteContact:
+def _on_coarse_grid(solution: SolvedContact) -> DiscreteContact:
     """Steady state on a grid of at most 512 intervals."""
     grid = solution._grid
     if grid.n <= _INTERVALS:
@@ -321,10 +318,12 @@ def _on_coarse_grid(solution: LineContactSolution) -> DiscreteContact:
         grid,
         nodes=_INTERVALS + 1,
         domain=(float(grid.X[0]), float(grid.X[-1])),
-        film=grid.central_film,
+        film=float(np.interp(0.0, grid.X, grid.H)),
         moes_load=solution.moes_load,
         profile=np.interp(X, grid.X, grid.shape - 0.5 * grid.X**2),
         tolerance=1e-8,
         flux_tolerance=1e-7,
     )
-    return solve_problem(problem, "newton").grid
+    coarse = solve_problem(problem, "newton").outcome.grid
+    assert coarse is not None  # a solved problem has its grid
+    return coarse

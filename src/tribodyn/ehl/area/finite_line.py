@@ -9,13 +9,20 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from tribodyn.ehl.area.area_case import Grid
-from tribodyn.ehl.area.multigrid import AreaProblem, Outcome
-from tribodyn.ehl.area.point_contact import SolvedArea, solve_on_grids
+from tribodyn.ehl.area.multigrid import AreaProblem, Outcome, solve_area
+from tribodyn.ehl.area.point_contact import STATED_LIMIT, requested_nodes
 from tribodyn.ehl.area.solution import FiniteLineSolution
 from tribodyn.ehl.solver.contact_case import ContactCase, require_kind, si_case
 from tribodyn.ehl.solver.grid import estimate_film
 from tribodyn.ehl.steady.line_contact import solve_line_contact
-from tribodyn.errors import InputError, quiet, require_between, require_positive, warn
+from tribodyn.errors import (
+    ComputationError,
+    InputError,
+    quiet,
+    require_between,
+    require_positive,
+    warn,
+)
 from tribodyn.lubricant import Lubricant
 from tribodyn.nomenclature import require_number
 from tribodyn.record import from_parts
@@ -243,18 +250,48 @@ def solve_finite_line_contact(
     remedy = "Use solve_line_contact for a longer one, solve_point_contact for a shorter one"
     require_between("length over half width", ratio, *_LENGTHS, remedy=remedy)
     _check_profile(profile)
+    edge, limit = _checked_numbers(edge_radius, tolerance, film_tolerance)
+    automatic, count = requested_nodes(nodes, _FIRST, _LAST)
+    attempts: list[str] = []
+    while True:
+        grid, problem = _problem(case, extent, (profile, edge), count - 1, tolerance)
+        outcome = solve_area(problem)
+        if not automatic or count >= _LAST or (outcome.converged and outcome.film_error <= limit):
+            break
+        error = f"film error {outcome.film_error:.2g}"
+        attempts.append(f"{count} nodes: {outcome.message or error}")
+        count = 2 * count - 1
+    if not outcome.converged:
+        raise ComputationError(
+            f"no film found for M = {case.scales.moes_load:.4g}, L = "
+            f"{case.scales.moes_viscosity:.4g} ({'; '.join([*attempts, outcome.message])})",
+            "solve_finite_line_contact",
+            "the grid must resolve inlet and film: the thinner the film, the finer",
+            f"Use more nodes than {count}" if count < _LAST else "Check load, speed and profile",
+        )
+    wanted = limit if automatic else STATED_LIMIT
+    if outcome.film_error > wanted:
+        warn(
+            "film-resolution",
+            f"With {count} nodes across the contact the film at mid length has an estimated error "
+            f"of {outcome.film_error:.2g} of it; the limit is {wanted:g}. Use more nodes, or the "
+            "extrapolated value",
+            stacklevel=2,
+        )
+    _warn_of_ends(outcome)
+    return _assemble(case, grid, problem, outcome, (force, extent, profile, tuple(attempts)))
+
+
+def _checked_numbers(
+    edge_radius: float, tolerance: float, film_tolerance: float
+) -> tuple[float, float]:
+    """Edge radius and tolerance of the film in their ranges."""
     edge = require_number("edge_radius", edge_radius)
     require_between("edge_radius", edge, 1e-4, 1.0, "m", remedy="Rollers have about 1e-3 m")
-    scales = case.scales
-    solved = solve_on_grids(
-        lambda intervals: _problem(case, extent, (profile, edge), intervals, tolerance),
-        (nodes, _FIRST, _LAST),
-        (tolerance, film_tolerance),
-        f"M = {scales.moes_load:.4g}, L = {scales.moes_viscosity:.4g}",
-        "solve_finite_line_contact",
-    )
-    _warn_of_ends(solved.outcome)
-    return _assemble(case, solved, (force, extent, profile))
+    require_between("tolerance", require_number("tolerance", tolerance), 1e-8, 1e-2)
+    limit = require_number("film_tolerance", film_tolerance)
+    require_between("film_tolerance", limit, 1e-4, 0.1)
+    return edge, limit
 
 
 def _warn_of_ends(outcome: Outcome) -> None:
@@ -324,12 +361,15 @@ def _problem(
     return Grid(x, y), problem
 
 
+#: Force, length, profile, and what failed before.
+_Stated = tuple[float, float, RollerProfile, tuple[str, ...]]
+
+
 def _assemble(
-    case: ContactCase, solved: SolvedArea, stated: tuple[float, float, RollerProfile]
+    case: ContactCase, grid: Grid, problem: AreaProblem, outcome: Outcome, stated: _Stated
 ) -> FiniteLineSolution:
     """Solution in SI, with the infinite line at the load of mid length."""
-    grid, problem, outcome, _ = solved
-    force, length, profile = stated
+    force, length, profile, attempts = stated
     b, pressure = case.half_width, case.hertz_pressure
     unit = b**2 / case.equivalent_radius
     x, y = b * grid.x, b * grid.y
@@ -343,10 +383,11 @@ def _assemble(
             case.lubricant, case.effective_modulus, viscosity_law=case.scales.viscosity_law,
             compressible=case.compressible,
         )  # fmt: skip
+    on_grid = problem.load
     step = (outcome.central_film - outcome.coarse_central_film) / 3.0
     return from_parts(
         FiniteLineSolution,
-        *(case, case.scales, outcome, solved),
+        *(case, case.scales, outcome),
         x=x,
         y=y,
         pressure=p,
@@ -360,9 +401,10 @@ def _assemble(
         line_central_film=line.central_film,
         line_minimum_film=line.minimum_film,
         line_maximum_pressure=float(line.pressure.max()),
-        outside_load=force * (1.0 - problem.load / (0.5 * math.pi * length / b)),
+        outside_load=force * (1.0 - on_grid / (0.5 * math.pi * length / b)),
         nodes_x=x.size,
         nodes_y=y.size,
+        attempts=attempts,
         profile=profile.name,
         normal_force=force,
         length=length,

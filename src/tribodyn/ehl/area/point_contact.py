@@ -3,8 +3,6 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
-from typing import NamedTuple
 
 import numpy as np
 
@@ -99,64 +97,34 @@ def solve_point_contact(
         normal_force, (radius_x, radius_y), entrainment_speed, lubricant, effective_modulus,
         entrainment_angle, viscosity_law, compressible,
     )  # fmt: skip
-    solved = solve_on_grids(
-        lambda intervals: point_problem(case, point_grid(case, intervals), tolerance),
-        (nodes, _FIRST, _LAST),
-        (tolerance, film_tolerance),
-        f"M = {case.moes_load:.4g}, L = {case.moes_viscosity:.4g}, half axes "
-        f"{case.axes[0] * 1e3:.3g} and {case.axes[1] * 1e3:.3g} mm",
-        "solve_point_contact",
-    )
-    return assemble(case, solved)
-
-
-class SolvedArea(NamedTuple):
-    """A contact on the last of the grids that were tried."""
-
-    grid: Grid
-    problem: AreaProblem
-    outcome: Outcome
-    attempts: tuple[str, ...]  #: what was tried in vain before
-
-
-def solve_on_grids(
-    pose: Callable[[int], tuple[Grid, AreaProblem]],
-    requested: tuple[object, int, int],
-    tolerances: tuple[float, float],
-    contact: str,
-    where: str,
-) -> SolvedArea:
-    """Solve on a stated grid, or on finer and finer ones until the film is known well enough."""
-    require_between("tolerance", require_number("tolerance", tolerances[0]), 1e-8, 1e-2)
-    limit = require_number("film_tolerance", tolerances[1])
+    require_between("tolerance", require_number("tolerance", tolerance), 1e-8, 1e-2)
+    limit = require_number("film_tolerance", film_tolerance)
     require_between("film_tolerance", limit, 1e-4, 0.1)
-    (automatic, count), last = requested_nodes(*requested), requested[2]
+    automatic, count = requested_nodes(nodes, _FIRST, _LAST)
     attempts: list[str] = []
     while True:
-        grid, problem = pose(count - 1)
+        grid = point_grid(case, count - 1)
+        problem = point_problem(case, grid, tolerance)
         outcome = solve_area(problem)
         error = outcome.film_error
         fine = outcome.converged and error <= limit
-        if fine or not automatic or count >= last:
+        if fine or not automatic or count >= _LAST:
             break
         attempts.append(f"{count} nodes: {outcome.message or f'film error {error:.2g}'}")
         count = 2 * count - 1
     if not outcome.converged:
-        tried = "; ".join([*attempts, f"{count} nodes: {outcome.message}"])
-        why = "the grid must resolve inlet and film: the thinner the film, the finer"
-        remedy = "Check speed, viscosity and load, or use a film formula"
-        remedy = f"Use more nodes than {count}" if count < last else remedy
-        raise ComputationError(f"no film found for {contact} ({tried})", where, why, remedy)
+        raise _unsolved(case, count, [*attempts, f"{count} nodes: {outcome.message}"])
+    solution = assemble(case, grid, problem.load, outcome, tuple(attempts))
     wanted = limit if automatic else STATED_LIMIT
     if error > wanted:
-        remedy = "use the extrapolated value" if count >= last else 'use nodes = "auto" or more'
+        remedy = "use the extrapolated value" if count >= _LAST else 'use nodes = "auto" or more'
         warn(
             "film-resolution",
             f"With {count} nodes along the contact the central film has an estimated error of "
             f"{error:.2g} of it; the limit is {wanted:g}: {remedy}",
-            stacklevel=3,
+            stacklevel=2,
         )
-    return SolvedArea(grid, problem, outcome, tuple(attempts))
+    return solution
 
 
 def requested_nodes(nodes: object, first: int, last: int) -> tuple[bool, int]:
@@ -174,8 +142,21 @@ def requested_nodes(nodes: object, first: int, last: int) -> tuple[bool, int]:
     return False, count
 
 
-def point_problem(case: PointCase, grid: Grid, tolerance: float) -> tuple[Grid, AreaProblem]:
-    """A grid, and the dimensionless problem of a contact on it."""
+def _unsolved(case: PointCase, count: int, attempts: list[str]) -> ComputationError:
+    return ComputationError(
+        f"no film found for M = {case.moes_load:.4g}, L = {case.moes_viscosity:.4g}, half axes "
+        f"{case.axes[0] * 1e3:.3g} and {case.axes[1] * 1e3:.3g} mm ({'; '.join(attempts)})",
+        "solve_point_contact",
+        "the grid must resolve inlet and film: the thinner the film, the finer",
+        f"Use more nodes than {count}"
+        if count < _LAST
+        else "Check speed, viscosity and load, or "
+        "use a film formula (tribodyn.ehl.nijenbanning_central)",
+    )
+
+
+def point_problem(case: PointCase, grid: Grid, tolerance: float) -> AreaProblem:
+    """Dimensionless problem of a contact on its grid."""
     a, b = case.axes
     hx, hy = grid.steps
     curvature, ratio = case.radii[0] / case.radii[1], b / a
@@ -195,15 +176,16 @@ def point_problem(case: PointCase, grid: Grid, tolerance: float) -> tuple[Grid, 
     x, y = grid.x, grid.y
     edges = x[0] + hx / 2, x[-1] - hx / 2, y[0] + hy / 2, y[-1] - hy / 2
     load -= outside_load(edges, offset, curvature, case.direction, case.lam)
-    return grid, AreaProblem(
+    return AreaProblem(
         gap, hx, hy, *case.direction, case.lam, case.oil, case.elasticity, load, start, film,
         (int(np.argmin(np.abs(y))), int(np.argmin(np.abs(x)))), tolerance,
     )  # fmt: skip
 
 
-def assemble(case: PointCase, solved: SolvedArea) -> PointContactSolution:
+def assemble(
+    case: PointCase, grid: Grid, load: float, outcome: Outcome, attempts: tuple[str, ...]
+) -> PointContactSolution:
     """Solution in SI along the axes of the user."""
-    grid, problem, outcome, _ = solved
     a, unit, pressure = case.axes[0], case.film_unit, float(case.hertz.maximum_pressure)
     x, y = a * grid.x, a * grid.y
     fields = [pressure * outcome.pressure, unit * outcome.film]
@@ -220,10 +202,10 @@ def assemble(case: PointCase, solved: SolvedArea) -> PointContactSolution:
     central = outcome.central_film
     coarse = outcome.coarse_central_film
     step = (central - coarse) / 3.0
-    outside = 1.0 - problem.load / (2.0 * np.pi / 3.0 * case.axes[1] / a)
+    outside = 1.0 - load / (2.0 * np.pi / 3.0 * case.axes[1] / a)
     return from_parts(
         PointContactSolution,
-        *(case, outcome, solved),
+        *(case, outcome),
         x=x,
         y=y,
         pressure=fields[0],
@@ -243,6 +225,7 @@ def assemble(case: PointCase, solved: SolvedArea) -> PointContactSolution:
         load_error=outcome.load_error * (1.0 - outside),
         nodes_x=x.size,
         nodes_y=y.size,
+        attempts=attempts,
     )
 
 

@@ -115,83 +115,7 @@ def area_friction(
 
 
 @record
-class AreaContact(Record):
-    """What contacts over an area have in common."""
-
-    x: Array = quantity("x", unit="m", axis=True)
-    y: Array = quantity("y", unit="m", axis=True)
-    pressure: Array = quantity("y", "x", unit="Pa")
-    film: Array = quantity("y", "x", unit="m")
-    central_film: float = fact()
-    minimum_film: float = fact()
-    central_film_error: float = fact()
-    central_film_extrapolated: float = fact()
-    hertz_pressure: float = fact()
-    maximum_pressure: float = fact()
-    moes_load: float = fact()
-    moes_viscosity: float = fact()
-    outside_load: float = fact()
-    load_error: float = fact()
-    residual: float = fact()
-    cycles: int = fact()
-    nodes_x: int = fact()
-    nodes_y: int = fact()
-    attempts: tuple[str, ...]
-    normal_force: float = fact()
-    entrainment_speed: float = fact()
-    effective_modulus: float = fact()
-    lubricant: Lubricant
-    viscosity_law: str = fact()
-    compressible: bool = fact()
-
-    def friction(
-        self,
-        sliding_speed: float,
-        *,
-        shear_model: str = "ree-eyring",
-        eyring_stress: float = EYRING_STRESS,
-        flash_temperature: bool = False,
-        bodies: tuple[float, float] = (STEEL_THERMAL_CONTACT_COEFFICIENT,) * 2,
-        **oil: float | None,
-    ) -> AreaFriction:
-        """Friction of the sheared film.
-
-        Parameters
-        ----------
-        sliding_speed : float [m/s]
-            Difference of the surface speeds, along the entrainment.
-        shear_model : str
-            How the oil shears: a name of :data:`tribodyn.ehl.SHEAR_MODELS`.
-        eyring_stress : float [Pa]
-            Stress from which an oil thins, by the models that have it.
-        flash_temperature : bool
-            Take the viscosity of every line along the entrainment at its mean temperature: inlet
-            plus mean flash temperature of Blok plus the rise across the oil.
-        bodies : (float, float) [J/(m^2 K s^0.5)]
-            ``sqrt(k rho c)`` of each body; gear steel by default.
-        **oil : float
-            Other numbers of the shear model, such as ``limiting_stress`` [Pa].
-
-        Returns
-        -------
-        AreaFriction
-            Coefficient, force and temperature rise.
-
-        Raises
-        ------
-        InputError
-            If a value is out of range, or the oil lacks the thermal data that are needed.
-
-        The film is that of a Newtonian oil at the temperature of the inlet. Source: Johnson and
-        Tevaarwerk (1977); Blok (1963).
-        """
-        return area_friction(
-            self, sliding_speed, shear_model, eyring_stress, flash_temperature, bodies, oil
-        )
-
-
-@record
-class PointContactSolution(AreaContact):
+class PointContactSolution(Record):
     """Pressure and film of a lubricated point or elliptical contact, steady and isothermal.
 
     Parameters
@@ -241,14 +165,39 @@ class PointContactSolution(AreaContact):
         As there; the law that was used.
     """
 
+    x: Array = quantity("x", unit="m", axis=True)
+    y: Array = quantity("y", unit="m", axis=True)
+    pressure: Array = quantity("y", "x", unit="Pa")
+    film: Array = quantity("y", "x", unit="m")
+    central_film: float = fact()
+    minimum_film: float = fact()
+    central_film_error: float = fact()
+    central_film_extrapolated: float = fact()
+    hertz_pressure: float = fact()
     semi_axis_x: float = fact()
     semi_axis_y: float = fact()
     hertz_approach: float = fact()
+    maximum_pressure: float = fact()
     approach: float = fact()
+    moes_load: float = fact()
+    moes_viscosity: float = fact()
     ellipticity: float = fact()
+    outside_load: float = fact()
+    load_error: float = fact()
+    residual: float = fact()
+    cycles: int = fact()
+    nodes_x: int = fact()
+    nodes_y: int = fact()
+    attempts: tuple[str, ...]
+    normal_force: float = fact()
     radius_x: float = fact()
     radius_y: float = fact()
+    entrainment_speed: float = fact()
     entrainment_angle: float = fact()
+    effective_modulus: float = fact()
+    lubricant: Lubricant
+    viscosity_law: str = fact()
+    compressible: bool = fact()
 
     @property
     def line_half_width(self) -> Array:
@@ -257,6 +206,51 @@ class PointContactSolution(AreaContact):
         if abs(np.sin(self.entrainment_angle)) > abs(np.cos(self.entrainment_angle)):
             across, half, side = self.x, self.semi_axis_y, self.semi_axis_x
         return np.asarray(half * np.sqrt(np.maximum(1.0 - (across / side) ** 2, 0.0)))
+
+    def friction(
+        self,
+        sliding_speed: float,
+        *,
+        shear_model: str = "ree-eyring",
+        eyring_stress: float = EYRING_STRESS,
+        flash_temperature: bool = False,
+        bodies: tuple[float, float] = (STEEL_THERMAL_CONTACT_COEFFICIENT,) * 2,
+        **oil: float | None,
+    ) -> AreaFriction:
+        """Friction of the sheared film.
+
+        Parameters
+        ----------
+        sliding_speed : float [m/s]
+            Difference of the surface speeds, along the entrainment.
+        shear_model : str
+            How the oil shears: a name of :data:`tribodyn.ehl.SHEAR_MODELS`.
+        eyring_stress : float [Pa]
+            Stress from which an oil thins, by the models that have it.
+        flash_temperature : bool
+            Take the viscosity of every line along the entrainment at its mean temperature: inlet
+            plus mean flash temperature of Blok plus the rise across the oil.
+        bodies : (float, float) [J/(m^2 K s^0.5)]
+            ``sqrt(k rho c)`` of each body; gear steel by default.
+        **oil : float
+            Other numbers of the shear model, such as ``limiting_stress`` [Pa].
+
+        Returns
+        -------
+        AreaFriction
+            Coefficient, force and temperature rise.
+
+        Raises
+        ------
+        InputError
+            If a value is out of range, or the oil lacks the thermal data that are needed.
+
+        The film is that of a Newtonian oil at the temperature of the inlet. Source: Johnson and
+        Tevaarwerk (1977); Blok (1963).
+        """
+        return area_friction(
+            self, sliding_speed, shear_model, eyring_stress, flash_temperature, bodies, oil
+        )
 
     def __repr__(self) -> str:
         """One line with the figures that tell contacts apart."""
@@ -278,7 +272,7 @@ _END = 0.15
 
 
 @record
-class FiniteLineSolution(AreaContact):
+class FiniteLineSolution(Record):
     """Pressure and film of a lubricated roller of finite length, steady and isothermal.
 
     Parameters
@@ -317,15 +311,41 @@ class FiniteLineSolution(AreaContact):
         As there.
     """
 
+    x: Array = quantity("x", unit="m", axis=True)
+    y: Array = quantity("y", unit="m", axis=True)
+    pressure: Array = quantity("y", "x", unit="Pa")
+    film: Array = quantity("y", "x", unit="m")
     load_per_length: Array = quantity("y", unit="N/m")
+    central_film: float = fact()
+    central_film_error: float = fact()
+    central_film_extrapolated: float = fact()
+    minimum_film: float = fact()
+    maximum_pressure: float = fact()
     line_central_film: float = fact()
     line_minimum_film: float = fact()
     line_maximum_pressure: float = fact()
+    hertz_pressure: float = fact()
     half_width: float = fact()
+    moes_load: float = fact()
+    moes_viscosity: float = fact()
+    outside_load: float = fact()
+    load_error: float = fact()
+    residual: float = fact()
+    cycles: int = fact()
+    nodes_x: int = fact()
+    nodes_y: int = fact()
+    attempts: tuple[str, ...]
     profile: str = fact()
+    normal_force: float = fact()
     length: float = fact()
     equivalent_radius: float = fact()
+    entrainment_speed: float = fact()
+    effective_modulus: float = fact()
+    lubricant: Lubricant
+    viscosity_law: str = fact()
+    compressible: bool = fact()
 
+    friction = PointContactSolution.friction
     #: Entrainment runs along x.
     entrainment_angle = 0.0
 

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
+from typing import Protocol
 
 import numpy as np
 
@@ -273,16 +274,6 @@ class DiscreteContact:
     tail: float
     shape: Array = field(repr=False)  #: gap of the undeformed bodies
 
-    @property
-    def central_film(self) -> float:
-        """Film at X = 0, between the nodes."""
-        return float(np.interp(0.0, self.X, self.H))
-
-    @property
-    def least_film(self) -> float:
-        """Least film up to the last node with pressure."""
-        return float(np.min(self.H[: self.free + 1]))
-
 
 def heat_factors(oil: Array, n: int) -> tuple[Array, Array]:
     """Logarithm of the factor on viscosity, and factor on density, of a film on n intervals."""
@@ -321,13 +312,6 @@ class ContactProblem:
         """Whether the oil has factors for the heat of a film, on the grid of its temperatures."""
         return self.oil.size > 6
 
-    def on_nodes(self, nodes: int) -> ContactProblem:
-        """The same contact on one grid, whose intervals are a part of those of this one."""
-        profile = self.profile
-        if profile is not None:
-            profile = np.ascontiguousarray(profile[:: (self.nodes - 1) // (nodes - 1)])
-        return replace(self, nodes=nodes, film_tolerance=0.0, profile=profile)
-
 
 @dataclass(frozen=True, eq=False)
 class Outcome:
@@ -339,8 +323,38 @@ class Outcome:
     films: tuple[float, ...] = ()  #: central films of the grids, each half as fine as the next
     message: str = ""  #: why it failed
 
+
+class SolvedContact(Protocol):
+    """Properties of a solution that stiffness and damping need."""
+
     @property
-    def state(self) -> DiscreteContact:
-        """The solution, which a converged outcome has."""
-        assert self.grid is not None
-        return self.grid
+    def _grid(self) -> DiscreteContact:
+        """State on the grid, in half widths and Hertz pressures."""
+
+    @property
+    def hertz_pressure(self) -> float:
+        """Maximum pressure of the dry contact [Pa]."""
+
+    @property
+    def half_width(self) -> float:
+        """Half width b of the dry contact [m]."""
+
+    @property
+    def film_unit(self) -> float:
+        """Film b^2/R [m]."""
+
+    @property
+    def entrainment_speed(self) -> float:
+        """HALF the sum of the surface speeds [m/s]."""
+
+    @property
+    def moes_load(self) -> float:
+        """Number M of Moes."""
+
+    @property
+    def moes_viscosity(self) -> float:
+        """Number L of Moes."""
+
+    @property
+    def inlet(self) -> str:
+        """Whether it is "flooded" or begins with pressure "zero"."""

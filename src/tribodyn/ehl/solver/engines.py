@@ -155,9 +155,11 @@ _LOAD, _CYCLES, _LINES = 1e-6, 60, 400
 _PASSING, _PASSING_FLUX = 1e-4, 1e-2
 
 _MULTIGRID_REASONS = {
-    **_REASONS,
     1: "not converged in {cycles} cycles (change of pressure {change:.2g}, flux error {flux:.2g})",
     2: "the gap closed with every correction on the coarsest grid",
+    3: "the tangent is singular",
+    4: "the pressure is not finite",
+    5: "rounding keeps the flux error at {flux:.2g}",
 }
 
 
@@ -276,9 +278,14 @@ def _start(
 
 
 def _cycles(record: Array) -> Cycles:
-    intervals, change, flux, load, cavity, free = record.T.copy()
-    numbers = intervals.astype(np.int64), free.astype(np.int64)
-    return Cycles(numbers[0], change, flux, load, cavity, numbers[1])
+    return Cycles(
+        intervals=record[:, 0].astype(np.int64),
+        change=record[:, 1].copy(),
+        flux_error=record[:, 2].copy(),
+        load_error=record[:, 3].copy(),
+        cavity_residual=record[:, 4].copy(),
+        free=record[:, 5].astype(np.int64),
+    )
 
 
 #: Fall of the differences that shows that the inlet is resolved, and that of the theory.
@@ -299,8 +306,9 @@ class GridError(NamedTuple):
 
 def grid_error(problem: ContactProblem, outcome: Outcome, cut: bool) -> GridError:
     """Estimate the errors of a solution by one more grid, and by where a flooded one begins."""
-    grid = outcome.state
-    domain_error = cut_error(grid.X[0], grid.central_film) if cut else 0.0
+    grid = outcome.grid
+    assert grid is not None  # a verified outcome has a grid
+    domain_error = cut_error(grid.X[0], float(np.interp(0.0, grid.X, grid.H))) if cut else 0.0
     central, least, pressure = _of_intervals(problem, grid, outcome.films)
     return GridError(
         central + domain_error, least + _CUT_LEAST * domain_error, pressure + domain_error
@@ -340,7 +348,8 @@ def _of_intervals(
 
 def _figures(grid: DiscreteContact) -> Array:
     """Central and least film, and the greatest pressure."""
-    return np.array([grid.central_film, grid.least_film, np.max(grid.P)])
+    central = float(np.interp(0.0, grid.X, grid.H))
+    return np.array([central, np.min(grid.H[: grid.free + 1]), np.max(grid.P)])
 
 
 def _on(problem: ContactProblem, grid: DiscreteContact, intervals: int) -> DiscreteContact | None:

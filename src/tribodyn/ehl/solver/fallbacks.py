@@ -126,7 +126,15 @@ def continue_to(problem: ContactProblem) -> Outcome:
     n = problem.nodes - 1
     while n % 2 == 0 and n // 2 >= _INTERVALS:
         n //= 2
-    path = replace(problem.on_nodes(n + 1), flux_tolerance=1e-2, coarsest=n)
+    factor = (problem.nodes - 1) // n
+    path = replace(
+        problem,
+        nodes=n + 1,
+        profile=None if problem.profile is None else problem.profile[::factor],
+        film_tolerance=0.0,
+        flux_tolerance=1e-2,
+        coarsest=n,
+    )
     done, step = 0.0, _STEP
     outcome = newton_engine(_between(path, 0.0, None))
     grid = outcome.grid
@@ -185,11 +193,6 @@ class Verified:
     check: Verification
     method: str  #: engine that found it
     attempts: tuple[str, ...]  #: what failed before
-
-    @property
-    def grid(self) -> DiscreteContact:
-        """State on the finest grid."""
-        return self.outcome.state
 
 
 def solve_problem(problem: ContactProblem, method: str) -> Verified:
@@ -260,9 +263,13 @@ def solve_rough(
     sliding_speed: float,
 ) -> Verified:
     """Solve the mean film of rough surfaces, from that of smooth ones."""
-    speed, grid = case.entrainment_speed, smooth.grid
+    speed, grid = case.entrainment_speed, smooth.outcome.grid
+    assert grid is not None  # a verified outcome has a grid
     require_between("sliding_speed", sliding_speed, -2.0 * speed, 2.0 * speed, "m/s")
-    problem = problem.on_nodes(grid.n + 1)
+    heights = problem.profile
+    if heights is not None:
+        heights = np.ascontiguousarray(heights[:: (problem.nodes - 1) // grid.n])
+    problem = replace(problem, nodes=grid.n + 1, film_tolerance=0.0, profile=heights)
     thickness, solved = case.half_width**2 / case.equivalent_radius, smooth
     point = np.zeros((2, grid.n + 1))
     for _ in range(_PASSES):
@@ -270,10 +277,11 @@ def solve_rough(
         # Oil whose density has the factor of the entrainment, and so much more viscosity.
         before, point = point, np.log(np.stack([by_speed / by_pressure, by_speed]))
         if np.max(np.abs(point - before)) < _SETTLED:
-            return replace(solved, outcome=in_proportion(solved.outcome, smooth.outcome))
+            return _with_smooth_grids(solved, smooth)
         oil = np.concatenate([problem.oil[:6], point[0], np.exp(point[1])])
         solved = solve_problem(replace(problem, oil=oil, start=grid), smooth.method)
-        grid = solved.grid
+        grid = solved.outcome.grid
+        assert grid is not None
     raise ComputationError(
         f"film and flow factors did not settle in {_PASSES} passes: the last one changed them by "
         f"{np.max(np.abs(point - before)):.2g}",
@@ -298,7 +306,12 @@ def _flow(factors: FlowFactors, film: Array, slide: float) -> tuple[Array, Array
         ) from error
 
 
-def in_proportion(outcome: Outcome, other: Outcome) -> Outcome:
-    """An outcome with the films of the grids of another one, in proportion to its own."""
-    scale = outcome.state.central_film / other.state.central_film
-    return replace(outcome, films=tuple((np.array(other.films) * scale).tolist()))
+def _with_smooth_grids(solved: Verified, smooth: Verified) -> Verified:
+    """Give the solution the films of coarser grids of the smooth one, in proportion."""
+    grid, smooth_grid = solved.outcome.grid, smooth.outcome.grid
+    assert grid is not None
+    assert smooth_grid is not None
+    films = np.array(smooth.outcome.films)
+    central, smooth_central = (float(np.interp(0.0, g.X, g.H)) for g in (grid, smooth_grid))
+    scaled = tuple((films * (central / smooth_central)).tolist())
+    return replace(solved, outcome=replace(solved.outcome, films=scaled))

@@ -240,12 +240,13 @@ def assemble(
     case: ContactCase, domain: Domain, solved: Verified, error: GridError
 ) -> LineContactSolution:
     """Solution with its units and its errors."""
-    grid, check, scales = solved.grid, solved.check, case.scales
+    grid, check, scales = solved.outcome.grid, solved.check, case.scales
+    assert grid is not None  # a verified outcome has a grid
     films = solved.outcome.films
     thick = case.half_width**2 / case.equivalent_radius
     spike = pressure_spike(grid)
     step = None if len(films) < 2 else (films[-1] - films[-2]) / 3.0
-    least = grid.least_film
+    least = float(np.min(grid.H[: grid.free + 1]))
     return from_parts(
         LineContactSolution,
         *(case, scales, check, solved, solved.outcome),

@@ -12,14 +12,7 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from tribodyn.ehl.solver.contact_case import ContactCase, ContactProblem, DiscreteContact, Outcome
-from tribodyn.ehl.solver.fallbacks import (
-    ENGINES,
-    Verified,
-    fluxes,
-    in_proportion,
-    solve_problem,
-    verify,
-)
+from tribodyn.ehl.solver.fallbacks import ENGINES, Verified, fluxes, solve_problem, verify
 from tribodyn.ehl.thermal.surface_history import slowest_speed, surface_response
 from tribodyn.ehl.thermal.thermal_model import MODELS, ThermalModel
 from tribodyn.errors import ComputationError, require_between
@@ -228,9 +221,12 @@ def solve_heated(
     """Heat a contact that is solved at one temperature."""
     most = MOST_SLIDING * case.entrainment_speed
     require_between("sliding_speed", sliding_speed, -most, most, "m/s")
-    grid = cold.grid
+    grid = cold.outcome.grid
+    assert grid is not None  # a verified outcome has a grid
     temperatures = Temperatures(case, grid, model, sliding_speed)
-    problem = problem.on_nodes(grid.n + 1)
+    problem = replace(
+        problem, nodes=grid.n + 1, film_tolerance=0.0, profile=_profile(problem, grid)
+    )
     solved, point = cold.outcome, np.zeros((2, grid.n + 1))
     prediction, traction, film = Prediction(), math.inf, math.inf
     for passes in range(1, model.passes + 1):
@@ -250,7 +246,8 @@ def solve_heated(
         change = smooth(change * share, grid)
         last, point = point, prediction.next(point, change, weight)
         solved, point = _toward(replace(problem, start=grid), cold.method, last, point)
-        before, grid = grid, solved.state
+        before, grid = grid, solved.grid
+        assert grid is not None
         film = float(np.max(np.abs(films_of(grid) / films_of(before) - 1.0)))
     raise _not_settled(case, model, sliding_speed, (film, drag, moved))
 
@@ -275,16 +272,22 @@ def _toward(
 
 def films_of(grid: DiscreteContact) -> Array:
     """Central and least film."""
-    return np.array([grid.central_film, grid.least_film])
+    least = float(np.min(grid.H[: grid.free + 1]))
+    return np.array([float(np.interp(0.0, grid.X, grid.H)), least])
 
 
 def _verified(solved: Outcome, problem: ContactProblem, cold: Verified) -> Verified:
     """A heated solution, verified; the films of its coarser grids are in proportion to the cold."""
-    check = verify(solved.state)
+    grid, cold_grid, films = solved.grid, cold.outcome.grid, np.array(cold.outcome.films)
+    assert grid is not None
+    assert cold_grid is not None
+    check = verify(grid)
     if check.complaint(1.05 * problem.flux_tolerance + 1e-9):
         hot = solve_problem(problem, cold.method)
         solved, check = hot.outcome, hot.check
-    return replace(cold, outcome=in_proportion(solved, cold.outcome), check=check)
+    central, before = (float(np.interp(0.0, each.X, each.H)) for each in (grid, cold_grid))
+    scaled = tuple((films * (central / before)).tolist())
+    return replace(cold, outcome=replace(solved, films=scaled), check=check)
 
 
 def smooth(change: Array, grid: DiscreteContact) -> Array:
@@ -294,8 +297,15 @@ def smooth(change: Array, grid: DiscreteContact) -> Array:
     from scipy.fft import dct, idct
 
     wave = np.pi / (grid.n * grid.dx) * np.arange(grid.n + 1)
-    damped = 1.0 + _SHORT * grid.central_film * wave
+    damped = 1.0 + _SHORT * float(np.interp(0.0, grid.X, grid.H)) * wave
     return np.asarray(idct(dct(change, type=1) / damped, type=1))
+
+
+def _profile(problem: ContactProblem, grid: DiscreteContact) -> Array | None:
+    """Heights on the nodes of a grid that may be coarser than that of the problem."""
+    if problem.profile is None:
+        return None
+    return np.ascontiguousarray(problem.profile[:: (problem.nodes - 1) // grid.n])
 
 
 def _not_settled(
