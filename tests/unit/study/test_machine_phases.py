@@ -121,7 +121,7 @@ def test_cost_is_stated_before_the_run_and_does_not_depend_on_the_teeth() -> Non
     assert all(cost[1:3] == few[1:3] and "3 phases" in str(cost) for cost in costs)
     small = case(memory="100 MB")
     with pytest.raises(td.ComputationError, match=r"GB are allowed by solver.memory"):
-        phase_cost_of(small.solver, small.machine())
+        phase_cost_of(small.solver.memory, small.machine())
     with pytest.raises(td.ComputationError, match=r"solver.memory allows 0\.1 GB"):
         warn_of_motion(*(lambda c: (c.solver, c.machine()))(case(phases="off", memory="100 MB")))
 
