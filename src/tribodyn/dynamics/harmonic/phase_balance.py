@@ -468,7 +468,7 @@ def _not_converged(
         text = (
             f"{contact_label(search.rows.system, int(part.structure.members[number]))} at "
             f"{rate:.6g} Hz, {1e6 * distance[number]:.3g} um; it is open "
-            f"for {100.0 * share:.3g} % of the motion"
+            f"for {100.0 * share:.3g} % of the last attempt"
         )
         worst = max(worst, (float(distance[number]), text))
     return (
