@@ -16,7 +16,7 @@ from tribodyn.friction.benedict_kelly import VARIANTS
 from tribodyn.machine import COUPLINGS
 from tribodyn.stiffness import MODELS
 from tribodyn.study import SUMMARY
-from tribodyn.study.pipeline.summary import MEASURES, PARTS
+from tribodyn.study.pipeline.summary_figures import MEASURES, PARTS
 
 __all__ = ["as_before"]
 

@@ -38,6 +38,12 @@ def test_physics_packages_load_neither_screen_nor_files() -> None:
     assert not loaded(code) & {"plotly", "pydantic", "rich", "xarray", "h5py", "pandas", "scipy"}
 
 
+def test_a_case_is_checked_without_compiler_and_scipy() -> None:
+    code = "import io, contextlib\nfrom tribodyn.cli import call\n"
+    code += "with contextlib.redirect_stdout(io.StringIO()):\n    call(['check', 'fzg-roughness'])"
+    assert not loaded(code) & {"scipy", "numba", "pint", "plotly", "xarray", "h5py"}
+
+
 def test_unknown_public_name_is_an_attribute_error() -> None:
     import tribodyn
 

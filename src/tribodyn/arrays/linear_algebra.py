@@ -1,13 +1,14 @@
-"""Products with many vectors, and signs and bases of eigenvectors that rounding does not choose."""
+"""Products with many vectors, eigenvectors that rounding does not choose, and fast transforms."""
 
 from __future__ import annotations
 
 from collections.abc import Callable
+from itertools import count
 from typing import Any
 
 import numpy as np
 
-from tribodyn.types import Array, Index
+from tribodyn.types import Array, ComplexArray, Index
 
 #: Returns an array of a shape with undefined content.
 Allocator = Callable[[tuple[int, ...]], Array]
@@ -38,6 +39,42 @@ def lengths(vectors: Array) -> Array:
     """Euclidean lengths of vectors (..., n), however large."""
     largest = np.abs(vectors).max(axis=-1, initial=1e-300)
     return np.asarray(largest * np.linalg.norm(vectors / largest[..., None], axis=-1))
+
+
+def fast_length(least: int) -> int:
+    """Least length from ``least`` on without prime factors above 5: its transform is fast."""
+    return next(length for length in count(least) if not 30 ** length.bit_length() % length)
+
+
+def modes_of(stiffness: Array, mass: Array) -> tuple[Array, Array]:
+    """Ascending squared frequencies and columns of shapes of unit mass, of symmetric matrices."""
+    lower = np.linalg.cholesky(mass)
+    reduced = np.linalg.solve(lower, np.linalg.solve(lower, stiffness).T)
+    squares, columns = np.linalg.eigh(reduced)
+    return squares, np.linalg.solve(lower.T, columns)
+
+
+def leading_eigenvalues(
+    product: Callable[[Array], Array], start: Array, count: int, accuracy: float
+) -> ComplexArray:
+    """Eigenvalues of largest size of a linear map of vectors. Source: Saad (2011), chapter 6."""
+    size = start.size
+    basis, upper = np.zeros((size + 1, size)), np.zeros((size + 1, size))
+    basis[0] = start / np.linalg.norm(start)
+    for k in range(1, size + 1):
+        vector = product(basis[k - 1])
+        for _ in range(2):  # twice is enough for orthogonality
+            along = basis[:k] @ vector
+            vector = vector - along @ basis[:k]
+            upper[:k, k - 1] += along
+        upper[k, k - 1] = length = np.linalg.norm(vector)
+        values, vectors = np.linalg.eig(upper[:k, :k])
+        first = np.argsort(-np.abs(values), kind="stable")[:count]
+        left = length * np.abs(vectors[-1, first])
+        if k == size or (k > count and np.all(left <= accuracy * np.abs(values[first]))):
+            break
+        basis[k] = vector / (length or 1.0)
+    return np.asarray(values[first], dtype=complex)
 
 
 #: Distance of equal eigenvalues over their size, and over the largest one of all.

@@ -88,3 +88,10 @@ INNER_OPTIONS: Tree = {
 #: Options of one that allocates nothing either: it does not count references to its arrays, which
 #: in a short function takes longer than its work.
 LEAN_OPTIONS: Tree = {**INNER_OPTIONS, "_nrt": False}
+
+#: Options of kernels. NaN stays detectable: neither "nnan" nor "ninf".
+JIT: Tree = {"nogil": True, "fastmath": {"contract", "nsz"}, "error_model": "numpy"}
+#: Of functions that only kernels call, of those without allocations, and of those called once.
+INNER: Tree = {**JIT, **INNER_OPTIONS}
+LEAN: Tree = {**JIT, **LEAN_OPTIONS}
+ONCE: Tree = {**INNER, "inline": "always"}

@@ -171,11 +171,11 @@ def root_arc(
     def fits(radius: float) -> float:
         return math.pi / abs(teeth) - arc(radius).center_angle
 
-    full = arc_radius if fits(arc_radius) >= 0.0 else _bisect(fits, 0.0, arc_radius)
+    full = arc_radius if fits(arc_radius) >= 0.0 else bisect(fits, 0.0, arc_radius)
     return arc(full)
 
 
-def _bisect(function: Callable[[float], float], low: float, high: float) -> float:
+def bisect(function: Callable[[float], float], low: float, high: float) -> float:
     """Root of a function that is positive at ``low`` and not positive at ``high``."""
     while True:
         middle = 0.5 * (low + high)
@@ -201,5 +201,5 @@ def form_point(trochoid: Trochoid, base_radius: float, base_half_angle: float) -
         flank = base_half_angle - involute(math.atan(roll))
         return float(trochoid.half_tooth_angle(angle)) - flank
 
-    at_base = _bisect(above_base, trochoid.pressure_angle, math.pi / 2.0)
-    return _bisect(outside_involute, trochoid.pressure_angle, at_base)
+    at_base = bisect(above_base, trochoid.pressure_angle, math.pi / 2.0)
+    return bisect(outside_involute, trochoid.pressure_angle, at_base)

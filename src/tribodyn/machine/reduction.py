@@ -6,7 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from tribodyn.arrays.linear_algebra import groups_of_equal, standard_rotation
+from tribodyn.arrays.linear_algebra import groups_of_equal, modes_of, standard_rotation
 from tribodyn.arrays.memory import Memo
 from tribodyn.errors import InputError, require_between, require_positive
 from tribodyn.machine.machine import Machine
@@ -187,20 +187,26 @@ def _craig_bampton(structure: MachineStructure, interface: Mask) -> tuple[Array,
 
 def _fixed_modes(mass: Array, stiffness: Array) -> tuple[Array, Array]:
     """Squared frequencies and shapes of the modes with the interface fixed."""
-    from scipy.linalg import eigh
-    from scipy.sparse.csgraph import connected_components
-
     squares, shapes = np.zeros(len(mass)), np.zeros(mass.shape)
-    count, labels = connected_components((mass != 0.0) | (stiffness != 0.0), directed=False)
-    for label in range(count):
-        part = np.flatnonzero(labels == label)
+    first = _first_of_each((mass != 0.0) | (stiffness != 0.0))
+    for part in (np.flatnonzero(first == number) for number in np.unique(first)):
         at = np.ix_(part, part)
-        squares[part], vectors = eigh(stiffness[at], mass[at])
+        squares[part], vectors = modes_of(stiffness[at], mass[at])
         shapes[at] = vectors @ standard_rotation(squares[part], vectors.T).T
     order = np.argsort(squares, kind="stable")
     for group in groups_of_equal(squares[order]):
         order[group] = np.sort(order[group])
     return squares[order], shapes[:, order]
+
+
+def _first_of_each(linked: Mask) -> Index:
+    """Number of the first coordinate of the part that each one belongs to, by a table of links."""
+    first = np.arange(len(linked))
+    while True:
+        least = np.where(linked, first, len(first)).min(axis=1, initial=len(first))
+        if np.array_equal(least := least[least], first):
+            return first
+        first = least
 
 
 def _omission(amplitudes: Array, squares: Array, frequency: Array) -> Array:
@@ -249,10 +255,9 @@ def _at_rest(structure: MachineStructure) -> Array:
 
 def _modes(mass: Array, stiffness: Array, limit: float) -> tuple[Array, Array]:
     """Natural frequencies up to a limit [Hz], and shapes."""
-    from scipy.linalg import eigh
-
-    subset = None if np.isinf(limit) else (-np.inf, (2.0 * np.pi * limit) ** 2)
-    squares, shapes = eigh(stiffness, mass, subset_by_value=subset)
+    squares, shapes = modes_of(stiffness, mass)
+    shapes = shapes[:, below := squares <= (2.0 * np.pi * limit) ** 2]
+    squares = squares[below]
     shapes = shapes @ standard_rotation(squares, shapes.T).T
     return np.sqrt(np.maximum(squares, 0.0)) / (2.0 * np.pi), shapes
 

@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
+from tribodyn.arrays.linear_algebra import modes_of
 from tribodyn.errors import InputError
 from tribodyn.machine.beam import carried_along
 from tribodyn.machine.bearing import held_by
@@ -230,9 +231,7 @@ class MachineStructure:
         for name, coupling in self.machine.couplings.items():
             total = total + coupling.torsional_damping * np.outer(*2 * [self.twist(name)])
         if self.damping_ratio:
-            from scipy.linalg import eigh
-
-            squares, shapes = eigh(self.stiffness, self.mass)
+            squares, shapes = modes_of(self.stiffness, self.mass)
             rates = np.sqrt(np.where(squares > _FREE * squares.max(initial=0.0), squares, 0.0))
             momentum = self.mass @ shapes
             total = total + (momentum * (2.0 * self.damping_ratio * rates)) @ momentum.T

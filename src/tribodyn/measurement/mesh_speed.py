@@ -15,6 +15,7 @@ from typing import Any
 
 import numpy as np
 
+from tribodyn.arrays.linear_algebra import fast_length
 from tribodyn.errors import Argument, InputError, require_between, require_positive
 from tribodyn.measurement.orders import order_spectrum
 from tribodyn.nomenclature import require_number, require_whole
@@ -297,11 +298,9 @@ class _Search:
 
     def _ridge(self, length: int) -> tuple[Array, Array, Array]:
         """Ratios along the strongest comb, and the noise beneath the harmonics."""
-        from scipy.fft import next_fast_len
-
         hop = max(length // 4, 1)
         starts = np.arange(0, self.size - length + 1, hop)
-        padded = int(next_fast_len(4 * length, real=True))
+        padded = fast_length(4 * length)
         window = np.hanning(length + 1)[:-1]
         window = window / window.sum()
         bins = self.frequency * padded / self.rate  # of the mesh frequency

@@ -28,8 +28,8 @@ from tribodyn.study.pipeline.result import PairResult as PairResult
 from tribodyn.study.pipeline.result_of_case import Result as Result
 from tribodyn.study.pipeline.result_of_case import ResultOfCase as ResultOfCase
 from tribodyn.study.pipeline.run import run as run
-from tribodyn.study.pipeline.summary import SUMMARY as SUMMARY
-from tribodyn.study.pipeline.summary import summary_figure as summary_figure
+from tribodyn.study.pipeline.summary_figures import SUMMARY as SUMMARY
+from tribodyn.study.pipeline.summary_figures import summary_figure as summary_figure
 from tribodyn.study.pipeline.tooth_contact import loaded_contact as loaded_contact
 from tribodyn.study.planetary.stage_result import PlanetaryMotion as PlanetaryMotion
 from tribodyn.study.planetary.stage_result import StageResult as StageResult

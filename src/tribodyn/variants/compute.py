@@ -17,8 +17,7 @@ from tribodyn.errors import InputError, Problem, TribodynError, quiet
 from tribodyn.mesh.film.film_lookup import shared_films
 from tribodyn.progress import SILENT, Progress
 from tribodyn.record import Parts
-from tribodyn.study.pipeline.summary import SUMMARY
-from tribodyn.study.pipeline.summary_figures import figure_of, in_order, is_figure
+from tribodyn.study.pipeline.summary_figures import SUMMARY, figure_of, in_order, is_figure
 from tribodyn.study.studies.study_axes import Axis
 from tribodyn.types import Array, ByName, Index, Tree
 from tribodyn.validated_files import write_dataset

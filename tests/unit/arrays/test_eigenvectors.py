@@ -2,9 +2,18 @@
 
 import numpy as np
 import pytest
+from scipy.fft import next_fast_len
+from scipy.linalg import eigh
 from scipy.stats import ortho_group, unitary_group
 
-from tribodyn.arrays.linear_algebra import groups_of_equal, leading, standard_rotation
+from tribodyn.arrays.linear_algebra import (
+    fast_length,
+    groups_of_equal,
+    leading,
+    leading_eigenvalues,
+    modes_of,
+    standard_rotation,
+)
 from tribodyn.dynamics import Contact, System, natural_modes
 from tribodyn.machine import planetary_modes, planetary_plane_model
 
@@ -32,6 +41,45 @@ def test_any_basis_gives_the_same_rows(mixed):
 def test_of_equal_entries_the_first_leads():
     rows = np.array([[0.5, -1.0, 1.0 + 1e-12], [0.0, 0.0, -2.0]])
     assert leading(rows).tolist() == [[-1.0], [-2.0]]
+
+
+def test_modes_are_those_of_lapack_and_of_unit_mass():
+    random = np.random.default_rng(3)
+    roots = random.standard_normal((2, 12, 12))
+    mass = roots[0] @ roots[0].T + np.eye(12)
+    stiffness = roots[1, :, :9] @ roots[1, :, :9].T  # three free motions
+    squares, shapes = modes_of(stiffness, mass)
+    np.testing.assert_allclose(squares, eigh(stiffness, mass)[0], atol=1e-12 * squares[-1])
+    np.testing.assert_allclose(shapes.T @ mass @ shapes, np.eye(12), atol=1e-12)
+    strained = shapes.T @ stiffness @ shapes
+    np.testing.assert_allclose(strained, np.diag(squares), atol=1e-11 * squares[-1])
+
+
+@pytest.mark.parametrize("size", [3, 40])
+def test_leading_eigenvalues_are_those_of_the_whole_matrix(size):
+    random = np.random.default_rng(size)
+    matrix = random.standard_normal((size, size)) / np.arange(1, size + 1)
+    values = np.linalg.eigvals(matrix)
+    expected = values[np.argsort(-np.abs(values), kind="stable")][:2]
+    products = []
+
+    def product(vector):
+        products.append(vector)
+        return matrix @ vector
+
+    found = leading_eigenvalues(product, random.standard_normal(size), 2, 1e-9)
+    np.testing.assert_allclose(np.abs(found), np.abs(expected), rtol=1e-8)
+    assert len(products) <= min(size, 30)
+
+
+def test_an_invariant_start_gives_its_eigenvalues():
+    found = leading_eigenvalues(lambda vector: 2.0 * vector, np.ones(5), 1, 1e-9)
+    np.testing.assert_allclose(found, 2.0)
+
+
+def test_fast_lengths_are_those_of_scipy():
+    lengths = range(1, 2000)
+    assert [fast_length(n) for n in lengths] == [next_fast_len(n, real=True) for n in lengths]
 
 
 def _polygon(order):

@@ -4,6 +4,7 @@ import math
 
 import numpy as np
 import pytest
+from scipy.special import ellipe, ellipkm1
 
 from tribodyn.contact import effective_modulus, hertz_ellipse, hertz_line
 from tribodyn.errors import InputError
@@ -79,6 +80,22 @@ def test_ellipse_of_equal_radii_is_the_circle_of_hertz():
     assert ellipse.second_semi_axis == pytest.approx(circle, rel=1e-12)
     assert ellipse.approach == pytest.approx(circle**2 / radius, rel=1e-12)
     assert ellipse.maximum_pressure == pytest.approx(1.5 * force / (np.pi * circle**2), rel=1e-12)
+
+
+def test_ellipses_solve_the_equations_with_elliptic_integrals():
+    # Johnson, equations 4.28 to 4.30, with both integrals of SciPy.
+    force, wide, narrow = 1000.0, np.geomspace(0.011, 1e3, 40), 0.01
+    found = hertz_ellipse(force, wide, narrow, MODULUS)
+    long, ratio = found.first_semi_axis, found.second_semi_axis / found.first_semi_axis
+    first, second = ellipkm1(ratio**2), ellipe(1.0 - ratio**2)
+    ratio_of_radii = (second / ratio**2 - first) / (first - second)
+    np.testing.assert_allclose(ratio_of_radii, wide / narrow, rtol=1e-11)
+    pressure = 1.5 * force / (np.pi * long * found.second_semi_axis)
+    np.testing.assert_allclose(found.maximum_pressure, pressure, rtol=1e-14)
+    approach = 2.0 * pressure * found.second_semi_axis * first / MODULUS
+    np.testing.assert_allclose(found.approach, approach, rtol=1e-13)
+    across = pressure / MODULUS * 2.0 * found.second_semi_axis / (1.0 - ratio**2)
+    np.testing.assert_allclose(across * (first - second), 0.5 * long**2 / wide, rtol=1e-11)
 
 
 def test_long_ellipse_has_the_pressure_of_a_line_in_its_middle():

@@ -208,8 +208,7 @@ def _warnings() -> Iterator[tuple[tuple[str, ...], Tree]]:
 def _figures() -> Iterator[tuple[tuple[str, ...], Tree]]:
     from tribodyn.nomenclature import QUANTITIES
     from tribodyn.study.case.reference import explanations, page_of
-    from tribodyn.study.pipeline.summary import SUMMARY
-    from tribodyn.study.pipeline.summary_figures import figure_of, part_figures
+    from tribodyn.study.pipeline.summary_figures import SUMMARY, figure_of, part_figures
 
     equations = explanations()["equations"]
     of_parts = {n: f"{kind}.NAME.{n}" for kind, names in part_figures().items() for n in names}
@@ -230,7 +229,7 @@ def _figures() -> Iterator[tuple[tuple[str, ...], Tree]]:
 def _unknown(symbol: str) -> Problem:
     from tribodyn.nomenclature import QUANTITIES
     from tribodyn.study.case.reference import case_keys, choice_meanings, warning_meanings
-    from tribodyn.study.pipeline.summary import SUMMARY
+    from tribodyn.study.pipeline.summary_figures import SUMMARY
 
     symbols = [quantity.symbol for quantity in QUANTITIES.values() if quantity.symbol]
     names = [*choice_meanings(), *warning_meanings(), *(key for key, _, _ in case_keys())]

@@ -107,8 +107,7 @@ def report_exit_code(study: Sweep, target: Path) -> int:
 def _summary_names(show: str) -> list[str]:
     """Return the requested summary figures; refuse unknown ones before anything is computed."""
     from tribodyn.errors import InputError, did_you_mean
-    from tribodyn.study.pipeline.summary import SUMMARY
-    from tribodyn.study.pipeline.summary_figures import is_figure
+    from tribodyn.study.pipeline.summary_figures import SUMMARY, is_figure
 
     names = [name.strip() for name in show.split(",") if name.strip()]
     for name in names:

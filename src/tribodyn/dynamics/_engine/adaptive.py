@@ -16,6 +16,7 @@ import numba as nb
 import numpy as np
 
 from tribodyn.compiled.cache import cached_njit
+from tribodyn.compiled.jit import INNER, JIT, ONCE
 from tribodyn.dynamics._engine.contact_forces import (
     I64,
     acceleration,
@@ -51,7 +52,7 @@ from tribodyn.dynamics._engine.dormand_prince import (
 )
 from tribodyn.dynamics._engine.lanes import Lanes, address, ahead, keep_apart, on_line, store
 from tribodyn.dynamics._engine.marching import has_dead_zones, put_lane, set_up, take_lane
-from tribodyn.dynamics._engine.method import INNER, JIT, ONCE, Law, kernel_digest
+from tribodyn.dynamics._engine.method import Law, kernel_digest
 from tribodyn.dynamics._engine.row_table import POINTS
 from tribodyn.dynamics.equations.divergence import CHATTERS
 from tribodyn.dynamics.equations.program import Program

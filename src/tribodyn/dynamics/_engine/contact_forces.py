@@ -19,6 +19,7 @@ from typing import NamedTuple
 import numba as nb
 import numpy as np
 
+from tribodyn.compiled.jit import INNER
 from tribodyn.dynamics._engine.lanes import (
     Lanes,
     above,
@@ -30,7 +31,7 @@ from tribodyn.dynamics._engine.lanes import (
     negative_lanes,
     store,
 )
-from tribodyn.dynamics._engine.method import INNER, Law
+from tribodyn.dynamics._engine.method import Law
 from tribodyn.dynamics.equations.program import Slots, lay_out
 from tribodyn.types import Array, Index
 

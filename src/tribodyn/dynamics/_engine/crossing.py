@@ -18,6 +18,7 @@ import math
 
 import numba as nb
 
+from tribodyn.compiled.jit import INNER, ONCE
 from tribodyn.dynamics._engine.contact_forces import (
     I64,
     compression,
@@ -28,7 +29,7 @@ from tribodyn.dynamics._engine.contact_forces import (
     slots_of,
 )
 from tribodyn.dynamics._engine.lanes import first_lane
-from tribodyn.dynamics._engine.method import INNER, ONCE, Law, Method, prepare, restart, step
+from tribodyn.dynamics._engine.method import Law, Method, prepare, restart, step
 from tribodyn.dynamics.equations import divergence, motion
 from tribodyn.types import Array
 

@@ -16,6 +16,7 @@ from typing import NamedTuple, Protocol
 import numba as nb
 import numpy as np
 
+from tribodyn.compiled.jit import INNER
 from tribodyn.dynamics._engine.contact_forces import I64, acceleration, slots_of
 from tribodyn.dynamics._engine.lanes import (
     Lanes,
@@ -27,7 +28,7 @@ from tribodyn.dynamics._engine.lanes import (
     quotient,
     store,
 )
-from tribodyn.dynamics._engine.method import INNER, Law
+from tribodyn.dynamics._engine.method import Law
 from tribodyn.dynamics._engine.row_table import POINTS
 from tribodyn.dynamics.equations import motion
 from tribodyn.types import Array, Index

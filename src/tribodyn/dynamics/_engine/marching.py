@@ -8,6 +8,7 @@ from numba import types
 from numba.extending import overload
 
 from tribodyn.compiled.cache import cached_njit
+from tribodyn.compiled.jit import INNER, JIT, ONCE
 from tribodyn.dynamics._engine import newmark, runge_kutta  # noqa: F401  # their overloads
 from tribodyn.dynamics._engine.contact_forces import (
     I64,
@@ -22,9 +23,6 @@ from tribodyn.dynamics._engine.contact_forces import (
 from tribodyn.dynamics._engine.crossing import WIDTH, most_splits, split_step
 from tribodyn.dynamics._engine.lanes import Lanes, address, ahead, load, on_line, store
 from tribodyn.dynamics._engine.method import (
-    INNER,
-    JIT,
-    ONCE,
     Law,
     Method,
     accept,

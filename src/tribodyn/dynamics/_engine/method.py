@@ -16,9 +16,8 @@ from typing import TYPE_CHECKING, NamedTuple, TypeVar
 import numpy as np
 
 from tribodyn.compiled import source_digest
-from tribodyn.compiled.jit import INNER_OPTIONS
 from tribodyn.dynamics.equations.grid import Grid
-from tribodyn.types import Array, Index, Tree
+from tribodyn.types import Array, Index
 
 if TYPE_CHECKING:
     from tribodyn.dynamics._engine.lanes import Lanes
@@ -65,19 +64,12 @@ class Newmark(NamedTuple):
 
 Method = RungeKutta4 | Newmark
 
-#: NaN stays detectable: neither "nnan" nor "ninf". Only the outermost kernel is cached on disk.
-JIT: Tree = {"nogil": True, "fastmath": {"contract", "nsz"}, "error_model": "numpy"}
-
-#: Options of functions that only compiled functions call.
-INNER: Tree = {**JIT, **INNER_OPTIONS}
-
-#: Options of functions with a single caller: they are compiled only as part of the caller.
-ONCE: Tree = {**INNER, "inline": "always"}
-
 
 def for_method(method: type, function: Callable[..., object]) -> Callable[[F], F]:
     """Register the decorated function as overload of a function below for one type of method."""
     from numba.extending import overload
+
+    from tribodyn.compiled.jit import INNER
 
     place = list(inspect.signature(function).parameters).index("method")
 

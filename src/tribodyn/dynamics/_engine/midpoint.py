@@ -7,9 +7,10 @@ from __future__ import annotations
 
 import numba as nb
 
+from tribodyn.compiled.jit import INNER
 from tribodyn.dynamics._engine.contact_forces import I64, set_sides, slots_of
 from tribodyn.dynamics._engine.lanes import Lanes, load, store
-from tribodyn.dynamics._engine.method import INNER, Law
+from tribodyn.dynamics._engine.method import Law
 from tribodyn.dynamics.equations import motion
 from tribodyn.types import Array
 

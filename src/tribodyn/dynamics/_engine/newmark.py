@@ -15,6 +15,7 @@ from typing import NamedTuple
 
 import numba as nb
 
+from tribodyn.compiled.jit import INNER
 from tribodyn.dynamics._engine.contact_forces import (
     I64,
     Cursor,
@@ -41,7 +42,6 @@ from tribodyn.dynamics._engine.lanes import (
     store,
 )
 from tribodyn.dynamics._engine.method import (
-    INNER,
     Law,
     Newmark,
     accept,

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numba as nb
 
+from tribodyn.compiled.jit import INNER
 from tribodyn.dynamics._engine.contact_forces import (
     I64,
     all_forces,
@@ -13,7 +14,6 @@ from tribodyn.dynamics._engine.contact_forces import (
 )
 from tribodyn.dynamics._engine.lanes import Lanes, keep_apart, load, store
 from tribodyn.dynamics._engine.method import (
-    INNER,
     Law,
     RungeKutta4,
     accept,

@@ -16,6 +16,7 @@ from typing import NamedTuple
 import numba as nb
 import numpy as np
 
+from tribodyn.compiled.jit import INNER, ONCE
 from tribodyn.dynamics._engine.contact_forces import (
     I64,
     acceleration,
@@ -28,7 +29,7 @@ from tribodyn.dynamics._engine.contact_forces import (
 )
 from tribodyn.dynamics._engine.crossing import row_within
 from tribodyn.dynamics._engine.lanes import Lanes, greatest, least, load, store
-from tribodyn.dynamics._engine.method import INNER, ONCE, Law
+from tribodyn.dynamics._engine.method import Law
 from tribodyn.dynamics._engine.midpoint import to_middle
 from tribodyn.dynamics._engine.statistics import PLAIN_MOMENTS
 from tribodyn.types import Array

@@ -14,6 +14,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
+from tribodyn.arrays.linear_algebra import fast_length
 from tribodyn.dynamics.equations.compiled import Compiled, sample_system
 from tribodyn.dynamics.equations.grid import system_events
 from tribodyn.dynamics.equations.orbit_coordinates import (
@@ -34,8 +35,8 @@ from tribodyn.dynamics.modal.contact_equations import (
     close_contacts,
     contact_equations,
 )
-from tribodyn.dynamics.modal.modal_kernel import Trace
 from tribodyn.dynamics.modal.modal_march import ModalMotion
+from tribodyn.dynamics.modal.modal_tables import Trace
 from tribodyn.dynamics.time.response import Response, build_response
 from tribodyn.dynamics.time.simulate import read_start
 from tribodyn.errors import ComputationError, InputError, require_positive, warn
@@ -301,9 +302,7 @@ def _assessed(
 
 def _fft_length(steps: int) -> int:
     """An even number of samples whose transform is fast."""
-    from scipy.fft import next_fast_len
-
-    return 2 * int(next_fast_len(-(-steps // 2), real=True))
+    return 2 * fast_length(-(-steps // 2))
 
 
 def _start(

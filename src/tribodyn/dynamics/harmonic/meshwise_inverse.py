@@ -165,24 +165,22 @@ class _OnePhase:
 
     def _lines(self, y: Array) -> ComplexArray:
         """Lines (m, n, r) of values (p, r)."""
-        from scipy import fft
-
         values = y.reshape(*self.shape, -1)
         axes = self._axes()
-        lines = fft.fftn(values, axes=axes) if self.half is None else fft.rfftn(values, axes=axes)
+        lines = (
+            np.fft.fftn(values, axes=axes) if self.half is None else np.fft.rfftn(values, axes=axes)
+        )
         self._folded = np.moveaxis(lines, self.axis, -2).shape
         return np.asarray(np.moveaxis(lines, self.axis, -2).reshape(-1, *self._folded[-2:]))
 
     def _values(self, lines: ComplexArray) -> Array:
         """Values (p, r) of lines (m, n, r)."""
-        from scipy import fft
-
         table = np.moveaxis(lines.reshape(self._folded), -2, self.axis)
         axes = self._axes()
         if self.half is None:
-            values = fft.ifftn(table, axes=axes).real
+            values = np.fft.ifftn(table, axes=axes).real
         else:
-            values = fft.irfftn(table, [self.shape[axis] for axis in axes], axes)
+            values = np.fft.irfftn(table, [self.shape[axis] for axis in axes], axes)
         return np.asarray(values.reshape(-1, lines.shape[-1]))
 
 

@@ -70,8 +70,6 @@ def force_change(part: Any, state: State) -> Callable[[Array], Array]:
     """Change of the force on the closed structure with the motion of a part on its grid."""
     cell, (stiffness, damping) = state.cell, tangents(part.structure, state)
     breaks, damped = state.breaks, bool(np.any(damping))
-    spread: Any = breaks.spread(len(state.y)) if breaks.step.size else None
-    gather: Any = None if spread is None else spread.T.tocsr()
 
     def change(motion: Array) -> Array:
         sample = np.asarray if cell is None else cell.pieces.sample
@@ -80,8 +78,9 @@ def force_change(part: Any, state: State) -> Callable[[Array], Array]:
             force += (damping @ sample(part.rate(motion))[..., None])[..., 0]
         if cell is not None:
             force = cell.pieces.gather(force)
-        if spread is not None:
-            force += spread @ np.einsum("bsr,br->bs", breaks.tangent, gather @ motion)
+        if breaks.step.size:
+            jumps = np.einsum("bsr,br->bs", breaks.tangent, breaks.gather(motion))
+            breaks.scatter(force, jumps)
         if state.mean_stiffness is not None:
             force -= state.mean_stiffness @ motion.mean(axis=0)
         return np.asarray(force)

@@ -65,18 +65,14 @@ class PhaseGrid:
 
     def spectrum(self, values: Array) -> ComplexArray:
         """Amplitudes of the lines of the half spectrum (k, ...) of values (p, ...)."""
-        from scipy import fft
-
         axes = tuple(range(len(self.shape)))
-        lines = fft.rfftn(values.reshape(*self.shape, -1), axes=axes, norm="forward")
+        lines = np.fft.rfftn(values.reshape(*self.shape, -1), axes=axes, norm="forward")
         return np.asarray(lines.reshape(-1, values.shape[1]), dtype=complex)
 
     def values(self, spectrum: ComplexArray) -> Array:
         """Values (p, c) of a half spectrum (k, c)."""
-        from scipy import fft
-
         lines, axes = spectrum.reshape(*self.half, -1), tuple(range(len(self.shape)))
-        return np.asarray(fft.irfftn(lines, self.shape, axes, "forward").reshape(self.size, -1))
+        return np.asarray(np.fft.irfftn(lines, self.shape, axes, "forward").reshape(self.size, -1))
 
     @property
     def half(self) -> tuple[int, ...]:

@@ -7,6 +7,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from tribodyn.arrays.linear_algebra import fast_length
 from tribodyn.dynamics.harmonic.newton import State, tangents
 from tribodyn.dynamics.harmonic.phase_march import PhaseMarch
 from tribodyn.dynamics.harmonic.phase_residual import PhaseResidual
@@ -294,11 +295,9 @@ def _tangents_along(line: tuple[int, ...], count: int, part: OnGrid, state: Stat
 
 def _along(line: tuple[int, ...], response: PhaseResponse) -> FineSamples:
     """Even samples of a motion along a closed line, each with the same weight."""
-    from scipy.fft import next_fast_len
-
     numbers, values = response._all_lines
     highest = 2 * int(np.abs(numbers @ np.array(line)).max(initial=0)) + 2
-    count = int(next_fast_len(max(_SAMPLED * max(line), highest), real=True))
+    count = fast_length(max(_SAMPLED * max(line), highest))
     phase = np.arange(count) / count
     points = phase[:, None] * np.array(line) % 1.0
     moved = _summed(line, count, numbers, values[:, : 2 * len(response.names)])

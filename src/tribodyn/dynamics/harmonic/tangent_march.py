@@ -115,8 +115,9 @@ def _tangents(residual: ClockResidual, state: State) -> Array:
     joined = np.empty((steps, s, 2 * r))
     joined[..., :r], joined[..., r:] = tangents(structure, state)
     if breaks.step.size:
-        tangent = breaks.tangent.reshape(breaks.step.size, -1)
-        joined[..., :r] += (breaks.spread(steps) @ tangent).reshape(steps, s, r)
+        added = np.zeros((steps, s * r))
+        breaks.scatter(added, breaks.tangent.reshape(-1, s * r))
+        joined[..., :r] += added.reshape(steps, s, r)
     return joined
 
 

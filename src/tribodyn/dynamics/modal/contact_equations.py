@@ -10,7 +10,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
@@ -29,9 +29,6 @@ from tribodyn.dynamics.equations.orbit_coordinates import OverBases, Rest, at_re
 from tribodyn.dynamics.equations.system import System
 from tribodyn.dynamics.modal.closed_structure import ClosedStructure
 from tribodyn.types import Array, Index, Mask
-
-if TYPE_CHECKING:
-    from scipy.sparse import csr_matrix
 
 #: Part of an entry that is no jump.
 _JUMP = 1e-5
@@ -83,14 +80,10 @@ class Breaks(NamedTuple):
     correction: Array  #: correction of the sum of both samples (b, s)
     tangent: Array  #: its derivative by the motion at the jump (b, s, r)
 
-    def spread(self, steps: int) -> csr_matrix:
-        """Shares of the samples in the values at the jumps, (steps, b)."""
-        from scipy.sparse import csr_matrix
-
-        at = np.concatenate([self.step, self.after])
-        shares = np.concatenate([1.0 - self.fraction, self.fraction])
-        columns = np.tile(np.arange(self.step.size), 2)
-        return csr_matrix((shares, (at, columns)), (steps, self.step.size))
+    def gather(self, values: Array) -> Array:
+        """Values (b, c) at the jumps, between those of the samples (p, c)."""
+        part = self.fraction[:, None]
+        return np.asarray((1.0 - part) * values[self.step] + part * values[self.after])
 
     def scatter(self, force: Array, values: Array) -> None:
         """Add values (b, s) to the two samples about each jump, by its distance from them."""

@@ -7,19 +7,13 @@ through clearances and their rates at the nodes vanishes, then by Newton's metho
 
 from __future__ import annotations
 
-from typing import NamedTuple
-
 import numba as nb
 import numpy as np
 
 from tribodyn.compiled import source_digest
 from tribodyn.compiled.cache import cached_njit
-from tribodyn.dynamics._engine.method import INNER, JIT
+from tribodyn.compiled.jit import INNER, JIT
 from tribodyn.dynamics.modal.modal_step import (
-    Buffers,
-    Contacts,
-    Modes,
-    Weights,
     accept,
     begin_step,
     fill_direct,
@@ -27,9 +21,19 @@ from tribodyn.dynamics.modal.modal_step import (
     settle,
     try_part,
 )
+from tribodyn.dynamics.modal.modal_tables import (
+    CHATTER,
+    GROWING,
+    UNSETTLED,
+    Buffers,
+    Contacts,
+    Modes,
+    Trace,
+    Weights,
+)
 from tribodyn.types import Array, Index
 
-_DIGEST = source_digest(__file__.rpartition("/")[0], ["modal_kernel", "modal_step"])
+_DIGEST = source_digest(__file__.rpartition("/")[0], ["modal_kernel", "modal_step", "modal_tables"])
 
 #: Changes of side in a step, trials and bisections of a crossing.
 _CHANGES, _TRIALS, _BISECTIONS = 64, 60, 48
@@ -38,19 +42,6 @@ _CHANGES, _TRIALS, _BISECTIONS = 64, 60, 48
 _TOUCHING, _BENDING = 1e-13, 1e-9
 #: Motion at the contacts beyond which it grows without bounds [kg^0.5 m].
 _LARGEST = 1e60
-#: Reasons of a failure.
-UNSETTLED, CHATTER, GROWING = 1, 2, 3
-
-
-class Trace(NamedTuple):
-    """Output of an integration."""
-
-    modes: Array  #: (rows, 2, m); empty to record nothing
-    sums: Array  #: integral and double integral of the forces (rows, 2, s)
-    contacts: Array  #: motion and rate at middle and end of last steps (steps, 2, 2 r)
-    report: Array  #: reason of a failure, step, contact; changes of side, iterations; log entries
-    #: changes of side: step, fraction, contact, spring, side, motion and rate (entries, 5 + 2 r)
-    log: Array
 
 
 @nb.njit(**INNER)

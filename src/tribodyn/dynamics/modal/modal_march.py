@@ -13,6 +13,7 @@ from typing import Any
 
 import numpy as np
 
+from tribodyn.arrays.linear_algebra import leading_eigenvalues
 from tribodyn.dynamics._engine.statistics import Statistics
 from tribodyn.dynamics.equations.compiled import Compiled, compile_lanes, sample_system
 from tribodyn.dynamics.equations.motion import forces, has_gap, with_middles
@@ -21,8 +22,7 @@ from tribodyn.dynamics.equations.orbit_coordinates import OverBases
 from tribodyn.dynamics.equations.system import System, contact_label
 from tribodyn.dynamics.modal.closed_structure import ClosedStructure
 from tribodyn.dynamics.modal.contact_equations import close_contacts, with_dead_zone
-from tribodyn.dynamics.modal.modal_kernel import CHATTER, UNSETTLED, Trace, march_modes
-from tribodyn.dynamics.modal.modal_step import Contacts, Modes
+from tribodyn.dynamics.modal.modal_tables import CHATTER, UNSETTLED, Contacts, Modes, Trace
 from tribodyn.errors import ComputationError, InputError, Problem, require_positive
 from tribodyn.types import Array, ComplexArray
 
@@ -162,6 +162,8 @@ class ModalMotion:
     ) -> tuple[Array, Array, Trace]:
         """States and sums of forces at the ends of all steps, or the last, from a state (m,)."""
         # log: most changes of side that the trace keeps
+        from tribodyn.dynamics.modal.modal_kernel import march_modes
+
         grid, rows, output = self.compiled.grid, self.rows(frequency, extra), self.output
         widths, kind = np.unique(np.round(grid.width, 15), return_inverse=True)
         z = self.split(state)
@@ -215,11 +217,8 @@ class ModalMotion:
         if size <= _DENSE:
             values = np.linalg.eigvals(np.stack([difference(row) for row in np.eye(size)], axis=1))
         else:
-            from scipy.sparse.linalg import LinearOperator, eigs
-
-            operator = LinearOperator((size, size), matvec=difference, dtype=float)
             start = np.random.default_rng(0).standard_normal(size)
-            values = eigs(operator, _LEADING, v0=start, tol=1e-3, return_eigenvectors=False)
+            values = leading_eigenvalues(difference, start, _LEADING, 1e-3)
         return np.asarray(values[np.argsort(-np.abs(values), kind="stable")], dtype=complex)
 
     def _refuse_failure(self, trace: Trace, frequency: float) -> None:

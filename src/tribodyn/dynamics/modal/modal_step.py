@@ -12,65 +12,17 @@ are the first one and its ramps, as many as the contact with the most has; each 
 
 from __future__ import annotations
 
-from typing import NamedTuple
-
 import numba as nb
 import numpy as np
 
-from tribodyn.dynamics._engine.method import INNER
-from tribodyn.types import Array, ComplexArray, Index
+from tribodyn.compiled.jit import INNER
+from tribodyn.dynamics.modal.modal_tables import Buffers, Contacts, Modes, Weights
+from tribodyn.types import Array, ComplexArray
 
 #: Fixed-point iterations of a step.
 _ITERATIONS = 60
 #: Last change of the motion at the contacts over its size.
 _FIXED = 1e-14
-
-
-class Modes(NamedTuple):
-    """Modes with one of each conjugate pair."""
-
-    values: ComplexArray  #: (m,) [rad/s]
-    input: Array  #: of forces in real and imaginary parts of modes (2, s, m)
-    output: Array  #: of these in motion and rate at the contacts, doubled for pairs (2, m, 2 r)
-    mean: Array  #: mean contact stiffness, then damping, that the modes include (2 r, s)
-
-
-class Contacts(NamedTuple):
-    """Contacts and frictions that do not vary."""
-
-    dead: Index  #: whether each spring has a dead zone (contacts, springs)
-    damped_in_gap: Array
-    members: Array  #: contacts that each friction follows (f, contacts)
-    load: Array  #: of each friction (f,)
-    limit: Array
-
-
-class Weights(NamedTuple):
-    """Weights of one step."""
-
-    #: Of each mode, and of the forces on it at three nodes, in the mode at the middle and the end;
-    #: real and imaginary parts (2, 4, 2, m).
-    modes: Array
-    #: Of forces at the middle and end in motion and rate there (2 s, 4 r); of a part of a step
-    #: (0, 4 r): a sum over the modes takes less than its weights.
-    direct: Array
-
-
-class Buffers(NamedTuple):
-    """Work space of a step."""
-
-    z: Array  #: modes (2, m)
-    rows: Array  #: entries at the three nodes (3, row)
-    u: Array  #: forces at the three nodes (3, s)
-    pushed: Array  #: these in the modes (3, 2, m)
-    moved: Array  #: modes at middle and end, without the forces there, then with them (4, 2, m)
-    base: Array
-    motion: Array  #: (4 r,)
-    last: Array
-    contact: Array  #: contact forces
-    side: Array  #: of the springs (contacts, springs)
-    deflection: Array  #: at the three nodes (3, contacts)
-    rate: Array  #: of the deflection (3, contacts)
 
 
 @nb.njit(**INNER)

@@ -9,6 +9,7 @@ from functools import lru_cache, partial
 
 import numpy as np
 
+from tribodyn.arrays.linear_algebra import fast_length
 from tribodyn.ehl.flow_factors import FlowFactors
 from tribodyn.ehl.solver.contact_case import (
     ContactCase,
@@ -58,9 +59,7 @@ class Verification:
 @lru_cache(maxsize=16)
 def _transform(n: int) -> tuple[int, ComplexArray]:
     """Length of the circular sum, and transform of the influence on intervals of length one."""
-    from scipy.fft import next_fast_len
-
-    size = next_fast_len(2 * n + 2, real=True)
+    size = fast_length(2 * n + 2)
     edge = np.arange(n + 2) - 0.5
     integral = edge * (np.log(np.abs(edge)) - 1.0)
     influence = -np.diff(integral) / np.pi

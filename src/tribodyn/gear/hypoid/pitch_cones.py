@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from tribodyn.errors import Argument, InputError
+from tribodyn.gear.curves import bisect
 from tribodyn.types import Array, Mask
 
 #: Pinion offset angles in the axial plane that are searched [rad], and how many.
@@ -77,16 +78,12 @@ def pitch_cones(pitch_input: PitchInput) -> PitchCones:
     crossing = cut[1:] & cut[:-1] & (excess[1:] * excess[:-1] <= 0.0)
     if not np.any(crossing):
         raise _no_cones(pitch_input, np.asarray(cones.limit_curvature)[valid])
-    from scipy.optimize import brentq
-
     # The smallest offset angle belongs to the cones that roll best on each other.
     first = int(np.argmax(crossing))
-    root = brentq(
-        lambda x: float(_excess(_cones_at(x, pitch_input), pitch_input)),
-        angle[first],
-        angle[first + 1],
-        xtol=1e-18,
-        rtol=1e-15,
+    sign = math.copysign(1.0, excess[first])
+    root = bisect(
+        lambda x: sign * float(_excess(_cones_at(x, pitch_input), pitch_input)),
+        *angle[first : first + 2],
     )
     solution = _cones_at(root, pitch_input)
     pairs = [(float(pinion), float(wheel)) for pinion, wheel in solution[:3]]

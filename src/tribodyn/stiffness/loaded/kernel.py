@@ -19,16 +19,11 @@ import numpy as np
 
 from tribodyn.compiled import source_digest
 from tribodyn.compiled.cache import cached_njit
-from tribodyn.compiled.jit import INNER_OPTIONS, LEAN_OPTIONS
+from tribodyn.compiled.jit import INNER, JIT, LEAN
 from tribodyn.interrupt import STOPPED
-from tribodyn.types import Array, Index, Tree
+from tribodyn.types import Array, Index
 
 _DIGEST = source_digest(Path(__file__).parent, [Path(__file__).stem])
-
-#: NaN stays detectable: neither "nnan" nor "ninf".
-_JIT: Tree = {"nogil": True, "fastmath": {"contract", "nsz"}, "error_model": "numpy"}
-_INNER: Tree = {**_JIT, **INNER_OPTIONS}
-_LEAN: Tree = {**_JIT, **LEAN_OPTIONS}
 
 #: Residual of a pair over the approach that counts as zero.
 _TIGHT = 1e-13
@@ -59,12 +54,12 @@ class Work(NamedTuple):
     sums: Array  #: force and tangent stiffness
 
 
-@nb.njit(**_INNER)
+@nb.njit(**INNER)
 def _work(n: int) -> Work:
     return Work(np.empty((n, n)), np.empty(n), np.empty(n), np.empty(2))
 
 
-@nb.njit(**_LEAN)
+@nb.njit(**LEAN)
 def _eliminate(m: int, a: Array, b: Array) -> None:
     """Solve in place; the matrix is symmetric and positive definite, so nothing is pivoted."""
     for k in range(m):
@@ -80,7 +75,7 @@ def _eliminate(m: int, a: Array, b: Array) -> None:
         b[k] /= a[k, k]
 
 
-@nb.njit(**_LEAN)
+@nb.njit(**LEAN)
 def _touching_system(teeth: Teeth, gaps: Array, delta: float, f: Array, work: Work) -> int:
     """Tangent compliances and residuals of the pairs that carry; their number, -2 out of range."""
     (C, A, B), (a, b, place, _), m = teeth, work, 0
@@ -104,7 +99,7 @@ def _touching_system(teeth: Teeth, gaps: Array, delta: float, f: Array, work: Wo
     return m
 
 
-@nb.njit(**_LEAN)
+@nb.njit(**LEAN)
 def _residual(teeth: Teeth, gap: float, delta: float, f: Array, i: int) -> float:
     C, A, B = teeth
     total = gap - delta
@@ -115,7 +110,7 @@ def _residual(teeth: Teeth, gap: float, delta: float, f: Array, i: int) -> float
     return total
 
 
-@nb.njit(**_LEAN)
+@nb.njit(**LEAN)
 def _slice(teeth: Teeth, gaps: Array, delta: float, f: Array, work: Work) -> int:
     """Loads ``f`` of one slice at an approach, from the loads that it holds.
 
@@ -168,7 +163,7 @@ def _slice(teeth: Teeth, gaps: Array, delta: float, f: Array, work: Work) -> int
     return -1
 
 
-@nb.njit(**_LEAN)
+@nb.njit(**LEAN)
 def _total_force(
     teeth: Teeth, gaps: Array, width: Array, delta: float, f: Array, work: Work
 ) -> int:
@@ -190,7 +185,7 @@ def _total_force(
     return 0
 
 
-@nb.njit(**_LEAN)
+@nb.njit(**LEAN)
 def _least(gaps: Array) -> float:
     """Smallest gap of all slices; NaN if there is one."""
     # Sums and minima of NumPy are slow to compile, and bring SciPy where compiled code is loaded.
@@ -202,7 +197,7 @@ def _least(gaps: Array) -> float:
     return float(least)
 
 
-@nb.njit(**_LEAN)
+@nb.njit(**LEAN)
 def _approach(
     teeth: Teeth, gaps: Array, width: Array, total: float, start: float, f: Array, work: Work
 ) -> tuple[float, int]:
@@ -243,7 +238,7 @@ def _approach(
     return delta, 1
 
 
-@cached_njit(_DIGEST, "the loads of tooth pairs", "ten seconds", **_JIT)
+@cached_njit(_DIGEST, "the loads of tooth pairs", "ten seconds", **JIT)
 def solve_loads(
     C: Array,
     A: Array,
@@ -280,7 +275,7 @@ def solve_loads(
     return 0
 
 
-@cached_njit(_DIGEST, "the forces of tooth pairs", "ten seconds", **_JIT)
+@cached_njit(_DIGEST, "the forces of tooth pairs", "ten seconds", **JIT)
 def solve_deflections(
     C: Array,
     A: Array,
@@ -310,7 +305,7 @@ def solve_deflections(
     return 0
 
 
-@cached_njit(_DIGEST, "the first touch of tooth pairs", "ten seconds", **_JIT)
+@cached_njit(_DIGEST, "the first touch of tooth pairs", "ten seconds", **JIT)
 def pickups(
     C: Array, A: Array, B: float, gaps: Array, most: Array, pickup: Array, flag: Index
 ) -> int:

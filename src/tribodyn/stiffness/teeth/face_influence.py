@@ -4,9 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
-from pathlib import Path
 
-import numba as nb
 import numpy as np
 
 from tribodyn.arrays.splines import (
@@ -14,13 +12,8 @@ from tribodyn.arrays.splines import (
     bspline_values,
     interpolation_knots,
 )
-from tribodyn.compiled import source_digest
-from tribodyn.compiled.cache import cached_njit
-from tribodyn.compiled.jit import INNER_OPTIONS
 from tribodyn.errors import Argument, InputError
-from tribodyn.types import Array, Tree
-
-_DIGEST = source_digest(Path(__file__).parent, [Path(__file__).stem])
+from tribodyn.types import Array
 
 #: Distance beyond the ends of the face, over its width, that is rounding.
 _ROUNDING = 1e-9
@@ -192,7 +185,7 @@ class SlicedInfluence:
         InputError
             If the shapes disagree or ``sense`` is another number.
         """
-        from tribodyn.stiffness.teeth.face_influence import fill_compliance
+        from tribodyn.stiffness.teeth.face_kernel import fill_compliance
 
         phases, pairs, slices = radii.shape
         contacts = pairs * slices
@@ -225,67 +218,3 @@ def _unusable(what: str) -> InputError:
         "table of nodes by nodes by functions by functions for each tooth",
         remedy="Check the provider of the compliances",
     )
-
-
-_JIT: Tree = {"nogil": True, "fastmath": {"contract", "nsz"}, "error_model": "numpy"}
-
-
-@nb.njit(**_JIT, **INNER_OPTIONS)
-def _cubic_weights(knots: Array, x: float, weights: Array) -> int:
-    """Values of the four cubic B-splines at a place; returns the number of the first one."""
-    last = knots.size - 5
-    low, high = 3, last
-    while low < high:
-        middle = (low + high + 1) // 2
-        if knots[middle] <= x:
-            low = middle
-        else:
-            high = middle - 1
-    weights[0] = 1.0
-    for k in range(1, 4):
-        carried = 0.0
-        for r in range(k):
-            right, left = knots[low + 1 + r], knots[low + 1 + r - k]
-            part = weights[r] / (right - left)
-            weights[r] = carried + (right - x) * part
-            carried = (x - left) * part
-        weights[k] = carried
-    return low - 3
-
-
-@cached_njit(_DIGEST, "the compliance between slices", "five seconds", **_JIT)
-def fill_compliance(
-    table: Array, knots: Array, widths: Array, radii: Array, sense: int, out: Array
-) -> None:
-    """Add the compliance between all contacts of all phases."""
-    phases, pairs, slices = radii.shape
-    most = table.shape[0] - 1
-    first, weight = np.empty((pairs, slices), np.int64), np.empty((pairs, slices, 4))
-    for p in range(phases):
-        for i in range(pairs):
-            for k in range(slices):
-                x = min(max(radii[p, i, k] ** 2, knots[0]), knots[-1])
-                first[i, k] = _cubic_weights(knots, x, weight[i, k])
-        for i in range(pairs):
-            for j in range(pairs):
-                step = (j - i) * sense
-                # the other side follows by reciprocity
-                if step < 0 or step > most or (step == 0 and i != j):
-                    continue
-                for k in range(slices):
-                    for m in range(slices):
-                        if i == j and m < k:
-                            continue
-                        total = 0.0
-                        for a in range(4):
-                            row = 0.0
-                            for b in range(4):
-                                row += (
-                                    weight[j, m, b]
-                                    * table[step, k, m, first[i, k] + a, first[j, m] + b]
-                                )
-                            total += weight[i, k, a] * row
-                        loaded, displaced = i * slices + k, j * slices + m
-                        out[p, displaced, loaded] += total / widths[m]
-                        if loaded != displaced:
-                            out[p, loaded, displaced] += total / widths[k]

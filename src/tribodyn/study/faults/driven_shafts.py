@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
+from tribodyn.arrays.linear_algebra import modes_of
 from tribodyn.dynamics import Contact, System
 from tribodyn.faults.driven import drive_over_phases
 from tribodyn.study.faults.section import part_of
@@ -32,15 +33,13 @@ _PHASES = np.arange(8) / 8.0
 
 def free_motions(system: System) -> Array:
     """Motions of the coordinates in which no spring and no contact is strained (n, k)."""
-    from scipy.linalg import eigh
-
     stiffness = np.array(system.stiffness, dtype=float)
     size = float(np.abs(stiffness).max()) or 1.0
     for contact in system.contacts:
         along = contact.direction
         rows = np.atleast_2d(along(_PHASES) if callable(along) else np.asarray(along))
         stiffness += size * rows.T @ rows
-    squares, shapes = eigh(stiffness, np.asarray(system.mass))
+    squares, shapes = modes_of(stiffness, np.asarray(system.mass))
     return np.asarray(shapes[:, np.abs(squares) < _FREE * squares.max()])
 
 

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
+from tribodyn.arrays.linear_algebra import modes_of
 from tribodyn.dynamics.harmonic.phase_response import Lines
 from tribodyn.dynamics.linear.linear_system import linear_system
 from tribodyn.faults import BearingForce, BearingImpacts
@@ -50,10 +51,8 @@ class FreeStructure:
     """A machine with closed meshes at their mean stiffness, under forces on its coordinates."""
 
     def __init__(self, system: System) -> None:
-        from scipy.linalg import eigh
-
         linear = linear_system(system)
-        squares, shape = eigh(linear.stiffness, linear.mass)
+        squares, shape = modes_of(linear.stiffness, linear.mass)
         swings = squares > _FREE * squares.max()
         damping = linear.damping + (0.0 if linear.gyroscopic is None else linear.gyroscopic)
         # Free rotations have velocities alone: their positions act on nothing.

@@ -22,7 +22,7 @@ from tribodyn.study.pipeline.cautions import (
     warn_of_meshes,
 )
 from tribodyn.study.pipeline.preview import operating_figures
-from tribodyn.study.pipeline.summary import PARTS
+from tribodyn.study.pipeline.summary_figures import PARTS
 from tribodyn.study.planetary.machine_stages import motion_of_stage
 
 if TYPE_CHECKING:

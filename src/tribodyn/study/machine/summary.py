@@ -11,8 +11,8 @@ import numpy as np
 
 from tribodyn.machine.graph.directions import center_distance, working_pressure_angle
 from tribodyn.machine.plane_law import mean_in_space
-from tribodyn.study.pipeline.summary import HARMONICS, MEASURES, mesh_figures
-from tribodyn.study.pipeline.summary_figures import Figures, figure_of, split_key
+from tribodyn.study.pipeline.summary import HARMONICS, mesh_figures
+from tribodyn.study.pipeline.summary_figures import MEASURES, Figures, figure_of, split_key
 from tribodyn.study.planetary.machine_stages import stage_figures
 
 if TYPE_CHECKING:

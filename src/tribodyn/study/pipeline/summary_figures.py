@@ -3,21 +3,121 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Collection, Iterable, Mapping
-from dataclasses import replace
+import tomllib
+from collections.abc import Callable, Collection, Iterable, Mapping
+from dataclasses import dataclass, replace
+from importlib.resources import files
 from typing import Any
 
 from tribodyn.aliases import warn_of_old_name
+from tribodyn.errors import Argument, InputError
 from tribodyn.machine.planetary.stage_parts import mesh_kinds
+from tribodyn.model import Registry
 from tribodyn.nomenclature import GEARS, QUANTITIES
-from tribodyn.study.pipeline.summary import (
-    CHIEF,
-    MEASURES,
-    PARTS,
-    SUMMARY,
-    SummaryFigure,
-    summary_entry,
+from tribodyn.types import Tree
+from tribodyn.units import format_quantity
+
+#: Computes a figure in SI of a result, or of a load and the name of a part; None leaves it out.
+Measure = Callable[..., float | None]
+
+
+@dataclass(frozen=True)
+class SummaryFigure:
+    """One figure of a summary."""
+
+    name: str  #: key in the summary
+    unit: str
+    display_unit: str
+    meaning: str  #: one line
+    topic: str = "Other"  #: heading in tables
+
+    def show(self, value: float) -> str:
+        """Write the value in the display unit with six digits."""
+        if not self.unit:
+            return f"{value:.6g}"
+        number, _, unit = format_quantity(value, self.unit, self.display_unit).partition(" ")
+        return f"{float(number):.6g} {unit}"
+
+
+def summary_entry(name: str, quantity: str, *meaning_topic: str) -> SummaryFigure:
+    """Figure with the unit of its quantity, a pure number where that is empty."""
+    entry = QUANTITIES[quantity] if quantity else None
+    unit, display_unit = (entry.unit, entry.display_unit) if entry else ("", "")
+    return SummaryFigure(name, unit, display_unit, *meaning_topic)
+
+
+_TABLE = tomllib.loads(
+    files("tribodyn.study.pipeline").joinpath("summary.toml").read_text(encoding="utf-8")
 )
+#: Figures of each kind of part of a machine, and those of a pair that fit on a screen.
+PARTS: dict[str, Tree] = _TABLE.pop("parts")
+CHIEF: list[str] = _TABLE.pop("chief")
+for _part in PARTS.values():
+    _part.setdefault("of_pairs", [])
+    _part["of_pairs"] += [n for topic in _part.get("of_pairs_by_topic", ()) for n in _TABLE[topic]]
+#: All figures of :meth:`tribodyn.Result.summary` and ``tribodyn check`` by name.
+SUMMARY: dict[str, SummaryFigure] = {
+    name: summary_entry(name, quantity, meaning, topic)
+    for topic, rows in _TABLE.items()
+    for name, (quantity, meaning) in rows.items()
+}
+#: Figures of third parties, those of meshes as ``meshes.NAME``, also by entry points of the group.
+MEASURES: Registry[Measure] = Registry("summary figure", "tribodyn.summary")
+
+
+def summary_figure(
+    name: str, *, meaning: str, of: str = "", part: str = ""
+) -> Callable[[Measure], Measure]:
+    """Decorate a function of a result to make it a figure of every summary.
+
+    Parameters
+    ----------
+    name : str
+        Key in the summary.
+    meaning : str
+        One line.
+    of : str
+        Its quantity in :data:`tribodyn.nomenclature.QUANTITIES`, which knows its unit; empty for a
+        pure number.
+    part : str
+        Kind of the parts of a machine or a stage that have it: ``"machine"``, ``"meshes"``,
+        ``"planets"``, ``"shafts"``, ``"bearings"`` or ``"housing"``; of pairs by default.
+
+    Returns
+    -------
+    callable
+        Decorator that returns the function unchanged. The function takes a
+        :class:`tribodyn.Result`, for parts a :class:`tribodyn.study.LoadResult` and the name of the
+        part, which the machine itself has not. It returns the figure in SI, or None where there is
+        none.
+
+    Raises
+    ------
+    InputError
+        If there is no such kind of part, or the package has a figure of this name.
+
+    Examples
+    --------
+    >>> @summary_figure("teeth_of_both", meaning="teeth of both gears")  # doctest: +SKIP
+    ... def teeth(result):
+    ...     return result.case.gears.pinion.teeth + result.case.gears.wheel.teeth
+    """
+    if part and part not in PARTS:
+        why = f"Parts: {', '.join(PARTS)}"
+        raise InputError(f'part = "{part}"', Argument("part"), why, "Choose one, or leave it out")
+    key = f"{part}.{name}" if part else name
+    figures: Tree = PARTS[part]["figures"] if part else SUMMARY
+    of_package = name in figures or (part and name in PARTS[part]["of_pairs"])
+    if of_package and key not in MEASURES.names():
+        why = "A figure of the package keeps its meaning"
+        raise InputError(f'"{key}" is a figure', Argument("name"), why, "Choose another name")
+
+    def keep(measure: Measure) -> Measure:
+        figures[name] = [of, meaning] if part else summary_entry(name, of, meaning)
+        return MEASURES.register(key)(measure)
+
+    return keep
+
 
 #: Those by which load cases are compared.
 _OF_LOADS = ("output_torque", "efficiency", "peak_mesh_force")

@@ -12,8 +12,7 @@ from tribodyn.nomenclature import require_whole
 from tribodyn.nonlinear.parameter_map import SCALES
 from tribodyn.progress import SILENT, Progress
 from tribodyn.record import Record, fact, quantity, record
-from tribodyn.study.pipeline.summary import SUMMARY
-from tribodyn.study.pipeline.summary_figures import in_order, is_figure
+from tribodyn.study.pipeline.summary_figures import SUMMARY, in_order, is_figure
 from tribodyn.study.studies.sweep_result import OF_PARTS, SHOWN
 from tribodyn.study.uncertain.lanes import distributions_of, points_of_values, successful
 from tribodyn.types import Array, Texts, Tree
