@@ -8,6 +8,7 @@ from importlib import import_module
 from importlib.abc import MetaPathFinder
 from importlib.machinery import ModuleSpec, PathFinder
 from importlib.util import find_spec
+from pathlib import Path
 from types import ModuleType
 
 from tribodyn.aliases import names_of_stub, old_module
@@ -77,7 +78,6 @@ def public_page(
         setattr(sys.modules[page], name, value)
         return value
 
-    for name, module in homes.items():
-        if module == f"{page}.{name}":  # or the page would show the module under this name
-            find(name)
+    for name in sorted(homes.keys() & {path.stem for path in Path(file).parent.glob("*.py")}):
+        find(name)  # or the page would show the module under this name
     return names, find, lambda: sorted({*vars(sys.modules[page]), *names})

@@ -55,9 +55,12 @@ def modes_of(stiffness: Array, mass: Array) -> tuple[Array, Array]:
 
 
 def leading_eigenvalues(
-    product: Callable[[Array], Array], start: Array, count: int, accuracy: float
+    product: Callable[[Array], Array], start: Array, count: int, accuracy: float, none: float = 0.0
 ) -> ComplexArray:
-    """Eigenvalues of largest size of a linear map of vectors. Source: Saad (2011), chapter 6."""
+    """Eigenvalues of largest size of a linear map of vectors. Source: Arnoldi (1951).
+
+    Residuals are less than a part of their size, or than ``none``, an eigenvalue as good as none.
+    """
     size = start.size
     basis, upper = np.zeros((size + 1, size)), np.zeros((size + 1, size))
     basis[0] = start / np.linalg.norm(start)
@@ -71,7 +74,9 @@ def leading_eigenvalues(
         values, vectors = np.linalg.eig(upper[:k, :k])
         first = np.argsort(-np.abs(values), kind="stable")[:count]
         left = length * np.abs(vectors[-1, first])
-        if k == size or (k > count and np.all(left <= accuracy * np.abs(values[first]))):
+        if k == size or (
+            k > count and np.all(left <= np.maximum(accuracy * np.abs(values[first]), none))
+        ):
             break
         basis[k] = vector / (length or 1.0)
     return np.asarray(values[first], dtype=complex)

@@ -5,24 +5,9 @@ from __future__ import annotations
 import sys
 from types import ModuleType
 
-from tribodyn.arguments import guard
-from tribodyn.cases.catalogue import case_files, cases
-from tribodyn.cases.compile_ahead import warm_up
-from tribodyn.cases.load import load_case, load_result, run
-from tribodyn.cases.papers.comparison import PaperComparison, compare_with_paper
+from tribodyn.arguments.pages import public_page
 
-__all__ = [
-    "PaperComparison",
-    "case_files",
-    "cases",
-    "compare_with_paper",
-    "load_case",
-    "load_result",
-    "run",
-    "warm_up",
-]
-
-guard(__name__)
+__all__, __getattr__, __dir__ = public_page(__name__, __file__)
 
 
 class _Catalogue(ModuleType):
@@ -30,6 +15,8 @@ class _Catalogue(ModuleType):
 
     def __call__(self, *, machines: bool = False) -> dict[str, str]:
         """Names and one-line descriptions of all named cases."""
+        from tribodyn.cases.catalogue import cases
+
         return cases(machines=machines)
 
 

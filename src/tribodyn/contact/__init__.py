@@ -9,34 +9,6 @@
 | `hertz` | half width and pressure of a line contact, half axes of an elliptical one |
 """
 
-from tribodyn.arguments import guard
-from tribodyn.contact.face_contacts import FaceContacts, face_contacts
-from tribodyn.contact.hertz import (
-    HertzEllipse,
-    HertzLine,
-    effective_modulus,
-    hertz_ellipse,
-    hertz_line,
-)
-from tribodyn.contact.loss_factor import equal_share, gear_loss_factor
-from tribodyn.contact.path import Kinematics, PathOfContact, path_of_contact
-from tribodyn.contact.separation import ExtendedContact, extended_contact
+from tribodyn.arguments.pages import public_page
 
-__all__ = [
-    "ExtendedContact",
-    "FaceContacts",
-    "HertzEllipse",
-    "HertzLine",
-    "Kinematics",
-    "PathOfContact",
-    "effective_modulus",
-    "equal_share",
-    "extended_contact",
-    "face_contacts",
-    "gear_loss_factor",
-    "hertz_ellipse",
-    "hertz_line",
-    "path_of_contact",
-]
-
-guard(__name__)
+__all__, __getattr__, __dir__ = public_page(__name__, __file__)

@@ -9,50 +9,6 @@
 | `pressure_laws` | viscosity (Barus, Roelands) and density under pressure and temperature |
 """
 
-from __future__ import annotations
+from tribodyn.arguments.pages import public_page
 
-from tribodyn.arguments import guard
-from tribodyn.lubricant.astm import (
-    viscosity_at_40_degc,
-    viscosity_at_100_degc,
-    viscosity_index,
-    walther_slope,
-    walther_viscosity,
-)
-from tribodyn.lubricant.data_sheet import from_data_sheet
-from tribodyn.lubricant.library import from_library, library, temperature_range
-from tribodyn.lubricant.oil import VISCOSITY_LAWS, Lubricant
-from tribodyn.lubricant.pressure_laws import (
-    BASE_OILS,
-    ROELANDS_PRESSURE,
-    agma_925_coefficient,
-    barus_viscosity,
-    density_at_temperature,
-    dowson_higginson_density,
-    roelands_index,
-    roelands_viscosity,
-)
-
-__all__ = [
-    "BASE_OILS",
-    "ROELANDS_PRESSURE",
-    "VISCOSITY_LAWS",
-    "Lubricant",
-    "agma_925_coefficient",
-    "barus_viscosity",
-    "density_at_temperature",
-    "dowson_higginson_density",
-    "from_data_sheet",
-    "from_library",
-    "library",
-    "roelands_index",
-    "roelands_viscosity",
-    "temperature_range",
-    "viscosity_at_40_degc",
-    "viscosity_at_100_degc",
-    "viscosity_index",
-    "walther_slope",
-    "walther_viscosity",
-]
-
-guard(__name__)
+__all__, __getattr__, __dir__ = public_page(__name__, __file__)

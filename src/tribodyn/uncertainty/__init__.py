@@ -6,10 +6,6 @@
 | ``variance`` | Sobol indices of the inputs |
 """
 
-from tribodyn.arguments import guard
-from tribodyn.uncertainty.sampling import Band, bootstrap_band, distribution, sample
-from tribodyn.uncertainty.variance import SobolIndices, sobol_indices
+from tribodyn.arguments.pages import public_page
 
-__all__ = ["Band", "SobolIndices", "bootstrap_band", "distribution", "sample", "sobol_indices"]
-
-guard(__name__)
+__all__, __getattr__, __dir__ = public_page(__name__, __file__)

@@ -132,24 +132,18 @@ def starting_state(residual: ClockResidual, state: State) -> tuple[Array, Array]
 
 def series(amplitudes: ComplexArray, steps: int, phase: Array) -> Array:
     """Fourier series with amplitudes (k, n) of a motion on ``steps`` samples, at any phases."""
-    from scipy import fft
-
     # On equal steps all phases are samples of the series.
     count = 2 * (phase.size // 3)
     if count < steps or np.abs(phase * count - np.rint(phase * count)).max() > 1e-7:
         count = _REFINED * steps
     padded = np.zeros((count // 2 + 1, amplitudes.shape[1]), dtype=complex)
     padded[: len(amplitudes)] = amplitudes
-    fine = fft.irfft(padded, count, axis=0, norm="forward")
+    fine = np.fft.irfft(padded, count, axis=0, norm="forward")
     place = phase * count
     nearest = np.rint(place)
     if np.abs(place - nearest).max() < 1e-7:
         return np.asarray(fine[nearest.astype(np.int64) % count])
-    from scipy.sparse import csr_matrix
-
     first = np.floor(place).astype(np.int64) - _POINTS // 2 + 1
-    nodes = first[:, None] + np.arange(_POINTS)
-    shares = polynomial_shares(place[:, None] - nodes).reshape(-1)
-    ends = np.arange(0, nodes.size + 1, _POINTS)
-    table = csr_matrix((shares, nodes.reshape(-1) % count, ends), (phase.size, count))
-    return np.asarray(table @ fine)
+    shares = polynomial_shares(place[:, None] - first[:, None] - np.arange(_POINTS))
+    each = (shares[:, k, None] * fine[(first + k) % count] for k in range(_POINTS))
+    return np.asarray(sum(each))

@@ -104,11 +104,10 @@ class PhaseGrid:
 
 def polynomial_shares(distance: Array) -> Array:
     """Weights of even points in the polynomial through them, at distances in steps (p, points)."""
-    from scipy.special import binom
-
     orders = np.arange(distance.shape[1])
     distance = np.where(distance == 0.0, 1e-200, distance)  # all weight at this point
-    share = (-1.0) ** orders * binom(orders[-1], orders) / distance
+    binomial = [math.comb(orders.size - 1, k) for k in orders]
+    share = (-1.0) ** orders * binomial / distance
     return np.asarray(share / share.sum(axis=1, keepdims=True))
 
 

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from tribodyn.arrays.linear_algebra import leading_eigenvalues
 from tribodyn.compiled import source_digest
 from tribodyn.compiled.cache import cached_njit
 from tribodyn.dynamics.harmonic.newton import tangents
@@ -89,23 +90,8 @@ class TangentMarch:
         """Size of the largest Floquet multiplier, to the second order of the step."""
         size = self._parts[0].size
         start = np.random.default_rng(0).standard_normal(size)
-        basis, product = np.zeros((size + 1, size)), np.zeros((size + 1, size))
-        basis[0] = start / np.linalg.norm(start)
-        # Source: Arnoldi (1951), Quart. Appl. Math. 9, 17.
-        for count in range(1, size + 1):
-            vector = self.moved(basis[count - 1])
-            for _ in range(2):  # twice is enough for orthogonality
-                along = basis[:count] @ vector
-                vector -= along @ basis[:count]
-                product[:count, count - 1] += along
-            length = product[count, count - 1] = np.linalg.norm(vector)
-            values, shapes = np.linalg.eig(product[:count, :count])
-            leading = int(np.argmax(np.abs(values)))
-            left = length * abs(shapes[-1, leading])
-            if left <= max(_ACCURATE * abs(values[leading]), _FORGOTTEN):
-                break
-            basis[count] = vector / length
-        return float(abs(values[leading]))
+        values = leading_eigenvalues(self.moved, start, 1, _ACCURATE, _FORGOTTEN)
+        return float(abs(values[0]))
 
 
 def _tangents(residual: ClockResidual, state: State) -> Array:

@@ -14,25 +14,3 @@
 | `misalignment_study` | contact and transmission error with displaced gears |
 | `kinematics` | how the flanks roll and slide in every cell |
 """
-
-from tribodyn.gear.hypoid.blank import HypoidBlank, hypoid_blank
-from tribodyn.gear.hypoid.ease_off import EaseOff
-from tribodyn.gear.hypoid.flank import HypoidFlanks, hypoid_flanks
-from tribodyn.gear.hypoid.kinematics import HypoidKinematics, hypoid_kinematics
-from tribodyn.gear.hypoid.misalignment_study import MisalignmentStudy, misalignment_study
-from tribodyn.gear.hypoid.tooth_contact import Misalignment, ToothContact, tooth_contact
-
-__all__ = [
-    "EaseOff",
-    "HypoidBlank",
-    "HypoidFlanks",
-    "HypoidKinematics",
-    "Misalignment",
-    "MisalignmentStudy",
-    "ToothContact",
-    "hypoid_blank",
-    "hypoid_flanks",
-    "hypoid_kinematics",
-    "misalignment_study",
-    "tooth_contact",
-]

@@ -8,7 +8,6 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from tribodyn.drawing import Sketch, drawing
-from tribodyn.measurement import Comparison, OrderSpectrum, Recording, TrackedOrders
 from tribodyn.plot.signals.spectra import (
     amplitude_label,
     spectrum_panel,
@@ -22,7 +21,13 @@ from tribodyn.plot.theme.style import Trace, line, marked
 from tribodyn.types import Array
 
 if TYPE_CHECKING:
-    from tribodyn.measurement import SignalAnalysis
+    from tribodyn.measurement import (
+        Comparison,
+        OrderSpectrum,
+        Recording,
+        SignalAnalysis,
+        TrackedOrders,
+    )
 
 #: Most panels of a recording, most points of a curve, and names in a title.
 _PANELS, _POINTS, _NAMED = 8, 4000, 3

@@ -9,8 +9,6 @@
 | `picture` | the deformed gear for a figure |
 """
 
-from tribodyn.stiffness.fe2d.picture import deformed_gear
-from tribodyn.stiffness.fe2d.provider import fe2d_influence
-from tribodyn.stiffness.fe2d.tooth_mesh import MeshSize
+from tribodyn.arguments.pages import public_page
 
-__all__ = ["MeshSize", "deformed_gear", "fe2d_influence"]
+__all__, __getattr__, __dir__ = public_page(__name__, __file__)

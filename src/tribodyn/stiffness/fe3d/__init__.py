@@ -12,9 +12,6 @@
 | `bevel_tooth` | flanks, fillets and cones of that tooth |
 """
 
-from tribodyn.stiffness.fe3d.bevel import FlankInfluence, hypoid_influence
-from tribodyn.stiffness.fe3d.bevel_sector import BevelSize
-from tribodyn.stiffness.fe3d.provider import fe3d_influence
-from tribodyn.stiffness.fe3d.sector import SolidSize
+from tribodyn.arguments.pages import public_page
 
-__all__ = ["BevelSize", "FlankInfluence", "SolidSize", "fe3d_influence", "hypoid_influence"]
+__all__, __getattr__, __dir__ = public_page(__name__, __file__)

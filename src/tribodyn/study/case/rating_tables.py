@@ -288,10 +288,10 @@ def shaper_cutter(case: PairCase, role: str) -> ShaperCutter | None:
 
 def history_classes(rating: Any, speed: float) -> tuple[SpectrumLoad, ...]:
     """Load classes of the history of ``[rating]``, durations as shares; empty without one."""
-    from tribodyn.measurement.load_history import read_load_classes
-
     if rating is None or rating.torque_history is None:
         return ()
+    from tribodyn.measurement.load_history import read_load_classes
+
     names = ("torque_column", "torque_unit", "speed_column", "speed_unit")
     stated = {name: getattr(rating, name) for name in names if getattr(rating, name) is not None}
     return read_load_classes(

@@ -453,7 +453,8 @@ def case_problems(case: PairCase) -> list[tuple[str, Problem]]:
         problems = _faults("gears", lambda: case.gear_pair)
     problems += _faults("lubricant", lambda: case.lubricant_properties)
     problems += [] if problems else _faults("lubricant", lambda: case.film_lubricant)
-    problems += [] if problems else _faults("losses", lambda: _gearbox_losses(case))
+    if case.gearbox is not None and not problems:
+        problems += _faults("losses", lambda: _gearbox_losses(case))
     problems += [] if problems else _fault_problems(case)
     problems += [] if problems else rating_problems(case)
     return problems if case.gears.kind == "hypoid" else problems + _bores(case)

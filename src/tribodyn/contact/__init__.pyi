@@ -1,0 +1,14 @@
+from tribodyn.contact.face_contacts import FaceContacts as FaceContacts
+from tribodyn.contact.face_contacts import face_contacts as face_contacts
+from tribodyn.contact.hertz import HertzEllipse as HertzEllipse
+from tribodyn.contact.hertz import HertzLine as HertzLine
+from tribodyn.contact.hertz import effective_modulus as effective_modulus
+from tribodyn.contact.hertz import hertz_ellipse as hertz_ellipse
+from tribodyn.contact.hertz import hertz_line as hertz_line
+from tribodyn.contact.loss_factor import equal_share as equal_share
+from tribodyn.contact.loss_factor import gear_loss_factor as gear_loss_factor
+from tribodyn.contact.path import Kinematics as Kinematics
+from tribodyn.contact.path import PathOfContact as PathOfContact
+from tribodyn.contact.path import path_of_contact as path_of_contact
+from tribodyn.contact.separation import ExtendedContact as ExtendedContact
+from tribodyn.contact.separation import extended_contact as extended_contact

@@ -1,0 +1,46 @@
+from tribodyn.gear.contact_lines import FaceGeometry as FaceGeometry
+from tribodyn.gear.cylindrical_gear import CylindricalGear as CylindricalGear
+from tribodyn.gear.cylindrical_gear import SpurGear as SpurGear
+from tribodyn.gear.cylindrical_pair import CylindricalPair as CylindricalPair
+from tribodyn.gear.cylindrical_pair import SpurPair as SpurPair
+from tribodyn.gear.flank_gap import flank_gap as flank_gap
+from tribodyn.gear.flank_gap import hunting_period as hunting_period
+from tribodyn.gear.flank_gap import lead_gap as lead_gap
+from tribodyn.gear.flank_gap import pitch_gap as pitch_gap
+from tribodyn.gear.flank_gap import profile_gap as profile_gap
+from tribodyn.gear.flank_gap import run_out_gap as run_out_gap
+from tribodyn.gear.flank_gap import tooth_positions as tooth_positions
+from tribodyn.gear.hypoid.blank import HypoidBlank as HypoidBlank
+from tribodyn.gear.hypoid.blank import hypoid_blank as hypoid_blank
+from tribodyn.gear.hypoid.ease_off import EaseOff as EaseOff
+from tribodyn.gear.hypoid.flank import HypoidFlanks as HypoidFlanks
+from tribodyn.gear.hypoid.flank import hypoid_flanks as hypoid_flanks
+from tribodyn.gear.hypoid.kinematics import HypoidKinematics as HypoidKinematics
+from tribodyn.gear.hypoid.kinematics import hypoid_kinematics as hypoid_kinematics
+from tribodyn.gear.hypoid.misalignment_study import MisalignmentStudy as MisalignmentStudy
+from tribodyn.gear.hypoid.misalignment_study import misalignment_study as misalignment_study
+from tribodyn.gear.hypoid.tooth_contact import Misalignment as Misalignment
+from tribodyn.gear.hypoid.tooth_contact import ToothContact as ToothContact
+from tribodyn.gear.hypoid.tooth_contact import tooth_contact as tooth_contact
+from tribodyn.gear.mass_properties import MassProperties as MassProperties
+from tribodyn.gear.mass_properties import Material as Material
+from tribodyn.gear.mass_properties import mass_properties as mass_properties
+from tribodyn.gear.mass_properties import section_moments as section_moments
+from tribodyn.gear.mesh_geometry import FlankRange as FlankRange
+from tribodyn.gear.mesh_geometry import MeshGeometry as MeshGeometry
+from tribodyn.gear.mesh_geometry import default_relief_length as default_relief_length
+from tribodyn.gear.mesh_geometry import flank_ranges as flank_ranges
+from tribodyn.gear.mesh_geometry import operating_pressure_angle as operating_pressure_angle
+from tribodyn.gear.mesh_geometry import tip_shortening_coefficient as tip_shortening_coefficient
+from tribodyn.gear.mesh_geometry import (
+    zero_backlash_center_distance as zero_backlash_center_distance,
+)
+from tribodyn.gear.modification import FlankModification as FlankModification
+from tribodyn.gear.modification import ProfileMap as ProfileMap
+from tribodyn.gear.outline import gear_outline as gear_outline
+from tribodyn.gear.outline import half_tooth as half_tooth
+from tribodyn.gear.outline import tooth_outline as tooth_outline
+from tribodyn.gear.pair_factory import cylindrical_pair as cylindrical_pair
+from tribodyn.gear.pair_factory import spur_pair as spur_pair
+from tribodyn.gear.tooth_form import BasicRack as BasicRack
+from tribodyn.gear.tooth_form import ToothForm as ToothForm

@@ -1,0 +1,10 @@
+from tribodyn.report.html import render_machine_report as render_machine_report
+from tribodyn.report.html import render_planetary_report as render_planetary_report
+from tribodyn.report.html import render_report as render_report
+from tribodyn.report.html import write_machine_report as write_machine_report
+from tribodyn.report.html import write_planetary_report as write_planetary_report
+from tribodyn.report.html import write_report as write_report
+from tribodyn.report.signal_report import write_signal_report as write_signal_report
+from tribodyn.report.study import write_bifurcation_report as write_bifurcation_report
+from tribodyn.report.study import write_study_report as write_study_report
+from tribodyn.report.study import write_sweep_report as write_sweep_report
