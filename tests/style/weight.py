@@ -172,7 +172,7 @@ LINES: dict[str, int] = {
     "progress": 72,
     "rating": 2800,
     "record": 213,
-    "report": 1729,
+    "report": 1745,
     "scope": 38,
     "signals": 1732,
     "stiffness": 5251,

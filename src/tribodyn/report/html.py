@@ -265,8 +265,3 @@ def write_report(result: Result, path: str | os.PathLike[str]) -> Path:
     target = Path(path)
     write_file(target, render_report(result))
     return target
-
-
-#: Names of an earlier version: all kinds of cases have one report.
-render_machine_report = render_planetary_report = render_report
-write_machine_report = write_planetary_report = write_report

@@ -243,12 +243,13 @@ def shaft_parts(data: Any) -> ShaftParts:
 
 def _gearbox_losses(case: PairCase) -> object:
     """Compute the losses of the case without those of its teeth, to find input errors."""
+    if case.gearbox is None:
+        return None
     from tribodyn.losses import gearbox_losses
 
     gears = case.gear_pair if case.hypoid_flanks is None else case.hypoid_flanks
     point: Any = {"pinion_torque": case.pinion_torque, "pinion_speed": case.pinion_speed}
-    oil = case.lubricant_properties
-    return case.gearbox and gearbox_losses(gears, case.gearbox, 0.0, **point, lubricant=oil)
+    return gearbox_losses(gears, case.gearbox, 0.0, **point, lubricant=case.lubricant_properties)
 
 
 def mesh_law_of(case: PairCase) -> MeshForce:
@@ -453,8 +454,7 @@ def case_problems(case: PairCase) -> list[tuple[str, Problem]]:
         problems = _faults("gears", lambda: case.gear_pair)
     problems += _faults("lubricant", lambda: case.lubricant_properties)
     problems += [] if problems else _faults("lubricant", lambda: case.film_lubricant)
-    if case.gearbox is not None and not problems:
-        problems += _faults("losses", lambda: _gearbox_losses(case))
+    problems += [] if problems else _faults("losses", lambda: _gearbox_losses(case))
     problems += [] if problems else _fault_problems(case)
     problems += [] if problems else rating_problems(case)
     return problems if case.gears.kind == "hypoid" else problems + _bores(case)
