@@ -156,7 +156,7 @@ LINES: dict[str, int] = {
     "faults": 1657,
     "files": 247,
     "friction": 1461,
-    "gear": 3633,
+    "gear": 3635,
     "interrupt": 222,
     "losses": 896,
     "lubricant": 507,

@@ -34,3 +34,11 @@ def test_pages_list_their_names() -> None:
     assert {*td.machine.__all__} <= {*dir(td.machine)}
     with pytest.raises(AttributeError, match="no attribute 'shafft'"):
         td.machine.shafft  # noqa: B018
+
+
+def test_names_of_hypoid_gears_are_those_of_their_page() -> None:
+    page = import_module("tribodyn.gear.hypoid")
+    assert {name for name in td.gear.__all__ if "hypoid" in name.lower()} < {*page.__all__}
+    assert page.EaseOff is td.gear.EaseOff
+    assert isfunction(page.misalignment_study)
+    assert isfunction(page.tooth_contact)

@@ -14,3 +14,7 @@
 | `misalignment_study` | contact and transmission error with displaced gears |
 | `kinematics` | how the flanks roll and slide in every cell |
 """
+
+from tribodyn.arguments.pages import public_page
+
+__all__, __getattr__, __dir__ = public_page(__name__, __file__)

@@ -1,0 +1,12 @@
+from tribodyn.gear.hypoid.blank import HypoidBlank as HypoidBlank
+from tribodyn.gear.hypoid.blank import hypoid_blank as hypoid_blank
+from tribodyn.gear.hypoid.ease_off import EaseOff as EaseOff
+from tribodyn.gear.hypoid.flank import HypoidFlanks as HypoidFlanks
+from tribodyn.gear.hypoid.flank import hypoid_flanks as hypoid_flanks
+from tribodyn.gear.hypoid.kinematics import HypoidKinematics as HypoidKinematics
+from tribodyn.gear.hypoid.kinematics import hypoid_kinematics as hypoid_kinematics
+from tribodyn.gear.hypoid.misalignment_study import MisalignmentStudy as MisalignmentStudy
+from tribodyn.gear.hypoid.misalignment_study import misalignment_study as misalignment_study
+from tribodyn.gear.hypoid.tooth_contact import Misalignment as Misalignment
+from tribodyn.gear.hypoid.tooth_contact import ToothContact as ToothContact
+from tribodyn.gear.hypoid.tooth_contact import tooth_contact as tooth_contact
