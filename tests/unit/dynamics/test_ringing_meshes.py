@@ -8,6 +8,8 @@ import numpy as np
 import pytest
 
 from tribodyn.dynamics import Contact, System, harmonic_balance
+from tribodyn.dynamics.equations.phases import read_frequencies
+from tribodyn.dynamics.harmonic.phase_balance import Work, _Search, phase_cost, work_of
 from tribodyn.errors import ModelWarning
 
 SLOW, FAST = 20.0, 311.7
@@ -60,3 +62,25 @@ def test_the_stated_error_counts_lines_that_ring_beyond_twice_the_points():
     motions = [each.at(times).position[:, :2] @ [1.0, -1.0] for each in (exact, few)]
     change = np.abs(motions[1] - motions[0]).max() / np.abs(motions[0]).max()
     assert 0.2 < change < few.step_error < 1.5 * change
+
+
+def test_grids_grow_beyond_the_usual_limit_only_where_a_mesh_rings():
+    system = gears(phases=True)
+    search = _Search.of(system, read_frequencies((SLOW, FAST), system.phases))
+    points = ((256, 96), (256, 96))  # as many unknowns as forces that jump get
+    errors = np.array([[0.1, 0.0], [0.0, 0.0]])
+    twice, ahead = np.full((2, 2), 2), np.array([[8, 2], [2, 2]])
+    assert not search.poor(points, errors, twice, False).any()
+    assert search.poor(points, errors, ahead, False).tolist() == [[True, False], [False, False]]
+
+
+def test_the_cost_of_a_mesh_that_rings_is_known_before():
+    system = gears(phases=True)
+    assert work_of(system, (SLOW, FAST)).kind == "ringing"
+    assert work_of(system, (100 * SLOW, FAST)).kind == "broken"
+    # The first grid of the slow mesh has 24 points, and the usual statement counts them twice.
+    followers = [(1, (1, 0)), (1, (0, 1))]
+    rings, jumps = (
+        phase_cost(followers, (SLOW, FAST), work=Work(kind))[0] for kind in ("ringing", "broken")
+    )
+    assert 0.5 < (2 * rings / jumps) / (over_phases().points[0] / 24) < 2.0

@@ -265,6 +265,6 @@ def test_the_stated_time_follows_from_what_the_forces_do() -> None:
         kinds.append(_work(each, state).kind)
         (text,) = rehearse_faults(each, state)
         times.append(float(text.partition(" GB and ")[2].partition(" s ")[0]))
-    assert kinds == ["steady", "smooth", "broken", "open"]
+    assert kinds == ["steady", "smooth", "ringing", "open"]
     assert times[0] < 0.5 * times[1]
-    assert max(times) == times[3]
+    assert max(times[:2]) < min(times[2:])

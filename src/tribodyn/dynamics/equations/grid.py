@@ -222,8 +222,8 @@ class RowEvaluator:
         assert looked_up is not None
         of_table = looked_up[0].values, looked_up[0].grid.phase, np.array(looked_up[1:])
         key = (self.nodes, self._low, self._high, *of_table)
-        few = self.nodes.size * len(onto) <= _CACHED
-        return times(_derivatives.get(key, compute) if few else compute(), onto.T)
+        is_kept = self.nodes.size * len(onto) <= _CACHED
+        return times(_derivatives.get(key, compute) if is_kept else compute(), onto.T)
 
     def _differences(self, where: str, entry: Entry, size: int) -> Array:
         """Derivatives by a five-point stencil."""

@@ -54,7 +54,7 @@ _MANY, _MOST = 2**17, 3 * 2**14
 #: Changes of the motion with twice the points at which it stops, each with the most unknowns for
 #: it: while they fall to less than a part from grid to grid, and where forces bend or jump.
 _SMOOTH, _FALLING, _BROKEN = ((2e-7, _MANY),), 0.1, ((1e-5, 2**13), (2e-3, _MOST))
-#: Change above which grids grow further where it is largest, and the most unknowns for it.
+#: Change above which grids grow further where a mesh rings, and the most unknowns for it.
 _ROUGHLY, _LARGE = 9e-3, 2**18
 #: Times the points over its phase with which a mesh that jumps is looked at too, and the ratio of
 #: the changes above which lines that few points leave out are those of a natural frequency.
@@ -63,18 +63,19 @@ _AHEAD, _RINGS = 8, 2.0
 _BYTES = 1.5e3
 #: Time of a grid, per unknown of it for each part of the system and for each phase [s], and part of
 #: its lines that are more than rounding: where nothing moves, of forces that are smooth along the
-#: motion, of those that jump, and where flanks separate.
+#: motion, of those that jump, and excite natural frequencies, and where flanks separate.
 _WORK = {
     "steady": (0.01, 1e-6, 4e-6, 0.0),
     "smooth": (0.01, 1e-5, 2e-6, 0.25),
     "broken": (0.06, 4e-6, 3e-6, 1.0),
+    "ringing": (0.06, 1e-5, 8e-6, 1.0),
     "open": (0.06, 2e-5, 6e-6, 1.0),
 }
 #: Least force of a contact on the first grids, over its mean, below which jumps may open it.
 _OPENS = 0.5
 #: Time per unknown of a motion on stated points [s], and unknowns of the first grids up to which a
 #: trial motion shows what forces do.
-_STATED, _TRIAL = 6e-5, 2**15
+_STATED, _TRIAL = 6e-5, 2**16
 #: Time per line and sample of the record, and more for each coordinate; per sample of the closed
 #: line and coordinate [s].
 _SUMMED, _SUMMED_EACH, _ALONG = 1.2e-8, 2e-9, 3.5e-7
@@ -103,7 +104,8 @@ class Work(NamedTuple):
 def work_of(system: System, frequency: Any, supports: Sequence[RadialClearance] = ()) -> Work:
     """What the motion of a system over phases takes, from a trial on its first grids."""
     search = _Search.of(system, read_frequencies(frequency, system.phases), supports)
-    residual = search.residual(_first_points(search))
+    points = _first_points(search)
+    residual = search.residual(points)
     tried = residual.ends[-1] <= _TRIAL
     state = residual.at(search.still(residual))
     if tried:
@@ -117,7 +119,9 @@ def work_of(system: System, frequency: Any, supports: Sequence[RadialClearance] 
     if parted or (jumps and any(map(np.any, low))):
         kind = "open"
     elif jumps:
-        kind = "broken"
+        every, none = np.ones(np.shape(points), dtype=bool), np.zeros(np.shape(points))
+        rings = tried and (search.changes(points, residual, state, every, none)[1] > 2).any()
+        kind = "ringing" if rings else "broken"
     return Work(kind, system.size)
 
 
@@ -132,14 +136,17 @@ def phase_cost(
         int(np.prod(np.where(_axes(each.cycles, each.turns), fine, others))) for each in followers
     ]
     first = sum(each.contacts * size for each, size in zip(followers, grids, strict=True))
-    phases, unknowns = len(frequency), max(first, min(2 * first, _MOST)) if mesh is None else first
+    phases, work = len(frequency), work or Work()
+    rings = work.kind == "ringing"
+    largest = min(max(_AHEAD * first, 2**14), _LARGE) if rings else min(2 * first, _MOST)
+    unknowns = max(first, largest) if mesh is None else first
     memory = 2e8 + 1.4e8 * phases + _BYTES * unknowns
     if mesh is not None:
         return unknowns, memory, 0.1 + _STATED * unknowns
-    work = work or Work()
-    # Smooth forces need a second grid; others are refined until few changes are left.
+    # Smooth forces need a second grid; others are refined until small changes are left.
     least, most = {
-        "steady": (1, 1), "smooth": (2, 2**11), "broken": (2, 2**13), "open": (3, 2**14)
+        "steady": (1, 1), "smooth": (2, 2**11), "broken": (2, 2**13), "ringing": (2, unknowns),
+        "open": (3, 2**14),
     }[work.kind]  # fmt: skip
     sizes = [first]
     while len(sizes) < least or sizes[-1] < most:
@@ -241,7 +248,9 @@ class _Search:
     def poor(self, points: Points, errors: Array, times: Index, smooth: bool) -> Mask:
         """Grids whose points are too few: those with the largest errors; none if they are small."""
         chosen = np.zeros(errors.shape, dtype=bool)
-        for limit, most in (*(_SMOOTH if smooth else _BROKEN), (_ROUGHLY, _LARGE)):
+        # Where flanks part and nothing rings, more points would change the motion as much again.
+        further = ((_ROUGHLY, _LARGE),) if (times > 2).any() else ()
+        for limit, most in (*(_SMOOTH if smooth else _BROKEN), *further):
             large = errors > (limit / errors.size if smooth else _WORST * errors.max())
             left = errors.sum()
             if left <= limit or chosen.any():

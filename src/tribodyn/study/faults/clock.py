@@ -411,18 +411,18 @@ def _cost_within(
 
 
 def _fewer_faults(case: MachineCase, machine: Machine) -> str:
-    """Faults without which the motion takes little enough memory, and what it takes then."""
-    left, gone, memory = case, [], math.inf
-    while left.faults and memory > case.solver.memory:
-        costs = {}
-        for name in left.faults:
-            cost = _cost_within(math.inf, left.replace({f"faults.{name}": None}), machine)
-            costs[name] = 0.0 if cost is None else cost.memory
-        name = min(costs, key=lambda each: costs[each])
-        left, memory = left.replace({f"faults.{name}": None}), costs[name]
-        gone.append(name)
-    takes = f"about {1e-9 * memory:.3g} GB" if memory else "little, on one clock"
-    return f"without {' and '.join(gone)} it takes {takes}"
+    """Faults without which the motion takes little enough memory; empty if there are none."""
+    remaining, removed, memory = case, [], math.inf
+    while remaining.faults and memory > case.solver.memory:
+        tried = {name: remaining.replace({f"faults.{name}": None}) for name in remaining.faults}
+        costs = {name: _cost_within(math.inf, each, machine) for name, each in tried.items()}
+        sizes = {name: 0.0 if cost is None else cost.memory for name, cost in costs.items()}
+        removed.append(min(sizes, key=lambda each: sizes[each]))
+        remaining, memory = tried[removed[-1]], sizes[removed[-1]]
+    if memory > case.solver.memory:
+        return ""
+    takes = f"it takes about {1e-9 * memory:.3g} GB" if memory else "it repeats on one clock"
+    return f"without {' and '.join(removed)} {takes}"
 
 
 def check_motion(case: MachineCase, work: Work | None = None) -> list[str]:

@@ -95,8 +95,8 @@ def phase_cost_of(
         followers.append((2 * loose, (0,) * len(phases.frequency), 1, ()))
     cost = cost_over_phases(phases, names, followers, orders, work=work)
     remedy = "Raise solver.memory, or compute a part of the machine"
-    if fewer is not None and cost.memory > memory:
-        remedy = f"Raise solver.memory, or give fewer faults: {fewer()}"
+    if fewer is not None and cost.memory > memory and (without := fewer()):
+        remedy = f"Raise solver.memory, or give fewer faults: {without}"
     refuse_memory(cost, memory, "solver.memory", remedy)
     return cost
 
