@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from functools import cache
 
 import numpy as np
@@ -52,6 +53,19 @@ def test_the_warning_names_mesh_and_phase():
         ModelWarning, match=r"that of slow over the phase of its teeth \(20 Hz\), 16"
     ):
         harmonic_balance(gears(phases=True), (SLOW, FAST), steps=16)
+
+
+def test_the_warning_names_the_shaft():
+    """A turning error of three waves a turn needs more than six points."""
+    sound = gears(phases=True)
+    steady = (replace(each, stiffness=2e8, events=(0.0,)) for each in sound.contacts)
+    first, second = (replace(each, cycles=(*each.cycles, 0)) for each in steady)
+    turning = {"turning_error": lambda turn: 1e-5 * np.cos(6 * np.pi * turn)}
+    second = replace(second, **turning, turning_cycles=(0, 0, 1))
+    names = ("slow", "fast", "output shaft")
+    system = replace(sound, contacts=[first, second], phase_names=names)
+    with pytest.warns(ModelWarning, match=r"of fast over the phase of output shaft \(3 Hz\), 6"):
+        harmonic_balance(system, (SLOW, FAST, 3.0), steps=(8, 8, 6))
 
 
 def test_the_stated_error_counts_lines_that_ring_beyond_twice_the_points():

@@ -85,6 +85,17 @@ def test_teeth_that_differ_repeat_after_their_period() -> None:
     assert phases.frequency == pytest.approx((1.0, 13.0))
 
 
+def test_meshes_of_one_frequency_share_a_phase_where_the_teeth_of_one_differ() -> None:
+    """Otherwise the grids have both the phase of the teeth and that of the turning gear."""
+    rates = {"sun": Fraction(21), "ring": Fraction(21), "other": Fraction(100, 7)}
+    clock = clock_of(rates, {}, 1.0).with_whole_periods({"sun": 21})
+    waves = [clock.cycles["ring"] * Fraction(2, 21), clock.cycles["ring"] * Fraction(1, 87)]
+    phases = phases_of(clock, {"sun": 21, "ring": 1, "other": 1}, waves)
+    assert phases.cycles == {"sun": (1, 0, 0), "ring": (21, 0, 0), "other": (0, 1, 0)}
+    assert phases.frequency == pytest.approx((1.0, 100 / 7, 21 / 87))
+    assert phases.turns == {waves[0]: (2, 0, 0), waves[1]: (0, 0, 1)}
+
+
 def test_one_phase_is_the_clock() -> None:
     train = machine(20, 40, 20, 40)
     assert train.phases.cycles == {"first": (2,), "second": (1,)}

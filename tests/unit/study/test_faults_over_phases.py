@@ -93,6 +93,59 @@ def test_lines_are_those_of_the_period_where_there_is_one() -> None:
         assert_same_lines(phased, clocked, sensor)
 
 
+@pytest.mark.slow
+def test_a_mesh_feels_the_teeth_of_another_that_differ() -> None:
+    """Few points over each of their cycles suffice for it."""
+    of_mesh = ("stiffness", "transmission_error_amplitude")
+    motions = []
+    for phases in ("on", "off"):
+        teeth = case(SHORT, phases=phases).replace({
+            **{f"meshes.mesh1.{key}": None for key in of_mesh}, "stiffness.model": "analytic",
+            "dynamics.backlash": "0.2 mm",
+        })  # fmt: skip
+        pitch = {"kind": "pitch-deviations", "gear": "z1", "accuracy_class": 8}
+        faulty = with_faults(teeth, pitch=pitch)
+        motions.append(machine_turning_motion(faulty, td.run(faulty).operation))
+    phased, clocked = motions
+    assert isinstance(phased.response, PhaseResponse)
+    deviations = [
+        np.sqrt(each.mean((each.mesh_force - each.mean(each.mesh_force)) ** 2))
+        for each in (phased.motion, clocked.motion)
+    ]
+    assert deviations[0] == pytest.approx(deviations[1], rel=1e-2)
+
+
+@cache
+def stages() -> Any:
+    """A planetary stage before two pairs, with computed teeth."""
+    gears = {
+        "sun": {"shaft": "low", "teeth": 21, "face_width": 0.25},
+        "planet": {"teeth": 33, "face_width": 0.25},
+        "ring": {"shaft": "held", "teeth": -87, "face_width": 0.25},
+    }
+    shafts = ["low", "middle", "middle", "high"]
+    for n, (teeth, shaft) in enumerate(zip((97, 25, 91, 29), shafts, strict=True)):
+        place = {"position": 0.1 * (n + 1)}
+        gears[f"z{n}"] = {"shaft": shaft, "teeth": teeth, "face_width": 0.1, **place}
+    pairs = {f"mesh{n}": {"gears": [f"z{2 * n}", f"z{2 * n + 1}"], "normal_module": 8e-3}
+             for n in (0, 1)}  # fmt: skip
+    stage = {"sun": "sun", "ring": "ring", "planet": "planet", "carrier": "rotor", "count": 3}
+    run = {"input": "rotor", "output": "high", "speed": "15 rpm", "torque": "90 kN*m"}
+    return td.study.MachineCase(
+        gears=gears, meshes=pairs, planets={"stage": {**stage, "normal_module": 11e-3}},
+        stiffness={"model": "iso6336"}, operation=run,
+    )  # fmt: skip
+
+
+@pytest.mark.parametrize("gear", ["sun", "planet", "z3"])
+def test_a_cracked_tooth_of_a_train_of_three_stages_fits_in_the_memory(gear: str) -> None:
+    crack = {"kind": "crack", "gear": gear, "tooth": 1, "depth": "3 mm"}
+    faulty = with_faults(stages(), crack=crack)
+    cost = fault_cost(faulty, faulty.machine())
+    assert len(cost.phases) == 3
+    assert cost.memory < 2.5e9
+
+
 def test_a_ripple_leads_the_meshes_over_its_own_phase() -> None:
     phased, clocked = (motion_of(phases, ripple=RIPPLE) for phases in ("on", "off"))
     assert phased.ahead is not None

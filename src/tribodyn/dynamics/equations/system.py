@@ -255,6 +255,8 @@ class System:
         Time by which an unsteady rotation is ahead of its mean [s], of a motion over phases: takes
         points (p, phases), returns this time and the rates at which it grows with each phase,
         (p,) and (p, phases). All mesh phases and all that turns with shafts follow it.
+    phase_names : sequence of str, optional
+        What turns with each phase, for messages.
 
     Raises
     ------
@@ -280,6 +282,7 @@ class System:
     frictions: Sequence[LoadFriction] = ()
     gyroscopic: ArrayLike | None = None
     lead: Callable[[Array], tuple[Array, Array]] | None = None
+    phase_names: Sequence[str] = ()
     #: Largest rate of the motion by the number of steps with which it was computed.
     _rates: dict[int, float] = field(default_factory=dict, init=False, repr=False, compare=False)
     #: Matrices about the static load, by the phase at which they were computed.

@@ -444,6 +444,8 @@ def _coarse(search: _Search, points: Points, errors: Array, automatic: bool) -> 
     whose = "of what turns with it"
     if axis == part.axis:
         whose = "of its teeth"
+    elif rows.system.phase_names:
+        whose = f"of {rows.system.phase_names[int(axis)]}"
     elif meshes:
         whose = f"of {contact_label(rows.system, int(meshes[0].contacts[0]))}"
     remedy = "Give more steps, or omit them for an automatic choice"

@@ -20,8 +20,9 @@ from tribodyn.types import Array, ComplexArray, Index, Mask
 #: Points over a phase of meshes, and over one that only turns shafts, with which an automatic
 #: choice starts.
 _MESH, _SHAFT = 24, 8
-#: Points of the first grids over phases that a part does not follow, by the number of phases.
-_OTHERS = 12, 12, 12, 8, 4
+#: Points of the first grids over phases that a part does not follow, of meshes and of shafts alone,
+#: by the number of phases, and over each of their mesh cycles where teeth differ.
+_OTHERS, _TURNED, _TEETH = (12, 12, 12, 8, 4), (12, 12, 12, 4, 4), 4
 #: Part of the largest frequency that is none.
 _STILL = 1e-12
 
@@ -151,8 +152,10 @@ def points_of(
     fine = np.maximum(
         np.where(meshes > 0, (mesh or _MESH) * meshes, _SHAFT * shafts), driven
     ).astype(int)
-    others = _OTHERS[min(len(fine), len(_OTHERS)) - 1]
-    felt = np.maximum(others * np.where(cycles > 0, periods, 1).max(axis=0), driven)
+    place = min(len(fine), len(_OTHERS)) - 1
+    others = np.where(meshes > 0, _OTHERS[place], _TURNED[place])
+    teeth = np.where(cycles > 0, periods, 1).max(axis=0)
+    felt = np.maximum(np.maximum(others, _TEETH * np.where(teeth > 1, teeth, 0)), driven)
     return fine, np.minimum(fine, felt).astype(int)
 
 

@@ -118,6 +118,9 @@ def phases_of(
     # Meshes follow a rotation that is ahead, but not what drives it: that has phases of its own.
     all_rates = [*rates.values(), *turning]
     locked, free = [all_rates] if together else _groups(all_rates), _groups([*driven])
+    # Meshes of one frequency follow one phase, also where the teeth of some differ.
+    for cycles in dict.fromkeys(clock.cycles.values()):
+        locked = _joined(locked, [rates[m] for m, each in clock.cycles.items() if each == cycles])
     bases = [_common(group) for group in (*locked, *free)]
 
     def over(rate: Fraction, groups: list[list[Fraction]], first: int) -> tuple[int, ...]:
@@ -143,6 +146,14 @@ def _groups(rates: Iterable[Fraction]) -> list[list[Fraction]]:
             groups.append(group := [])
         group.append(rate)
     return groups
+
+
+def _joined(groups: list[list[Fraction]], rates: Iterable[Fraction]) -> list[list[Fraction]]:
+    """Groups, with one for all that contain some of these rates."""
+    wanted = {*rates}
+    chosen = [group for group in groups if not wanted.isdisjoint(group)]
+    others = [group for group in groups if wanted.isdisjoint(group)]
+    return [[rate for group in chosen for rate in group], *others] if chosen[1:] else groups
 
 
 def _common(rates: Sequence[Fraction]) -> Fraction:

@@ -38,7 +38,13 @@ from tribodyn.study.faults.turning import (
     steady_over_turns,
 )
 from tribodyn.study.machine.first_look import warn_of_orders
-from tribodyn.study.machine.motion import MachineMotion, machine_motion, phase_units, unit_of
+from tribodyn.study.machine.motion import (
+    MachineMotion,
+    machine_motion,
+    phase_names,
+    phase_units,
+    unit_of,
+)
 from tribodyn.study.mesh_inputs import mesh_inputs, named_mesh
 from tribodyn.study.pipeline.motion import by_engine
 from tribodyn.types import Tree
@@ -186,12 +192,14 @@ def _over_phases(
         system = without_clearance_supports(structure, system)
     driven = [(each, phases.driven[rate_of(machine.clock, each)]) for each in excited]
     system, ahead = drive_machine_over_phases(structure, system, driven)
+    shafts = [each.gear for each in excited]
+    system = replace(system, phase_names=phase_names(machine, phases, shafts))
     if supports:
         response = clearance_motion(system, [*supports.values()], phases.frequency)
     else:
         response = harmonic_balance(system, phases.frequency, progress=progress)
     motion = with_lifted_forces(machine_motion(structure, response, phases), response, seats)
-    units = phase_units(machine, phases, [each.gear for each in excited])
+    units = phase_units(machine, phases, shafts)
     return response, replace(motion, units=units), ahead
 
 
