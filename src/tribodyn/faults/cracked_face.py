@@ -10,7 +10,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from functools import cached_property, lru_cache
+from functools import cached_property, lru_cache, partial
 from itertools import pairwise
 from pathlib import Path
 from typing import NamedTuple
@@ -28,7 +28,7 @@ from tribodyn.faults.cracked_tooth import (
     section_compliance,
 )
 from tribodyn.gear import Material, SpurGear
-from tribodyn.stiffness.fe2d.provider import load_arrays, store_arrays
+from tribodyn.stiffness.fe2d.provider import looked_up
 from tribodyn.stiffness.fe2d.tooth_mesh import MeshSize
 from tribodyn.stiffness.fe3d.provider import file_name, gear_sector
 from tribodyn.stiffness.fe3d.sections import (
@@ -107,12 +107,16 @@ def crack_influence(
     line = CrackLine(depth, angle, root_tangent)
     line.check(gear)
     radius, knots, added = _unit_influence(gear, material.poissons_ratio, line, ends, size)
-    return FaceInfluence(
-        radius,
-        knots,
-        added / (material.youngs_modulus * gear.normal_module),
-        np.zeros((0, *added.shape)),
-    )
+    stiffness = material.youngs_modulus * gear.normal_module
+    return FaceInfluence(radius, knots, added / stiffness, np.zeros((0, *added.shape)))
+
+
+class _AddedCompliance(NamedTuple):
+    """Compliance that a crack adds, for a module and a Young's modulus of one."""
+
+    radius: Array  #: [m]
+    knots: Array  #: [m]
+    added: Array
 
 
 @lru_cache(maxsize=32)
@@ -122,18 +126,23 @@ def _unit_influence(
     line: CrackLine,
     ends: tuple[float, float],
     size: SolidSize,
-) -> tuple[Array, Array, Array]:
-    """Radii and knots [m], and the added compliance for a module and a Young's modulus of one."""
+) -> _AddedCompliance:
     sector = gear_sector(gear, poissons_ratio, size)
     name = file_name(
         sector, gear.normal_module, line, ends, source_digest(Path(__file__).parent, _MODULES)
     )
-    arrays = load_arrays(name, "cracked") or {}
-    missing: Array = np.array(np.nan)
-    parts = tuple(arrays.get(key, missing) for key in ("radius", "knots", "added"))
-    shape = (parts[0].size,) * 2 + (parts[1].size - 4,) * 2
-    if parts[2].shape == shape and all(np.all(np.isfinite(part)) for part in parts):
-        return parts[0], parts[1], parts[2]
+
+    def fits(unit: _AddedCompliance) -> bool:
+        radii, functions = unit.radius.size, unit.knots.size - 4
+        return unit.added.shape == (radii, radii, functions, functions)
+
+    return looked_up(
+        _AddedCompliance, name, partial(_computed, sector, line, ends), fits, "cracked"
+    )
+
+
+def _computed(sector: Sector, line: CrackLine, ends: tuple[float, float]) -> _AddedCompliance:
+    gear, poissons_ratio = sector.form, sector.poissons_ratio
     announce(
         "computing the compliance of a cracked tooth over its face, once on this machine, 3 to 30 "
         "seconds"
@@ -146,11 +155,9 @@ def _unit_influence(
         added = added + weight * tooth.part * model.added_compliance()
     radius = sector.curvature_radius(sector.flank_length) * module
     places, fine = section_compliance(gear, poissons_ratio, line)
-    coarse = section_compliance(gear, poissons_ratio, line, size.section, graded=False)[1]
+    coarse = section_compliance(gear, poissons_ratio, line, sector.size.section, graded=False)[1]
     factor = np.sqrt(np.interp(radius, places, fine / coarse))[:, None, None, None]
-    added = added * factor * factor.transpose(1, 0, 2, 3)
-    store_arrays(name, {"radius": radius, "knots": knots, "added": added}, "cracked")
-    return radius, knots, added
+    return _AddedCompliance(radius, knots, added * factor * factor.transpose(1, 0, 2, 3))
 
 
 @dataclass(frozen=True, eq=False)

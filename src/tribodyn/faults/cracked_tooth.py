@@ -5,7 +5,6 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass, replace
 from functools import lru_cache
-from typing import Any
 
 import numpy as np
 
@@ -14,9 +13,15 @@ from tribodyn.gear import Material, SpurGear
 from tribodyn.nomenclature import require_number
 from tribodyn.stiffness.fe2d.flank_load import flank_loads
 from tribodyn.stiffness.fe2d.provider import held_radius
-from tribodyn.stiffness.fe2d.ring import element_stiffness, plane_stress
+from tribodyn.stiffness.fe2d.ring import (
+    assembled,
+    plain_stiffness,
+    plane_freedoms,
+    plane_stress,
+    symmetric_factors,
+)
 from tribodyn.stiffness.fe2d.tooth_mesh import MeshSize, SectorMesh, ToothSide, tooth_mesh
-from tribodyn.types import Array, Index, Tree
+from tribodyn.types import Array, Index
 
 #: Places along the flank.
 _PLACES = 13
@@ -36,10 +41,6 @@ STEEPEST, SQUARE = math.radians(45.0), 0.5 * math.pi
 LEAST_TANGENT, GREATEST_TANGENT = math.radians(-45.0), math.radians(45.0)
 #: Points at which the tangent of the fillet is tabulated.
 _TANGENTS = 401
-#: Factorization of a symmetric positive matrix.
-_SYMMETRIC: Tree = {
-    "permc_spec": "MMD_AT_PLUS_A", "diag_pivot_thresh": 0.0, "options": {"SymmetricMode": True}
-}  # fmt: skip
 
 
 @dataclass(frozen=True)
@@ -264,17 +265,6 @@ def _move_to_quarters(mesh: SectorMesh, row: int, tip: int) -> None:
             nodes[grid[tip + a, row + b]] = 0.5 * edges - 0.25 * corners
 
 
-def _stiffness(mesh: SectorMesh, poissons_ratio: float) -> Any:
-    from scipy.sparse import coo_array
-
-    matrices = element_stiffness(mesh.nodes[mesh.elements], plane_stress(1.0, poissons_ratio))
-    freedoms = (2 * mesh.elements[:, :, None] + np.arange(2)).reshape(-1, 18)
-    rows = np.broadcast_to(freedoms[:, :, None], matrices.shape)
-    columns = np.broadcast_to(freedoms[:, None, :], matrices.shape)
-    entries: Any = (matrices.ravel(), (rows.ravel(), columns.ravel()))
-    return coo_array(entries, shape=(2 * len(mesh.nodes), 2 * len(mesh.nodes))).tocsr()
-
-
 def _self_compliance(
     mesh: SectorMesh, forces: Array, poissons_ratio: float, others: Array
 ) -> Array:
@@ -287,19 +277,15 @@ def ring_displacement(
     mesh: SectorMesh, forces: Array, poissons_ratio: float, others: Array
 ) -> Array:
     """Displacement of all nodes of a sector in the ring, for a Young's modulus of one."""
-    from scipy.sparse import coo_array
-    from scipy.sparse.linalg import splu
-
-    matrix = _stiffness(mesh, poissons_ratio)
+    matrix = plain_stiffness(mesh, plane_stress(1.0, poissons_ratio)).tocsr()
     cuts, turn = _cut_freedoms(mesh)
-    block = (turn.T @ others @ turn).ravel()
-    places: Any = (np.repeat(cuts, cuts.size), np.tile(cuts, cuts.size))
-    matrix = matrix + coo_array((block, places), shape=matrix.shape).tocsr()
-    free = np.setdiff1d(np.arange(matrix.shape[0]), _freedoms(mesh.fixed))
+    block = (turn.T @ others @ turn)[None]
+    matrix = matrix + assembled(block, cuts[None], matrix.shape[0]).tocsr()
+    free = np.setdiff1d(np.arange(matrix.shape[0]), plane_freedoms(mesh.fixed))
     load = np.zeros((matrix.shape[0], forces.shape[1]))
     load[: forces.shape[0]] = forces
     displacement = np.zeros_like(load)
-    displacement[free] = splu(matrix[free][:, free].tocsc(), **_SYMMETRIC).solve(load[free])
+    displacement[free] = symmetric_factors(matrix[free][:, free]).solve(load[free])
     return displacement
 
 
@@ -308,14 +294,12 @@ def _sound_ring(
     gear: SpurGear, poissons_ratio: float, size: MeshSize, refined: tuple[float, float] | None
 ) -> tuple[SectorMesh, Array]:
     """Mesh of a sector, and the stiffness of all others between its right and its left cut."""
-    from scipy.sparse.linalg import splu
-
     mesh = tooth_mesh(gear, held_radius(gear), size, refined)
-    matrix = _stiffness(mesh, poissons_ratio)
+    matrix = plain_stiffness(mesh, plane_stress(1.0, poissons_ratio)).tocsr()
     cuts, turn = _cut_freedoms(mesh)
-    inner = np.setdiff1d(np.arange(matrix.shape[0]), np.append(cuts, _freedoms(mesh.fixed)))
+    inner = np.setdiff1d(np.arange(matrix.shape[0]), np.append(cuts, plane_freedoms(mesh.fixed)))
     border = matrix[inner][:, cuts].toarray()
-    factors = splu(matrix[inner][:, inner].tocsc(), **_SYMMETRIC)
+    factors = symmetric_factors(matrix[inner][:, inner])
     sector = turn @ (matrix[cuts][:, cuts].toarray() - border.T @ factors.solve(border)) @ turn.T
     half = cuts.size // 2
     right, left = np.arange(half), np.arange(half, 2 * half)
@@ -338,8 +322,4 @@ def _cut_freedoms(mesh: SectorMesh) -> tuple[Index, Array]:
     turn = np.zeros((cuts.size, 2, cuts.size, 2))
     each = np.arange(cuts.size)
     turn[each, :, each] = np.stack([np.stack([x, y], -1), np.stack([-y, x], -1)], axis=1)
-    return _freedoms(cuts), turn.reshape(2 * cuts.size, -1)
-
-
-def _freedoms(nodes: Index) -> Index:
-    return np.ravel(2 * nodes[:, None] + np.arange(2))
+    return plane_freedoms(cuts), turn.reshape(2 * cuts.size, -1)

@@ -7,10 +7,11 @@ import os
 import sys
 import tempfile
 import zipfile
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping, Sequence
 from functools import cache as remember
+from functools import partial
 from pathlib import Path
-from typing import NamedTuple
+from typing import NamedTuple, TypeVar
 
 import numpy as np
 
@@ -27,6 +28,8 @@ from tribodyn.stiffness.teeth.tooth_compliance import (
     wind_up_compliance,
 )
 from tribodyn.types import Array, Mask
+
+Unit = TypeVar("Unit", bound=NamedTuple)
 
 #: Places along the flank.
 NODES = 25
@@ -171,11 +174,8 @@ def fe2d_influence(
     (True, 3)
     """
     wind_up = wind_up_to_take_off(gear, material, reference)
-    if neighbours < 1:
-        why, remedy = "Teeth in contact at the same time move one another", "Give 1 or more"
-        raise InputError(f"neighbours = {neighbours}", Argument("neighbours"), why, remedy)
-    neighbour_count = max(min(neighbours, (abs(gear.teeth) - 1) // 2), 1)
-    unit = _looked_up(gear, material.poissons_ratio, neighbour_count, size or MeshSize(), cache)
+    count = known_neighbours(gear, neighbours)
+    unit = _unit(gear, material.poissons_ratio, count, size or MeshSize(), cache)
     self_compliance = unit.self_compliance / material.youngs_modulus - wind_up
     if not np.all(self_compliance > 0.0):
         raise InputError(_too_thin(gear))
@@ -196,23 +196,25 @@ def _too_thin(gear: SpurGear) -> Problem:
     )
 
 
-def _looked_up(
+def known_neighbours(gear: SpurGear, wanted: int) -> int:
+    """Number of neighbours on each side, no more than there are."""
+    if wanted < 1:
+        why, remedy = "Teeth in contact at the same time move one another", "Give 1 or more"
+        raise InputError(f"neighbours = {wanted}", Argument("neighbours"), why, remedy)
+    return max(min(wanted, (abs(gear.teeth) - 1) // 2), 1)
+
+
+def _unit(
     gear: SpurGear, poissons_ratio: float, neighbours: int, size: MeshSize, cache: bool
 ) -> UnitCompliances:
-    if not cache:
-        return unit_compliances(gear, poissons_ratio, neighbours, size)
+    compute = partial(unit_compliances, gear, poissons_ratio, neighbours, size)
     name = _file_name(gear, poissons_ratio, neighbours, size)
-    arrays = load_arrays(name)
-    if arrays is not None and set(arrays) == set(UnitCompliances._fields):
-        cached = UnitCompliances(**arrays)
-        shapes = [rows.shape for rows in cached]
-        if shapes == [(NODES,), (NODES,), (neighbours, NODES, NODES)] and all(
-            np.all(np.isfinite(rows)) for rows in cached
-        ):
-            return cached
-    unit = unit_compliances(gear, poissons_ratio, neighbours, size)
-    store_arrays(name, unit._asdict())
-    return unit
+    shapes = [(NODES,), (NODES,), (neighbours, NODES, NODES)]
+
+    def fits(unit: UnitCompliances) -> bool:
+        return [rows.shape for rows in unit] == shapes
+
+    return looked_up(UnitCompliances, name, compute, fits) if cache else compute()
 
 
 def _file_name(gear: SpurGear, poissons_ratio: float, neighbours: int, size: MeshSize) -> str:
@@ -232,12 +234,13 @@ def _file_name(gear: SpurGear, poissons_ratio: float, neighbours: int, size: Mes
     return hashlib.sha256(text.encode()).hexdigest()
 
 
-@remember
-def _digest() -> str:
-    package_folder = Path(__file__).parent
-    return "".join(
-        source_digest(package_folder / folder, names.split()) for folder, names in _SOURCES
-    )
+def digest_of(module: str, sources: Sequence[tuple[str, str]]) -> str:
+    """Hash of modules by their folders, relative to that of the file of a module."""
+    folder = Path(module).parent
+    return "".join(source_digest(folder / part, names.split()) for part, names in sources)
+
+
+_digest = remember(partial(digest_of, __file__, _SOURCES))
 
 
 #: Environment variable that names another folder.
@@ -256,6 +259,24 @@ def cache_folder() -> Path:
         return Path.home() / "Library" / "Caches" / "tribodyn"
     shared = os.environ.get("XDG_CACHE_HOME")
     return (Path(shared) if shared else Path.home() / ".cache") / "tribodyn"
+
+
+def looked_up(
+    kind: type[Unit],
+    name: str,
+    compute: Callable[[], Unit],
+    fits: Callable[[Unit], bool] = lambda unit: True,
+    method: str = "fe2d",
+) -> Unit:
+    """Arrays from the folder, or computed and kept where it has none that fit."""
+    arrays = load_arrays(name, method)
+    if arrays is not None and set(arrays) == set(kind._fields):
+        cached = kind._make(arrays[field] for field in kind._fields)
+        if fits(cached) and all(np.all(np.isfinite(rows)) for rows in cached):
+            return cached
+    unit = compute()
+    store_arrays(name, unit._asdict(), method)
+    return unit
 
 
 def load_arrays(name: str, method: str = "fe2d") -> dict[str, Array] | None:

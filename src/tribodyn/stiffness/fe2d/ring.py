@@ -57,7 +57,8 @@ def element_stiffness(corners: Array, elasticity: Array) -> Array:
     return np.concatenate(parts)
 
 
-def _block(corners: Array, factor: Array) -> Array:
+def weighted_slopes(corners: Array) -> tuple[Array, Array]:
+    """Slopes (e, g, 2, 9) in x and y times roots (e, g) of the weights, and these roots."""
     local, weights = shape_gradients()
     jacobian = np.einsum("gdn,enx->egdx", local, corners)
     determinant = np.linalg.det(jacobian)
@@ -67,9 +68,13 @@ def _block(corners: Array, factor: Array) -> Array:
             why="Root and rim of this gear do not fit into the mesh",
             remedy="Give a larger bore-to-root distance, or choose another stiffness model",
         )
-    # slopes in x and y, scaled so that the square of the strain matrix is the integrand
     slopes = np.linalg.solve(jacobian, np.broadcast_to(local, (*jacobian.shape[:2], 2, 9)))
-    slopes = slopes * np.sqrt(determinant * weights)[..., None, None]
+    root = np.sqrt(determinant * weights)
+    return slopes * root[..., None, None], root
+
+
+def _block(corners: Array, factor: Array) -> Array:
+    slopes, _ = weighted_slopes(corners)  # the square of the strain matrix is the integrand
     strain = np.zeros((*slopes.shape[:2], 3, 9, 2))
     strain[..., 0, :, 0] = slopes[..., 0, :]
     strain[..., 1, :, 1] = slopes[..., 1, :]
@@ -84,37 +89,50 @@ def _block(corners: Array, factor: Array) -> Array:
 _TOGETHER = 4
 
 
-def sector_stiffness(mesh: SectorMesh, elasticity: Array) -> Any:
-    """Stiffness matrix of a sector, nothing held, cuts in polar directions."""
+def assembled(matrices: Array, freedoms: Index, size: int) -> Any:
+    """Sparse matrix of those (e, n, n) of elements with freedoms (e, n)."""
     from scipy.sparse import coo_array
 
-    matrices = element_stiffness(mesh.nodes[mesh.elements], elasticity)
-    freedoms = (2 * mesh.elements[:, :, None] + np.arange(2)).reshape(len(mesh.elements), 18)
     rows = np.broadcast_to(freedoms[:, :, None], matrices.shape)
     columns = np.broadcast_to(freedoms[:, None, :], matrices.shape)
-    size = 2 * len(mesh.nodes)
-    matrix = coo_array((matrices.ravel(), (rows.ravel(), columns.ravel())), shape=(size, size))
+    return coo_array((matrices.ravel(), (rows.ravel(), columns.ravel())), shape=(size, size))
+
+
+def symmetric_factors(matrix: Any) -> Any:
+    """Factors of a sparse symmetric positive matrix."""
+    from scipy.sparse.linalg import splu
+
+    options = {"SymmetricMode": True}
+    order = "MMD_AT_PLUS_A"
+    return splu(matrix.tocsc(), permc_spec=order, diag_pivot_thresh=0.0, options=options)
+
+
+def plain_stiffness(mesh: SectorMesh, elasticity: Array) -> Any:
+    """Stiffness matrix of a sector in x and y, nothing held."""
+    matrices = element_stiffness(mesh.nodes[mesh.elements], elasticity)
+    elements = plane_freedoms(mesh.elements.ravel()).reshape(len(mesh.elements), 18)
+    return assembled(matrices, elements, 2 * len(mesh.nodes))
+
+
+def sector_stiffness(mesh: SectorMesh, elasticity: Array) -> Any:
+    """Stiffness matrix of a sector, nothing held, cuts in polar directions."""
     turn = _polar_on_cuts(mesh)
-    return (turn.T @ matrix.tocsc() @ turn).tocsc()
+    return (turn.T @ plain_stiffness(mesh, elasticity).tocsc() @ turn).tocsc()
 
 
 def _polar_on_cuts(mesh: SectorMesh) -> Any:
     """Matrix from the freedoms, polar on the cuts, to x and y."""
-    from scipy.sparse import coo_array
-
     blocks = np.tile(np.eye(2), (len(mesh.nodes), 1, 1))
     cuts = np.concatenate([mesh.right_cut, mesh.left_cut])
     outward = mesh.nodes[cuts] / np.hypot(*mesh.nodes[cuts].T)[:, None]
     blocks[cuts, :, 0] = outward
     blocks[cuts, :, 1] = outward[:, ::-1] * [-1.0, 1.0]
-    place = 2 * np.arange(len(mesh.nodes))[:, None, None]
-    rows = np.broadcast_to(place + np.array([[0], [1]]), blocks.shape)
-    columns = np.broadcast_to(place + np.array([[0, 1]]), blocks.shape)
-    size = 2 * len(mesh.nodes)
-    return coo_array((blocks.ravel(), (rows.ravel(), columns.ravel())), shape=(size, size)).tocsc()
+    freedoms = np.arange(2 * len(mesh.nodes))
+    return assembled(blocks, freedoms.reshape(-1, 2), freedoms.size).tocsc()
 
 
-def _freedoms(nodes: Index) -> Index:
+def plane_freedoms(nodes: Index) -> Index:
+    """Freedoms in x and y of nodes (n,)."""
     return (2 * nodes[:, None] + np.arange(2)).ravel()
 
 
@@ -143,21 +161,14 @@ class Ring:
         )
         boundary = np.concatenate([mesh.right_cut, mesh.left_cut])
         inner = np.setdiff1d(np.arange(len(mesh.nodes)), np.concatenate([boundary, mesh.fixed]))
-        self._inner, self._boundary = _freedoms(inner), _freedoms(boundary)
+        self._inner, self._boundary = plane_freedoms(inner), plane_freedoms(boundary)
         self._coupling = matrix[self._inner][:, self._boundary].toarray()
         self._edge = matrix[self._boundary][:, self._boundary].toarray()
         self._core = matrix[self._inner][:, self._inner]
 
     @cached_property
     def _factors(self) -> Any:
-        from scipy.sparse.linalg import splu
-
-        return splu(
-            self._core.tocsc(),
-            permc_spec="MMD_AT_PLUS_A",
-            diag_pivot_thresh=0.0,
-            options={"SymmetricMode": True},
-        )
+        return symmetric_factors(self._core)
 
     @cached_property
     def _inside_per_cut(self) -> Array:

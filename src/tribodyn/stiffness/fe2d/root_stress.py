@@ -3,19 +3,14 @@
 from __future__ import annotations
 
 import math
+from functools import partial
 from typing import Final, NamedTuple
 
 import numpy as np
 
 from tribodyn.gear import SpurGear
 from tribodyn.stiffness.fe2d.flank_load import flank_loads
-from tribodyn.stiffness.fe2d.provider import (
-    _file_name,
-    _places,
-    held_radius,
-    load_arrays,
-    store_arrays,
-)
+from tribodyn.stiffness.fe2d.provider import _file_name, _places, held_radius, looked_up
 from tribodyn.stiffness.fe2d.ring import Ring, plane_stress, quadratic_shapes
 from tribodyn.stiffness.fe2d.tooth_mesh import MeshSize, SectorMesh, ToothSide, tooth_mesh
 from tribodyn.types import Array, Index
@@ -80,12 +75,8 @@ def root_stress(
     """Stress along the fillet, stored in the folder of computed arrays."""
     size = MeshSize(largest=round(fillet_radius / _ELEMENTS, 12))
     name = _file_name(gear, poissons_ratio, 1, size)
-    cached = load_arrays(name, "root")
-    if cached is not None and set(cached) == set(RootUnitStress._fields):
-        return RootUnitStress(**cached)
-    unit = computed_root_stress(gear, fillet_radius, poissons_ratio=poissons_ratio)
-    store_arrays(name, unit._asdict(), "root")
-    return unit
+    compute = partial(computed_root_stress, gear, fillet_radius, poissons_ratio=poissons_ratio)
+    return looked_up(RootUnitStress, name, compute, method="root")
 
 
 def at_places(unit: RootUnitStress, neighbour: int, curvature_radius: Array) -> Array:

@@ -200,7 +200,8 @@ def _even(length: float, size: float, least: int = 1) -> Array:
     return np.linspace(0.0, length, max(least, math.ceil(length / size)) + 1)
 
 
-def _with_middles(edges: Array) -> Array:
+def with_middles(edges: Array) -> Array:
+    """Edges with the middles between them."""
     full = np.empty(2 * edges.size - 1)
     full[::2] = edges
     full[1::2] = 0.5 * (edges[1:] + edges[:-1])
@@ -219,13 +220,13 @@ def tooth_mesh(
     bore = bore_radius / form.normal_module
     _check_rim(form, bore_radius)
     first = refined[1] if refined else size.flank
-    across = _with_middles(_across(side, size, first))
+    across = with_middles(_across(side, size, first))
     edges = _graded_edges(side, size, *refined) if refined else _flank_edges(side, size)
-    lengths, lowest = _with_middles(edges), float(edges[-2] - edges[-1]) if refined else math.inf
+    lengths, lowest = with_middles(edges), float(edges[-2] - edges[-1]) if refined else math.inf
     tooth = _tooth_points(side, lengths, across)
-    root = side.root_points(_with_middles(_root_shares(side, size, lowest)))
+    root = side.root_points(with_middles(_root_shares(side, size, lowest)))
     top = np.concatenate([root[:-1], tooth[:, -1], (root * [-1.0, 1.0])[-2::-1]])
-    body = _body_points(top, _with_middles(_body_levels(side, bore, size, lowest)), bore)
+    body = _body_points(top, with_middles(_body_levels(side, bore, size, lowest)), bore)
     return numbered_sector(abs(form.teeth), form.sign, tooth, body, lengths)
 
 

@@ -5,16 +5,15 @@ from __future__ import annotations
 import hashlib
 from dataclasses import astuple, dataclass
 from functools import cached_property
-from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
 
-from tribodyn.compiled import announce, source_digest
+from tribodyn.compiled import announce
 from tribodyn.gear import HypoidFlanks, Material
 from tribodyn.interrupt import single_blas_thread
 from tribodyn.progress import SILENT, Progress
-from tribodyn.stiffness.fe2d.provider import load_arrays, store_arrays
+from tribodyn.stiffness.fe2d.provider import digest_of, looked_up
 from tribodyn.stiffness.fe2d.ring import quadratic_shapes
 from tribodyn.stiffness.fe3d.bevel_sector import BevelSector, BevelSize
 from tribodyn.stiffness.fe3d.bevel_tooth import BevelTooth, Cone, gear_cone
@@ -211,28 +210,20 @@ def hypoid_influence(
     blank, size = flanks.blank, size or BevelSize()
     tooth = BevelTooth(flanks, gear)
     sector = BevelSector(tooth, material.poissons_ratio, size)
-    looked_up = _looked_up if cache else unit_flank_compliances
-    unit = looked_up(sector, progress=progress)
+    unit = (_unit if cache else unit_flank_compliances)(sector, progress=progress)
     module, modulus = blank.mean_normal_module, material.youngs_modulus
     return FlankInfluence(gear_cone(flanks, gear), unit, tooth.sense, module, modulus)
 
 
-def _looked_up(sector: BevelSector, progress: Progress) -> UnitFlankCompliances:
+def _unit(sector: BevelSector, progress: Progress) -> UnitFlankCompliances:
     flanks, gear = sector.tooth.flanks, sector.tooth.gear
     eased = flanks.ease_off if gear == "pinion" else None  # the pinion bears all of it
     key = (astuple(flanks.blank), gear, flanks.side, eased, sector.poissons_ratio)
-    digest = "".join(
-        source_digest(Path(__file__).parent / folder, names.split()) for folder, names in _SOURCES
-    )
-    text = repr((key, astuple(sector.size), digest))
+    text = repr((key, astuple(sector.size), digest_of(__file__, _SOURCES)))
+
+    def compute() -> UnitFlankCompliances:
+        announce(f"computing the compliance of the {gear} by finite elements, once, 10 seconds")
+        return unit_flank_compliances(sector, progress=progress)
+
     name = hashlib.sha256(text.encode()).hexdigest()
-    arrays = load_arrays(name, "fe3d")
-    if arrays is not None and set(arrays) == set(UnitFlankCompliances._fields):
-        unit = UnitFlankCompliances(**arrays)
-        nodes = unit.layer.size
-        if unit.compliance.shape[1:] == (nodes, nodes) and np.all(np.isfinite(unit.compliance)):
-            return unit
-    announce(f"computing the compliance of the {gear} by finite elements, once, 10 seconds")
-    unit = unit_flank_compliances(sector, progress=progress)
-    store_arrays(name, unit._asdict(), "fe3d")
-    return unit
+    return looked_up(UnitFlankCompliances, name, compute, method="fe3d")

@@ -10,7 +10,7 @@ import numpy as np
 
 from tribodyn.errors import ComputationError
 from tribodyn.stiffness.fe2d.ring import quadratic_shapes
-from tribodyn.stiffness.fe2d.tooth_mesh import SectorMesh, numbered_sector
+from tribodyn.stiffness.fe2d.tooth_mesh import SectorMesh, numbered_sector, with_middles
 from tribodyn.stiffness.fe3d.bevel_tooth import BevelTooth
 from tribodyn.stiffness.fe3d.sections import SolidMatrices, condensed, elasticity
 from tribodyn.stiffness.fe3d.sector import node_freedoms, turned_stiffness
@@ -54,11 +54,6 @@ class BevelSize:
     layer: float = 0.4
     depth: float = 2.7
     fillet: float = 0.3
-
-
-def _middles(edges: Array) -> Array:
-    """Edges with the middles between them."""
-    return np.interp(np.arange(2 * edges.size - 1), 2 * np.arange(edges.size), edges)
 
 
 @dataclass(frozen=True, eq=False)
@@ -153,7 +148,7 @@ class BevelSector:
         right, left = (
             np.concatenate([flank, arc], axis=1) for flank, arc in zip(flanks, upper, strict=True)
         )
-        across = _middles(np.linspace(0.0, 1.0, size.thickness + 1))
+        across = with_middles(np.linspace(0.0, 1.0, size.thickness + 1))
         first = np.zeros((stations, right.shape[1]))
         first[:, : self.up.shape[1]] = self.layer / self._per_angle
         first[:, self.up.shape[1] :] = first[:, self.up.shape[1] - 1 : self.up.shape[1]]
@@ -163,7 +158,7 @@ class BevelSector:
         tooth = np.concatenate([right[:, None], layer[:, None], inner_nodes], axis=1)
         top = np.concatenate([self._root(0), tooth[:, :, -1], self._root(1)], axis=1)
         steps = np.cumsum(np.concatenate([[0.0], 1.5 ** np.arange(size.body)]))
-        levels = _middles(steps / steps[-1])
+        levels = with_middles(steps / steps[-1])
         bottom = self.tooth.cone.height(self.tooth.cone.root, self.along) - self.depth
         body = np.repeat(top[:, :, None], levels.size, axis=2)
         body[..., 1] += levels * (bottom[:, None, None] - top[:, :, None, 1])

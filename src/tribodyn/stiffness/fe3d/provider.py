@@ -11,27 +11,28 @@ from __future__ import annotations
 import hashlib
 import math
 from functools import cache as remember
-from pathlib import Path
-from typing import Any, NamedTuple
+from functools import partial
+from typing import NamedTuple
 
 import numpy as np
 
-from tribodyn.compiled import announce, source_digest
-from tribodyn.errors import Argument, InputError
+from tribodyn.compiled import announce
 from tribodyn.gear import Material, SpurGear
 from tribodyn.interrupt import single_blas_thread
 from tribodyn.progress import SILENT, Progress
 from tribodyn.stiffness.fe2d.flank_load import nodal_weights
 from tribodyn.stiffness.fe2d.provider import (
+    digest_of,
     held_radius,
-    load_arrays,
-    store_arrays,
+    known_neighbours,
+    looked_up,
     wind_up_to_take_off,
 )
+from tribodyn.stiffness.fe2d.ring import assembled, symmetric_factors
 from tribodyn.stiffness.fe2d.tooth_mesh import MeshSize, SectorMesh, tooth_mesh
 from tribodyn.stiffness.fe3d.ring import Ring, solved_harmonics
 from tribodyn.stiffness.fe3d.sections import element_matrices
-from tribodyn.stiffness.fe3d.sector import Sector, SolidSize
+from tribodyn.stiffness.fe3d.sector import Sector, SolidSize, node_freedoms
 from tribodyn.stiffness.teeth.face_influence import FaceInfluence
 from tribodyn.stiffness.teeth.tooth_bending import load_point
 from tribodyn.types import Array
@@ -90,27 +91,13 @@ def _clamped_compliance(
     sector: Sector, mesh: SectorMesh, length: Array, half_width: float
 ) -> Array:
     """Compliance (f, f) of the tooth clamped at its foot under loads even over a long face."""
-    from scipy.sparse import coo_array
-    from scipy.sparse.linalg import splu
-
-    elements = mesh.tooth_elements()
+    elements, size = mesh.tooth_elements(), 3 * len(mesh.nodes)
     matrix = element_matrices(mesh.nodes[elements], sector.twist, sector.stress).none
-    freedoms = (3 * elements[:, :, None] + np.arange(3)).reshape(len(elements), 27)
-    rows = np.broadcast_to(freedoms[:, :, None], matrix.shape)
-    columns = np.swapaxes(rows, 1, 2)
-    size = 3 * len(mesh.nodes)
-    full = coo_array((matrix.ravel(), (rows.ravel(), columns.ravel())), shape=(size, size)).tocsc()
-    free = (3 * mesh.tooth[:, :-1].ravel()[:, None] + np.arange(3)).ravel()
+    full = assembled(matrix, node_freedoms(elements), size).tocsc()
+    free = node_freedoms(mesh.tooth[:, :-1].ravel())
     weights = nodal_weights(mesh, length, np.full(length.size, half_width))
     loads = (weights[:, None, :] * sector.load_direction(length).T).reshape(size, -1)[free]
-    options = {"SymmetricMode": True}
-    factors = splu(
-        full[free][:, free].tocsc(),
-        permc_spec="MMD_AT_PLUS_A",
-        diag_pivot_thresh=0.0,
-        options=options,
-    )
-    return np.asarray(loads.T @ factors.solve(loads))
+    return np.asarray(loads.T @ symmetric_factors(full[free][:, free]).solve(loads))
 
 
 class UnitFaceCompliances(NamedTuple):
@@ -224,12 +211,9 @@ def fe3d_influence(
     3
     """
     wind_up = wind_up_to_take_off(gear, material, reference) / gear.face_width
-    if neighbours < 1:
-        why, remedy = "Teeth in contact at the same time move one another", "Give 1 or more"
-        raise InputError(f"neighbours = {neighbours}", Argument("neighbours"), why, remedy)
-    neighbour_count = max(min(neighbours, (abs(gear.teeth) - 1) // 2), 1)
+    count = known_neighbours(gear, neighbours)
     sector = gear_sector(gear, material.poissons_ratio, size or SolidSize())
-    unit = _looked_up(sector, neighbour_count, cache, progress)
+    unit = _unit(sector, count, cache, progress)
     module = gear.normal_module
     compliance = unit.compliance / (material.youngs_modulus * module) - wind_up
     return FaceInfluence(
@@ -237,29 +221,25 @@ def fe3d_influence(
     )
 
 
-def _looked_up(
-    sector: Sector, neighbours: int, cache: bool, progress: Progress
-) -> UnitFaceCompliances:
+def _unit(sector: Sector, neighbours: int, cache: bool, progress: Progress) -> UnitFaceCompliances:
     if not cache:
         return unit_face_compliances(sector, neighbours, progress)
-    name = file_name(sector, neighbours)
-    arrays = load_arrays(name, "fe3d")
-    if arrays is not None and set(arrays) == set(UnitFaceCompliances._fields):
-        unit = UnitFaceCompliances(**arrays)
+
+    def compute() -> UnitFaceCompliances:
+        announce(
+            f"computing the compliance of {sector.count} teeth over their face, once on this "
+            "machine, 1 to 10 seconds"
+        )
+        return unit_face_compliances(sector, neighbours, progress)
+
+    def fits(unit: UnitFaceCompliances) -> bool:
         radii, functions = unit.curvature_radius.size, unit.knots.size - 4
-        shape = (neighbours + 1, radii, radii, functions, functions)
-        if unit.compliance.shape == shape and all(np.all(np.isfinite(rows)) for rows in unit):
-            return unit
-    announce(
-        f"computing the compliance of {sector.count} teeth over their face, once on this machine, "
-        "1 to 10 seconds"
-    )
-    unit = unit_face_compliances(sector, neighbours, progress)
-    store_arrays(name, unit._asdict(), "fe3d")
-    return unit
+        return unit.compliance.shape == (neighbours + 1, radii, radii, functions, functions)
+
+    return looked_up(UnitFaceCompliances, file_name(sector, neighbours), compute, fits, "fe3d")
 
 
-def file_name(sector: Sector, *settings: Any) -> str:
+def file_name(sector: Sector, *settings: object) -> str:
     """Hash of everything that the compliances for a Young's modulus of one depend on."""
     form, module = sector.form, sector.form.normal_module
     outline = (
@@ -276,9 +256,4 @@ def file_name(sector: Sector, *settings: Any) -> str:
     return hashlib.sha256(text.encode()).hexdigest()
 
 
-@remember
-def _digest() -> str:
-    package_folder = Path(__file__).parent
-    return "".join(
-        source_digest(package_folder / folder, names.split()) for folder, names in _SOURCES
-    )
+_digest = remember(partial(digest_of, __file__, _SOURCES))

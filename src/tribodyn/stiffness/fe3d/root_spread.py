@@ -18,7 +18,7 @@ import numpy as np
 from tribodyn.arrays.splines import bspline_slopes, bspline_values
 from tribodyn.compiled import source_digest
 from tribodyn.gear import SpurGear
-from tribodyn.stiffness.fe2d.provider import load_arrays, store_arrays
+from tribodyn.stiffness.fe2d.provider import looked_up
 from tribodyn.stiffness.fe2d.ring import quadratic_shapes
 from tribodyn.stiffness.fe2d.root_stress import fillet_nodes
 from tribodyn.stiffness.fe2d.tooth_mesh import MeshSize, ToothSide
@@ -159,9 +159,4 @@ def root_spread(gear: SpurGear, poissons_ratio: float) -> RootSpread:
     """Spread of the root stress of a gear along its face, stored on disk."""
     sector = gear_sector(gear, poissons_ratio, SIZE)
     name = file_name(sector, source_digest(Path(__file__).parent, ["root_spread"]))
-    cached = load_arrays(name, "spread")
-    if cached is not None and set(cached) == set(RootSpread._fields):
-        return RootSpread(**cached)
-    spread = computed_spread(sector)
-    store_arrays(name, spread._asdict(), "spread")
-    return spread
+    return looked_up(RootSpread, name, lambda: computed_spread(sector), method="spread")

@@ -17,9 +17,8 @@ from typing import NamedTuple
 import numpy as np
 
 from tribodyn.arrays.splines import bspline_slopes, bspline_values, clamped_knots
-from tribodyn.errors import ComputationError
 from tribodyn.interrupt import single_blas_thread
-from tribodyn.stiffness.fe2d.ring import quadratic_shapes
+from tribodyn.stiffness.fe2d.ring import quadratic_shapes, weighted_slopes
 from tribodyn.types import Array, Index
 
 
@@ -130,29 +129,12 @@ def _over_face(values: Array) -> Array:
 
 def element_matrices(corners: Array, twist: float, stress: Array) -> SectionMatrices:
     """Matrices (e, 27, 27) of nine-node quadrilaterals that turn anticlockwise along the face."""
-    value, slope = quadratic_shapes(_PLACES)
+    value, _ = quadratic_shapes(_PLACES)
     values = np.einsum("pa,qb->pqab", value, value).reshape(9, 9)
-    local = np.stack(
-        [
-            np.einsum("pa,qb->pqab", slope, value).reshape(9, 9),
-            np.einsum("pa,qb->pqab", value, slope).reshape(9, 9),
-        ],
-        axis=1,
-    )
-    weights = np.outer(_WEIGHTS, _WEIGHTS).ravel()
-    jacobian = np.einsum("gdn,enx->egdx", local, corners)
-    determinant = np.linalg.det(jacobian)
-    if determinant.min() <= 0.0:
-        raise ComputationError(
-            "the finite element mesh of the gear has an element that is turned inside out",
-            why="Root and rim of this gear do not fit into the mesh",
-            remedy="Give a larger bore-to-root distance, or choose another stiffness model",
-        )
-    root = np.sqrt(determinant * weights)[..., None]
-    slopes = np.linalg.solve(jacobian, np.broadcast_to(local, (*jacobian.shape[:2], 2, 9)))
+    slopes, root = weighted_slopes(corners)
     points = np.einsum("gn,enx->egx", values, corners)
-    along, across = slopes[..., 0, :] * root, slopes[..., 1, :] * root
-    still = values * root
+    along, across = slopes[..., 0, :], slopes[..., 1, :]
+    still = values * root[..., None]
     strain = np.zeros((*still.shape[:2], 6, 9, 3))
     strain[..., 0, :, 0] = strain[..., 5, :, 1] = along
     strain[..., 1, :, 1] = strain[..., 5, :, 0] = across
