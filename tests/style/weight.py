@@ -177,7 +177,7 @@ LINES: dict[str, int] = {
     "scope": 38,
     "signals": 1732,
     "stiffness": 5188,
-    "study": 20138,
+    "study": 20134,
     "surrogate": 767,
     "types": 13,
     "uncertainty": 288,

@@ -110,6 +110,8 @@ def test_load_cases_have_names_and_shares(reducer):
         ({"operation.speed": "5"}, "operation.speed", "has no unit"),
         ({"lubricant.temperature": "5"}, "lubricant.temperature", "has no unit"),
         ({"shafts.input.sections": [["5 mm"]]}, "shafts.input.sections", "diameters"),
+        ({"shafts.input.length": "5 mm"}, "shafts.input.length", "Write it in sections"),
+        ({"shafts.input.inner_diameter": 0.01}, "shafts.input.inner_diameter", "in sections"),
         ({"load_cases": [{"share": "120 %"}]}, "--set load_cases.1.share", "at most 1"),
         ({"load_cases": [{"share": 0.6}, {"share": 0.6}]}, "load_cases", "add up to 120 %"),
         ({"housing.mass_file": "missing.mtx"}, "housing.mass_file", "cannot be read"),

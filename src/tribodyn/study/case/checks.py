@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-import difflib
 from collections.abc import Callable, Iterator, Mapping
 from typing import TYPE_CHECKING, cast
 
-from tribodyn.errors import Problem
+from tribodyn.errors import Problem, did_you_mean
 from tribodyn.model import REQUIRED, Model, Option
 from tribodyn.study.case.gears import (
     HYPOID_KEYS,
@@ -288,11 +287,8 @@ def _assumed(inputs: UserInput, faulty: set[str]) -> KeyedProblems:
             candidates = [
                 k for k in inputs.typed if k not in faulty and k.split(".")[0] not in _METADATA
             ]
-            matches = difflib.get_close_matches(key, candidates, n=1)
             why = "[assumed] may mark only values that this case gives"
-            remedy = (
-                f'Did you mean "{matches[0]}"?' if matches else f"Give {key}, or remove the mark"
-            )
+            remedy = did_you_mean(key, candidates, f"Give {key}, or remove the mark")
             yield f"assumed.{key}", Problem(f'no value is given for "{key}"', "", why, remedy)
 
 

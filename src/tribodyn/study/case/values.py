@@ -20,7 +20,7 @@ import numpy as np
 
 from tribodyn import units
 from tribodyn.arguments.annotations import UnitRefusedError, magnitude, quantity_in, unit_text
-from tribodyn.errors import Problem, shortened
+from tribodyn.errors import Problem, did_you_mean, shortened
 from tribodyn.model import REQUIRED, Option
 from tribodyn.nomenclature import GEARS
 from tribodyn.scope import not_modelled
@@ -232,13 +232,10 @@ def _name(spec: Option, name: str, value: object) -> str:
     if isinstance(value, str) and value in names:
         return value
     entry, why = f"{name} = {written(value)}", f"Allowed: {', '.join(names)}"
-    matches = difflib.get_close_matches(str(value), names, n=1)
-    term = None if matches else find_term(str(value))
-    if term is not None:
-        raise FaultError(entry, term.meaning, f"Allowed: {', '.join(names)}")
-    raise FaultError(
-        entry, why, f'Did you mean "{matches[0]}"?' if matches else "Choose one of these"
-    )
+    remedy = did_you_mean(value, names)
+    if not remedy and (term := find_term(str(value))):
+        raise FaultError(entry, term.meaning, why)
+    raise FaultError(entry, why, remedy or "Choose one of these")
 
 
 def read_value(spec: Option, name: str, value: object) -> Any:
@@ -475,13 +472,17 @@ def unknown_key(
         return Problem(what, "", term.meaning, f"Write {term.key}" if term.key else "Remove it")
     if remedy := _gear_key_remedy(name, section):
         return Problem(what, "", why, remedy)
+    for key, option in section.specs() if section else ():
+        # A row of a list has it, as sections of a shaft have their length and diameter.
+        words = re.findall(r"\w+", option.meaning) if option.example.startswith("[[") else ()
+        if set(name.split("_")) <= set(words):
+            return Problem(what, "", why, f"Write it in {key}, such as {key} = {option.example}")
     if longer := [key for key in keys if key.endswith(f"_{name}")]:
         return Problem(what, "", why, f"Did you mean {' or '.join(longer)}?")
     if not isinstance(value, Mapping) and (tables := _tables_with(name)):
         inner_tables = [label for label in tables if label.startswith(f"{location[:-1]}.")]
         return Problem(what, "", why, f"It belongs to {' or '.join(inner_tables or tables)}")
-    matches = difflib.get_close_matches(name, keys, n=1, cutoff=0.6)
-    return Problem(what, "", why, f'Did you mean "{matches[0]}"?' if matches else "Remove it")
+    return Problem(what, "", why, did_you_mean(name, keys, "Remove it"))
 
 
 def _gear_key_remedy(name: str, section: type[Section] | None) -> str:
