@@ -237,25 +237,18 @@ def interpolated_peaks(
     right, left = (np.interp(move - offset[span], offset, size) for move in (1.0, -1.0))
     with np.errstate(divide="ignore"):
         slope = np.log(right) - np.log(left)
-    peaks = []
-    for top in tops:
-        before, middle, after = amplitude[top - 1 : top + 2]
-        away = 0.0
-        if max(before, after) > 1e-9 * middle and min(before, after) > 0.0:
-            away = float(np.interp(np.log(after / before), slope, offset[span]))
-        away = float(np.clip(away, -0.5, 0.5))
-        turned = None
-        if phase is not None:
-            turn = np.interp(-away, offset, np.unwrap(np.angle(gain)))
-            turned = float(np.angle(np.exp(1j * (phase[top] - turn))))
-        peaks.append(
-            Peak(
-                float(frequency[top] + away * (frequency[1] - frequency[0])),
-                float(middle / np.interp(-away, offset, size)),
-                turned,
-            )
-        )
-    return peaks
+    before, middle, after = (amplitude[tops + move] for move in (-1, 0, 1))
+    away = np.zeros(tops.size)
+    between = (np.maximum(before, after) > 1e-9 * middle) & (np.minimum(before, after) > 0.0)
+    away[between] = np.interp(np.log(after[between] / before[between]), slope, offset[span])
+    away = np.clip(away, -0.5, 0.5)
+    places = frequency[tops] + away * (frequency[1] - frequency[0])
+    sizes = middle / np.interp(-away, offset, size)
+    turns: list[float | None] = [None] * tops.size
+    if phase is not None:
+        turn = np.interp(-away, offset, np.unwrap(np.angle(gain)))
+        turns = np.angle(np.exp(1j * (phase[tops] - turn))).tolist()
+    return [Peak(*each) for each in zip(places.tolist(), sizes.tolist(), turns, strict=True)]
 
 
 @record
@@ -380,7 +373,9 @@ def distinct_peaks(lines: SignalSpectrum, count: int) -> list[Peak]:
             abs(peak.frequency - larger.frequency) > least_distance for larger in peaks
         ):
             peaks.append(peak)
-    return peaks[:count]
+        if len(peaks) == count:
+            break
+    return peaks
 
 
 def zoom_spectrum(

@@ -78,8 +78,8 @@ class ModalTangent:
         number = 0
         for part, slopes, weights in zip(parts, tangents, self._weights(parts), strict=True):
             h = (part.end - part.begin) * float(self.width[part.step])
-            left, middle, right = np.split(_advance(z, weights, slopes), 3, axis=1)
-            sums = sums + h * (left + 4.0 * middle + right) / 6.0
+            forces = _advance(z, weights, slopes).reshape(len(z), 3, -1)
+            sums = sums + h * (forces[:, 0] + 4.0 * forces[:, 1] + forces[:, 2]) / 6.0
             for entry in part.entries:
                 impulse = self._impulse(log[entry], part, z)
                 z, sums = z + impulse @ self.motion.input.T, sums + impulse
@@ -230,7 +230,7 @@ def _advance(z: ComplexArray, weights: _Weights, tangent: Array) -> Array:
     direct = later @ weights.direct
     right = later @ signals[:, r2:].T + direct[:, :s] @ first.T
     others = np.linalg.solve(np.eye(2 * s) - direct[:, s:], right)
-    forces = np.hstack((first, others.T))
+    forces = np.concatenate((first, others.T), axis=1)
     z *= weights.decay
     parts = z.view(float)
     parts += forces @ weights.force

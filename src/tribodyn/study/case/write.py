@@ -47,8 +47,8 @@ _MARKS_NOTE = """
 
 def case_text(case: Case, *, comments: bool = False) -> str:
     """Text of the file as it was read; with the meanings of all keys on request, or from Python."""
-    is_read = bool(case.source.comments) and not comments
-    return (_Writer if is_read else _Commentator)(case).text()
+    is_read = not comments and bool(case.source.comments)
+    return (_Writer(case, case.source.comments) if is_read else _Commentator(case)).text()
 
 
 def every_value(case: PairCase) -> Tree:
@@ -72,9 +72,8 @@ def every_value(case: PairCase) -> Tree:
 class _Writer:
     """Writer of tables in their order, with what the file has above and behind each key."""
 
-    def __init__(self, case: Case) -> None:
-        self._case, self._changed = case, changed_keys(case)
-        self._notes: Mapping[str, Note] = case.source.comments
+    def __init__(self, case: Case, notes: Mapping[str, Note]) -> None:
+        self._case, self._changed, self._notes = case, changed_keys(case), notes
         self._tables = with_values(case.data, case._spread)
 
     def text(self) -> str:
@@ -191,8 +190,8 @@ class _Commentator(_Writer):
     """Writer of tables with the meanings of their keys; what has no value is a comment."""
 
     def __init__(self, case: Case) -> None:
-        super().__init__(case)
-        self._notes, self._origins = {}, provenance(case)
+        super().__init__(case, {})
+        self._origins = provenance(case)
         self._derived = case._derived_values()
         self._tables = {k: v for k, v in case._every_value().items() if k != "assumed"}
         values = (key for key, origin in self._origins.items() if origin == DEFAULT_MARK)
