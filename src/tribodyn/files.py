@@ -42,6 +42,8 @@ LOCATION_ERRNOS = (
     errno.EISDIR,
 )  # fmt: skip
 _CANNOT_EXCHANGE = (errno.EINVAL, errno.ENOSYS, errno.ENOTSUP, errno.EPERM)
+#: A folder that is being written.
+_PARTIAL = re.compile(r"\.[\da-f]{8}\.part(?!\w)")
 #: On systems without locks, age at which an untouched temporary folder counts as abandoned [s].
 _ABANDONED_AFTER = 86400.0
 #: Files that an earlier version wrote before the report.
@@ -161,7 +163,8 @@ def atomic_write(target: Path, *, folder: bool = False) -> Iterator[Path]:
         try:
             content = partial if folder else partial / path.name
             yield content
-            _sync(partial)
+            if not _PARTIAL.search(str(path.parent)):  # what is inside another is synced with it
+                _sync(partial)
             _publish(content, path, partial.with_suffix(".old"))
         except OSError as error:
             if error.errno in LOCATION_ERRNOS:
@@ -210,15 +213,10 @@ def _sync(path: Path) -> None:
     for entry in path.iterdir() if path.is_dir() else ():
         _sync(entry)
     try:
-        descriptor = os.open(path, os.O_RDONLY)
-    except OSError:  # Windows opens no folders.
-        if path.is_dir():
-            return
-        raise
-    try:
-        os.fsync(descriptor)
-    finally:
-        os.close(descriptor)
+        _flush(path)
+    except PermissionError:  # Windows opens no folders.
+        if not path.is_dir():
+            raise
 
 
 def _publish(new: Path, path: Path, old: Path) -> None:
@@ -234,12 +232,12 @@ def _publish(new: Path, path: Path, old: Path) -> None:
             raise
         shutil.rmtree(old, ignore_errors=True)
     with suppress(OSError):
-        _sync_names(path.parent)
+        _flush(path.parent)
 
 
-def _sync_names(folder: Path) -> None:
-    """Flush the entries of a folder to disk, not their content."""
-    descriptor = os.open(folder, os.O_RDONLY)
+def _flush(path: Path) -> None:
+    """Flush a file, or the names in a folder, to disk."""
+    descriptor = os.open(path, os.O_RDONLY)
     try:
         os.fsync(descriptor)
     finally:

@@ -236,3 +236,24 @@ def test_two_threads_do_not_write_one_folder(tmp_path: Path) -> None:
         _write_second(tmp_path / "r")
     assert len(failures) == 1
     assert "in use" in str(failures[0])
+
+
+def test_what_is_written_inside_another_is_flushed_once(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    flushed: list[int] = []
+    flush = os.fsync
+
+    def counted(descriptor: int) -> None:
+        flushed.append(os.fstat(descriptor).st_ino)
+        flush(descriptor)
+
+    monkeypatch.setattr(os, "fsync", counted)
+    with atomic_write(tmp_path / "result", folder=True) as folder:
+        with atomic_write(folder / "figures.csv") as partial:
+            partial.write_text("1, 2")
+        assert partial.name == "figures.csv"
+    place = tmp_path / "result" / "figures.csv"
+    assert place.read_text() == "1, 2"
+    assert flushed.count(place.stat().st_ino) == 1
+    assert place.parent.stat().st_ino in flushed
