@@ -187,15 +187,11 @@ class TribodynError(Exception):
     ) -> None:
         if isinstance(problems, str):
             problems = Problem(problems, where, why, remedy)
-        self.problems: tuple[Problem, ...] = (
-            (problems,) if isinstance(problems, Problem) else tuple(problems)
-        )
-        more = len(self.problems) - _MOST
-        if more > 0:
-            remainder = Problem(
-                f"{more} more problems are not listed", "", "", "Correct these first"
-            )
-            self.problems = (*self.problems[:_MOST], remainder)
+        listed = (problems,) if isinstance(problems, Problem) else tuple(problems)
+        if len(listed) > _MOST:
+            rest = f"{len(listed) - _MOST} more problems are not listed"
+            listed = (*listed[:_MOST], Problem(rest, remedy="Correct these first"))
+        self.problems = listed
         super().__init__("\n".join(str(problem) for problem in self.problems))
 
 
@@ -394,14 +390,9 @@ def _check(
     bad = ~((np.abs(array) < ENDLESS) & holds(array))
     if np.any(bad):
         worst = np.atleast_1d(array)[np.atleast_1d(bad)][0]
-        raise InputError(
-            Problem(
-                what=f"{name} = {worst:.6g} {unit}".rstrip(),
-                where=Argument(name),
-                why=f"{name} must be finite and {limit}",
-                remedy=remedy or _IN_SI.get(unit, f"Give a number {limit}"),
-            )
-        )
+        remedy = remedy or _IN_SI.get(unit, f"Give a number {limit}")
+        what, why = f"{name} = {worst:.6g} {unit}".rstrip(), f"{name} must be finite and {limit}"
+        raise InputError(what, Argument(name), why, remedy)
 
 
 def require_positive(name: str, value: object, unit: str = "", *, remedy: str = "") -> None:
@@ -489,6 +480,15 @@ def require_one_of(name: str, value: object, choices: Iterable[str]) -> str:
         what, why = f'{name} = "{value}"', f"Known: {', '.join(allowed)}"
         raise InputError(what, f"argument {name}", why, "Choose one of these")
     return value
+
+
+def no_such(
+    kind: str, name: str, names: Iterable[str], where: Argument | str = "", remedy: str = ""
+) -> Problem:
+    """Problem of a name that is none of those known, with the closest one."""
+    known = list(names)
+    why, otherwise = f"Known: {', '.join(known) or 'none'}", remedy or "Choose one of these"
+    return Problem(f'there is no {kind} "{name}"', where, why, did_you_mean(name, known, otherwise))
 
 
 def did_you_mean(name: object, names: Iterable[str], otherwise: str = "") -> str:

@@ -10,6 +10,7 @@ from __future__ import annotations
 import json
 import math
 import zipfile
+from collections import Counter
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field
 from io import BytesIO
@@ -401,7 +402,4 @@ def version_remark(file: RexsFile) -> str:
 
 def kinds(components: Iterable[Component]) -> dict[str, int]:
     """Number of components of each kind."""
-    counts: dict[str, int] = {}
-    for component in components:
-        counts[component.kind] = counts.get(component.kind, 0) + 1
-    return dict(sorted(counts.items()))
+    return dict(sorted(Counter(component.kind for component in components).items()))

@@ -12,7 +12,7 @@ from types import MappingProxyType
 
 import numpy as np
 
-from tribodyn.errors import InputError, Problem, did_you_mean
+from tribodyn.errors import InputError, Problem, no_such
 from tribodyn.machine.bearing import Bearing
 from tribodyn.machine.fields import check_name, check_number, quoted
 from tribodyn.machine.gear import Gear
@@ -138,8 +138,7 @@ class Machine:
         ]:
             raise InputError(problems)
         for name, stage in self.planets.items():
-            names = stage.mesh_names(name).values()
-            if {mesh for kind in names for mesh in kind} <= {*self.meshes}:
+            if stage._meshes(name) <= {*self.meshes}:
                 continue  # a copy, with its parts
             for group, parts in stage.parts(name, self.gears).items():
                 present = getattr(self, group)
@@ -428,6 +427,4 @@ def _parts(group: str, parts: object, kind: type) -> ByName:
 
 def _missing(where: str, name: str, kind: str, parts: Iterable[str]) -> Iterable[Problem]:
     if name not in (names := list(parts)):
-        listed = ", ".join(names) or "none"
-        remedy = did_you_mean(name, names, f"Add the {kind}, or correct the name")
-        yield Problem(f'there is no {kind} "{name}"', where, f"Known: {listed}", remedy)
+        yield no_such(kind, name, names, where, f"Add the {kind}, or correct the name")

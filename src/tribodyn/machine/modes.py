@@ -10,7 +10,7 @@ from tribodyn.arrays.linear_algebra import leading
 from tribodyn.dynamics.equations.system import Contact, System
 from tribodyn.dynamics.linear.linear_system import linear_system
 from tribodyn.dynamics.linear.natural_modes import frequencies_at, natural_modes
-from tribodyn.errors import Argument, InputError
+from tribodyn.errors import Argument, InputError, no_such
 from tribodyn.machine.assembly import mesh_contacts, system
 from tribodyn.machine.machine import Machine
 from tribodyn.machine.mesh import mean_over_phase
@@ -90,8 +90,7 @@ class MachineModes(Record):
         """
         stages = self.structure.machine.planets
         if name not in stages:
-            why = f"Stages: {', '.join(stages) or 'none'}"
-            raise InputError(f'there is no stage "{name}"', Argument("name"), why, "Name one")
+            raise InputError(no_such("stage", name, stages, Argument("name")))
         return modes_of_stage(self, name)
 
     def __repr__(self) -> str:

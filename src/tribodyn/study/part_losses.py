@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from tribodyn.errors import InputError, Problem, did_you_mean
+from tribodyn.errors import InputError, Problem, no_such
 from tribodyn.machine.graph.directions import center_distance
 from tribodyn.machine.plane_law import mean_in_space
 from tribodyn.nomenclature import GEARS
@@ -53,9 +53,7 @@ def _unknown(case: MachineCase) -> Iterator[tuple[str, Problem]]:
     for group, parts in (("shafts", case.shafts), ("bearings", case.bearings)):
         for name in vars(getattr(case.losses, group)):
             if name not in parts:
-                remedy = did_you_mean(name, [*parts], "Name one of these, or add it")
-                why = f"Known: {', '.join(parts) or 'none'}"
-                problem = Problem(f'there is no {group[:-1]} "{name}"', "", why, remedy)
+                problem = no_such(group[:-1], name, parts, "", "Name one of these, or add it")
                 yield f"losses.{group}.{name}", problem
 
 

@@ -14,7 +14,7 @@ import numpy as np
 from tribodyn.errors import (
     Argument,
     InputError,
-    did_you_mean,
+    no_such,
     real_numbers,
     require_positive,
     shortened,
@@ -99,9 +99,7 @@ def columns_of(data: Any, names: Sequence[str], argument: str) -> Array:
     rows = max((shape[0] for shape in shapes.values() if len(shape) == 1), default=0)
     for name in map(str, listed):
         if name not in shapes:
-            remedy = did_you_mean(name, shapes, f"It has {', '.join(shapes)}")
-            what, why = f'no column "{name}"', "Names are those of the columns"
-            raise InputError(what, Argument(argument), why, remedy)
+            raise InputError(no_such("column", name, shapes, Argument(argument)))
     return np.stack([_column(table[name], str(name), rows) for name in listed], axis=1)
 
 

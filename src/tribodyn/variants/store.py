@@ -14,6 +14,7 @@ import os
 import re
 import time
 import zlib
+from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping
 from contextlib import suppress
 from dataclasses import dataclass, field, replace
@@ -281,12 +282,11 @@ def stages_in(values: ByName) -> list[ByName]:
 
 def reasons(chunks: Iterable[ByName]) -> tuple[int, dict[str, int]]:
     """Number of failed members, and number by reason."""
-    failed, counts = 0, dict[str, int]()
+    failed, counts = 0, Counter[str]()
     for facts in chunks:
         failed += facts["failed"]
-        for reason, count in facts["reasons"].items():
-            counts[reason] = counts.get(reason, 0) + count
-    return failed, dict(sorted(counts.items(), key=lambda item: -item[1])[:_REASONS])
+        counts.update(facts["reasons"])
+    return failed, dict(counts.most_common(_REASONS))
 
 
 class Store:
@@ -361,13 +361,11 @@ class Store:
                 path.parent.mkdir(exist_ok=True)
             with atomic_write(path) as partial:
                 partial.write_bytes(result.content)
-        counts: dict[str, int] = {}
-        for reason in filter(None, result.failed):
-            counts[reason] = counts.get(reason, 0) + 1
+        counts = Counter(filter(None, result.failed))
         facts = {
             "members": len(result.failed),
             "failed": sum(counts.values()),
-            "reasons": dict(sorted(counts.items(), key=lambda item: -item[1])[:_REASONS]),
+            "reasons": dict(counts.most_common(_REASONS)),
             "figures": result.figures,
             "crc": zlib.crc32(result.content),
             "time": time.time(),

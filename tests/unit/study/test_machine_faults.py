@@ -210,7 +210,7 @@ def test_a_rigid_seat_does_not_accelerate() -> None:
         result().recording("bearings.A.acceleration_y", 0.1)
     with pytest.raises(InputError, match=r"The sensors are bearings\.B"):
         result().recording("bearings.A.accel_y", 0.1)
-    with pytest.raises(InputError, match="The shafts are input, output"):
+    with pytest.raises(InputError, match="Known: input, output"):
         result().recording("bearings.A.force_y", 0.1, tacho="middle")
 
 

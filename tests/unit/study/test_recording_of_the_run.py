@@ -192,7 +192,7 @@ def test_a_tacho_is_on_either_gear_of_a_pair() -> None:
     turns = {gear: np.diff(at).mean() / 25_600.0 for gear, at in edges.items()}
     assert turns["pinion"] == pytest.approx(1.0 / 15.0, rel=1e-3)
     assert turns["wheel"] == pytest.approx(1.5 / 15.0, rel=1e-3)
-    with pytest.raises(InputError, match="The shafts are pinion, wheel"):
+    with pytest.raises(InputError, match="Known: pinion, wheel"):
         result.recording("mesh_force", 0.1, tacho="input")
     with pytest.raises(InputError, match="of a sensor on the ring"):
         result.recording("mesh_force", 0.1, sensor_angle=0.3)

@@ -36,7 +36,7 @@ from tribodyn.dynamics.orbits.search import find_orbit
 from tribodyn.dynamics.orbits.solution_branch import Branch, SpecialPoint
 from tribodyn.dynamics.time.response import Response, build_response, sample_extremes
 from tribodyn.dynamics.time.simulate import read_start
-from tribodyn.errors import ComputationError, InputError, quiet, require_positive, warn
+from tribodyn.errors import ComputationError, InputError, no_such, quiet, require_positive, warn
 from tribodyn.progress import SILENT, Progress
 from tribodyn.types import Array
 
@@ -354,9 +354,8 @@ def signal_names(system: System, wanted: Sequence[str] | None) -> tuple[str, ...
         return deflections[:1] or tuple(system.names)
     for name in wanted:
         if name not in (*deflections, *system.names):
-            why = f"Known: {', '.join((*deflections, *system.names))}"
-            remedy = "Choose one of these"
-            raise InputError(f'no signal is called "{name}"', "argument signals", why, remedy)
+            names = (*deflections, *system.names)
+            raise InputError(no_such("signal", name, names, "argument signals"))
     return tuple(wanted)
 
 

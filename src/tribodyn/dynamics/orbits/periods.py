@@ -21,6 +21,7 @@ from tribodyn.dynamics.orbits.search import (
     approach_orbit,
     find_orbit,
     finish_orbit,
+    is_stable,
     motion_size,
 )
 from tribodyn.interrupt import refuse_stopped, stop_flag
@@ -111,10 +112,6 @@ def _recurrence(points: Array) -> Array:
     )
 
 
-def _stable(orbit: OrbitPoint, tolerance: float) -> bool:
-    return orbit.error <= tolerance and orbit.attracts
-
-
 def _finish(
     first: OrbitMap, periods: int, y: Array, tolerance: float, start_periods: int = 1
 ) -> tuple[OrbitMap, OrbitPoint]:
@@ -127,7 +124,7 @@ def find_any_orbit(first: OrbitMap, y: Array, tolerance: float) -> AnyOrbit:
     """Search for a stable orbit of 1 to 8 mesh cycles, the shortest that the motion approaches."""
     if first.affine:
         orbit = finish_orbit(first, y, tolerance)
-        return AnyOrbit(first, orbit, _stable(orbit, tolerance), np.zeros(0), first.cycles)
+        return AnyOrbit(first, orbit, is_stable(orbit, tolerance), np.zeros(0), first.cycles)
     start, size = y, motion_size(first, first.follow(y)[1])
     attractor, y = approach_orbit(first, y, tolerance)
     if attractor is not None:
@@ -142,7 +139,7 @@ def find_any_orbit(first: OrbitMap, y: Array, tolerance: float) -> AnyOrbit:
         for periods in np.flatnonzero(recurrence <= _NEAR) + 1:
             mapping, trial = _finish(first, int(periods), y, tolerance)
             cycles += mapping.cycles
-            if _stable(trial, tolerance):
+            if is_stable(trial, tolerance):
                 count = shortest_period(mapping, mapping.record(trial.point)[0])
                 if count < periods:
                     mapping, trial = _finish(first, count, trial.point, tolerance, int(periods))
@@ -150,7 +147,7 @@ def find_any_orbit(first: OrbitMap, y: Array, tolerance: float) -> AnyOrbit:
                 trial.search = first.cycles + cycles - mapping.cycles
                 return AnyOrbit(mapping, trial, True, recurrence, first.cycles + cycles)
     orbit = find_orbit(first, start, tolerance, patience=())
-    return AnyOrbit(first, orbit, _stable(orbit, tolerance), recurrence, first.cycles + cycles)
+    return AnyOrbit(first, orbit, is_stable(orbit, tolerance), recurrence, first.cycles + cycles)
 
 
 #: Systems of a batch: for fewer the kernel of blocks is not compiled.

@@ -244,7 +244,8 @@ def finish_orbit(
     return best
 
 
-def _good(orbit: OrbitPoint, tolerance: float) -> bool:
+def is_stable(orbit: OrbitPoint, tolerance: float) -> bool:
+    """Whether an orbit is certified, and nearby motions do not leave it."""
     return orbit.error <= tolerance and orbit.attracts
 
 
@@ -261,7 +262,7 @@ def _in_one_march(mapping: OrbitMap, y: Array, tolerance: float) -> OrbitPoint |
     motion = mapping.multipliers(matrix), states, slopes
     start = OrbitPoint(y, image - y, matrix, motion_size(mapping, states), *motion, linear=True)
     orbit = finish_orbit(mapping, y + start.correction, tolerance, start)
-    if orbit.linear and _good(orbit, tolerance):
+    if orbit.linear and is_stable(orbit, tolerance):
         return orbit if watch.stays(orbit.states, slopes, matrix, y - orbit.point) else None
     return None
 
@@ -279,7 +280,7 @@ def _settle(
         if candidate is None and touching and count in _TRIES:
             before = mapping.cycles
             candidate = finish_orbit(mapping, y, tolerance)
-            if not (_good(candidate, tolerance) and watch.in_touch(candidate.states)):
+            if not (is_stable(candidate, tolerance) and watch.in_touch(candidate.states)):
                 candidate = None
             else:
                 spent = mapping.cycles - before
@@ -306,7 +307,7 @@ def approach_orbit(
     y, settled, attractor = _settle(mapping, y, periods, tolerance, unstable)
     if attractor is None and settled:
         orbit = finish_orbit(mapping, y, tolerance)
-        attractor = orbit if _good(orbit, tolerance) else None
+        attractor = orbit if is_stable(orbit, tolerance) else None
     return attractor, y
 
 
@@ -335,7 +336,7 @@ def find_orbit(
     orbit = _attempt(mapping, y, _SETTLE, tolerance, None)
     generator = np.random.default_rng(0)
     for periods in patience:
-        if _good(orbit, tolerance):
+        if is_stable(orbit, tolerance):
             break
         unstable = orbit if orbit.error <= tolerance else None
         # A motion leaves an unstable orbit, so the search continues from a point near it.

@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from tribodyn.drawing import draw
 from tribodyn.dynamics.time.ensemble import LaneStatistics
-from tribodyn.errors import InputError, require_positive
+from tribodyn.errors import InputError, no_such, require_positive
 from tribodyn.record import Parts, Record, fact, quantity, record
 from tribodyn.types import Array, Index, Mask
 
@@ -366,8 +366,7 @@ class RunUp(Record):
         if name in self.output_names:
             return self.output[:, self.output_names.index(name)], self.output_unit
         signals = ("deflection", "contact_force", *self.names, *self.output_names)
-        why = f"The signals are {', '.join(signals)}"
-        raise InputError(f'no signal "{name}"', "argument signal", why, "Choose one of these")
+        raise InputError(no_such("signal", name, signals, "argument signal"))
 
     def __repr__(self) -> str:
         """One line."""

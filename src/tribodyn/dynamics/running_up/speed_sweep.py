@@ -15,7 +15,7 @@ from tribodyn.dynamics.running_up.run_up import read_outputs
 from tribodyn.dynamics.running_up.run_up_tables import Tables, systems_by_frequency
 from tribodyn.dynamics.running_up.speed_sweep_follow import Followed, Follower, SpeedFamily, follow
 from tribodyn.dynamics.time.simulate import read_start
-from tribodyn.errors import InputError, require_positive
+from tribodyn.errors import InputError, no_such, require_positive
 from tribodyn.interrupt import in_threads
 from tribodyn.progress import SILENT, Progress
 from tribodyn.record import Parts, Record, fact, quantity, record
@@ -361,8 +361,7 @@ class SpeedSweep(Record):
             If there is no such signal.
         """
         if signal not in self.signals:
-            why = f"The signals are {', '.join(self.signals)}"
-            raise InputError(f'no signal "{signal}"', "argument signal", why, "Choose one of these")
+            raise InputError(no_such("signal", signal, self.signals, "argument signal"))
         return self.signals.index(signal)
 
     def __repr__(self) -> str:

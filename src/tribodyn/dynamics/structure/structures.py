@@ -162,15 +162,18 @@ def _supports(default: object) -> dict[str, Option]:
     return {
         "bearing_stiffness": number(default, 1e3, 1e13, _GUARD, of="bearing_stiffness", **pair),
         "bearing_damping": number(None, 0.0, 1e9, _GUARD, of="bearing_damping", **pair),
-        "bearing_damping_ratio": number(
-            0.02,
-            0.0,
-            2.0,
-            "supports lie between 0.01 and 0.1",
-            meaning="damping of each gear on its bearing over its critical value",
-            absent=_FIXED,
-        ),
+        "bearing_damping_ratio": _ratio(0.02, "of each gear on its bearing", _FIXED),
     }
+
+
+def _ratio(default: float, purpose: str, absent: str) -> Option:
+    """Damping ratio of supports."""
+    origin, meaning = (
+        "supports lie between 0.01 and 0.1",
+        f"damping {purpose} over its critical value",
+    )
+    option: Option = number(default, 0.0, 2.0, origin, meaning=meaning, absent=absent)
+    return option
 
 
 def pair_values(value: Support | None) -> Pair:
@@ -243,16 +246,16 @@ def _shaft_options() -> dict[str, Option]:
     """Options and defaults of the benchmark rig, first elastic mode at 492 Hz; none is printed."""
     return {
         f"shaft{shaft}_{name}": number(
-            default,
+            usual,
             low,
             high,
             _GUARD,
-            of=quantity,
-            meaning=meaning.format(shaft, _BETWEEN[shaft]),
+            of=of,
+            meaning=text.format(shaft, _BETWEEN[shaft]),
             absent=_NO_SHAFTS,
         )
         for shaft in (1, 2)
-        for name, (default, low, high, quantity, meaning) in _SHAFT.items()
+        for name, (usual, low, high, of, text) in _SHAFT.items()
     }
 
 
@@ -295,47 +298,43 @@ def _fzg12(
     )
 
 
+def _of_supports(
+    usual: object, quantities: Mapping[str, tuple[str, str]], absent: str
+) -> dict[str, Option]:
+    """Options of supports in space: quantity of each of their fields, and what it is of."""
+    options = {}
+    for name, (of, purpose) in quantities.items():
+        value = getattr(usual, name)
+        each = None if np.ndim(value) == 0 else tuple(float(v) for v in value)
+        default = value if each is None else (each[0] if each[0] == each[1] else each)
+        inertia = of == "moment_of_inertia"
+        limits = (1e-14, 1e7) if inertia else (1.0, 1e13)
+        text = f"{'moment of inertia' if inertia else 'stiffness'} {purpose}"
+        pair = each is not None or value is None
+        options[name] = number(
+            default, *limits, _GUARD, of=of, meaning=text, absent=absent, pair=pair
+        )
+    return options
+
+
+_IN_PLANE = "That model keeps the gears in one plane"
+
+
 def _spatial_options() -> dict[str, Option]:
     """Options of gears that move in space: those of :class:`SpatialSupports`."""
-    usual, absent = SpatialSupports(), "That model keeps the gears in one plane"
-    springs = {
+    usual = SpatialSupports()
+    quantities = {
         "bearing_stiffness": ("bearing_stiffness", "of the supports across the axis of each gear"),
         "axial_bearing_stiffness": ("bearing_stiffness", "of the supports along the axis"),
         "tilting_stiffness": ("shaft_stiffness", "of the supports against tilting of each gear"),
+        "diametral_moment_of_inertia": (
+            "moment_of_inertia",
+            "of each gear about an axis perpendicular to its own; half the polar one where left "
+            "out",
+        ),
     }
-    options = {
-        name: number(
-            float(np.asarray(getattr(usual, name))[0]),
-            1.0,
-            1e13,
-            _GUARD,
-            of=of,
-            meaning=f"stiffness {purpose}",
-            absent=absent,
-            pair=True,
-        )
-        for name, (of, purpose) in springs.items()
-    }
-    options["diametral_moment_of_inertia"] = number(
-        None,
-        1e-14,
-        1e7,
-        _GUARD,
-        of="moment_of_inertia",
-        meaning="moment of inertia of each gear about an axis perpendicular to its own; half the "
-        "polar one where left out",
-        absent=absent,
-        pair=True,
-    )
-    options["bearing_damping_ratio"] = number(
-        usual.bearing_damping_ratio,
-        0.0,
-        2.0,
-        "supports lie between 0.01 and 0.1",
-        meaning="damping of each support over its critical value",
-        absent=absent,
-    )
-    return options
+    ratio = _ratio(usual.bearing_damping_ratio, "of each support", _IN_PLANE)
+    return {**_of_supports(usual, quantities, _IN_PLANE), "bearing_damping_ratio": ratio}
 
 
 @STRUCTURES.define(
@@ -354,7 +353,7 @@ _OWN_AXES = "That model has no crossed axes"
 
 def _hypoid_options() -> dict[str, Option]:
     """Options of shafts and bearings in space: those of :class:`HypoidSupports`, in its order."""
-    quantities: dict[str, Any] = {
+    quantities = {
         "engine_moment_of_inertia": ("moment_of_inertia", "of what drives the pinion's shaft"),
         "load_moment_of_inertia": ("moment_of_inertia", "of what the wheel's shaft drives"),
         "diametral_moment_of_inertia": (
@@ -369,34 +368,12 @@ def _hypoid_options() -> dict[str, Option]:
             "against twist from engine to pinion and from wheel to load",
         ),
     }
-    usual, options = HypoidSupports(), {}
-    for name, (of, purpose) in quantities.items():
-        value = getattr(usual, name)
-        each = None if np.ndim(value) == 0 else tuple(float(v) for v in value)
-        default = value if each is None else (each[0] if each[0] == each[1] else each)
-        low, high = (1e-14, 1e7) if of == "moment_of_inertia" else (1.0, 1e13)
-        kind = "moment of inertia" if of == "moment_of_inertia" else "stiffness"
-        options[name] = number(
-            default,
-            low,
-            high,
-            _GUARD,
-            of=of,
-            meaning=f"{kind} {purpose}",
-            absent=_OWN_AXES,
-            pair=each is not None,
-        )
-    for part, purpose in (("bearing", "of each support"), ("shaft", "of each shaft")):
-        name = f"{part}_damping_ratio"
-        options[name] = number(
-            getattr(usual, name),
-            0.0,
-            2.0,
-            "supports lie between 0.01 and 0.1",
-            meaning=f"damping {purpose} over its critical value",
-            absent=_OWN_AXES,
-        )
-    return options
+    usual = HypoidSupports()
+    return {
+        **_of_supports(usual, quantities, _OWN_AXES),
+        "bearing_damping_ratio": _ratio(usual.bearing_damping_ratio, "of each support", _OWN_AXES),
+        "shaft_damping_ratio": _ratio(usual.shaft_damping_ratio, "of each shaft", _OWN_AXES),
+    }
 
 
 @STRUCTURES.define(

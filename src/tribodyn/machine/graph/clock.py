@@ -7,7 +7,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from fractions import Fraction
 
-from tribodyn.errors import InputError, did_you_mean
+from tribodyn.errors import InputError, no_such
 
 #: Meshes share a phase if each has no more cycles in a period of it.
 _SHARED = 4
@@ -53,9 +53,7 @@ class Clock:
         """
         for shaft in shafts:
             if shaft not in self.turns:
-                why = f"Known: {', '.join(self.turns)}"
-                remedy = did_you_mean(shaft, self.turns, "Choose one of these")
-                raise InputError(f'there is no shaft "{shaft}"', "argument shafts", why, remedy)
+                raise InputError(no_such("shaft", shaft, self.turns, "argument shafts"))
         return self._longer(math.lcm(*(self.turns[shaft].denominator for shaft in shafts)))
 
     def with_whole_periods(self, periods: Mapping[str, int]) -> Clock:

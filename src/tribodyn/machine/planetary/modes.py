@@ -155,9 +155,8 @@ def plane_rows(structure: MachineStructure, stage: str) -> dict[str, Array]:
     """Displacements x, y and u of each member of a stage per coordinate, (3, n) each."""
     machine = structure.machine
     parts = machine.planets[stage]
-    names = parts.mesh_names(stage)
     radii: dict[str, float] = {}
-    for mesh in (mesh for kind in names.values() for mesh in kind):
+    for mesh in parts._meshes(stage):
         radii |= zip(machine.meshes[mesh].gears, machine.directions[mesh].base_radius, strict=True)
     pin = next(b for n, b in machine.bearings.items() if n == f"{stage}_pin1")
     place = machine.placement.shafts

@@ -276,6 +276,10 @@ class PlanetaryStage:
         kinds = mesh_kinds(self.planet_type).items()
         return {m: tuple(f"{name}_{kind}{i}" for i in numbers) for m, kind in kinds}
 
+    def _meshes(self, name: str) -> set[str]:
+        """Names of all its meshes."""
+        return {mesh for names in self.mesh_names(name).values() for mesh in names}
+
     def parts(self, name: str, gears: Mapping[str, Gear]) -> dict[str, dict[str, Any]]:
         """Build the shafts, gears, meshes and bearings of the planets.
 

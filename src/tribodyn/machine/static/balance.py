@@ -19,6 +19,7 @@ from tribodyn.errors import (
     ComputationError,
     InputError,
     collected,
+    no_such,
     real_numbers,
     warn,
 )
@@ -263,8 +264,7 @@ def static_balance(
     ):
         for name in names:
             if name not in parts:
-                what, where = f'there is no {kind} "{name}"', Argument("laws and loads")
-                raise InputError(what, where, f"Known: {', '.join(parts)}", "Correct the name")
+                raise InputError(no_such(kind, name, parts, Argument("laws and loads")))
     run = machine.operation
     torque = np.copysign(1.0, run.speed) * run.torque
     external = torque * model.structure.at(run.input, 0.0)[3]

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from tribodyn.drawing import Sketch, drawing
-from tribodyn.errors import InputError
+from tribodyn.errors import InputError, no_such
 from tribodyn.nomenclature import QUANTITIES
 from tribodyn.plot.theme.colors import FILLS, MUTED, PAIR_COLORS, PINION, TOTAL, WHEEL
 from tribodyn.plot.theme.labels import (
@@ -157,8 +157,7 @@ def poincare(section: PoincareSection, coordinate: int | str = 0) -> Sketch:
     """
     names = tuple(section.names)
     if isinstance(coordinate, str) and coordinate not in names:
-        what, why = f'no coordinate is called "{coordinate}"', f"There are {', '.join(names)}"
-        raise InputError(what, "argument coordinate", why, "Choose one of these")
+        raise InputError(no_such("coordinate", coordinate, names, "argument coordinate"))
     column = names.index(coordinate) if isinstance(coordinate, str) else coordinate
     name, place, speed = names[column], section.position[:, column], section.velocity[:, column]
     x_factor, x_unit = scaled(place, unit_of(name))

@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
-from tribodyn.errors import InputError, Problem, collected, did_you_mean
+from tribodyn.errors import InputError, Problem, collected, no_such
 from tribodyn.model import REQUIRED, choice, file_path, flag, integer, number, numbers, text
 from tribodyn.study.case.section import NamedTables, Section, table
 
@@ -406,9 +406,8 @@ def rating_problems(case: PairCase) -> Iterator[tuple[str, Problem]]:
         yield f"materials.{name}", Problem(what, "", "No gear names it", remedy)
     for role, name in (("pinion", materials[0]), ("wheel", materials[1])):
         if name is not None and name not in names:
-            what, why = f'there is no material "{name}"', f"Known: {', '.join(names) or 'none'}"
-            remedy = did_you_mean(name, names, f"Add [materials.{name}]")
-            yield f"gears.{role}.material", Problem(what, "", why, remedy)
+            problem = no_such("material", name, names, "", f"Add [materials.{name}]")
+            yield f"gears.{role}.material", problem
             continue
         try:
             with collected():

@@ -16,7 +16,7 @@ from typing import Any, NamedTuple, cast
 
 import numpy as np
 
-from tribodyn.errors import InputError, Problem, did_you_mean
+from tribodyn.errors import InputError, Problem, no_such
 from tribodyn.model import NO_OPTIONS, Option
 from tribodyn.nomenclature import QUANTITIES
 from tribodyn.study.case.section import (
@@ -422,8 +422,7 @@ def _row(table: Tree, name: str, key: str) -> str:
         return name
     if name.isdigit() and 1 <= int(name) <= len(table):
         return list(table)[int(name) - 1]
-    why = f"Known: {', '.join(table)}"
-    raise InputError(f'there is no value "{key}"', key, why, "Correct the name or number")
+    raise InputError(no_such("value", key, table, key, "Correct the name or number"))
 
 
 def _is_list(value: object, table: ByName) -> bool:
@@ -457,11 +456,9 @@ def _missing_parts(root: type[Section], data: ByName, changes: ByName) -> Iterat
         needed = [k for k, o in part.kind.fields.items() if isinstance(o, Option) and o.required]
         absent = [each for each in needed if f"{group}.{name}.{each}" not in changes]
         if absent or section.listed:
-            what = f'there is no {part.meaning.partition(" ")[2]} "{name}"'
             remedy = "Correct the name"
             remedy += f", or give also {', '.join(absent)} of a new one" if absent else ""
-            why = f"Known: {', '.join(parts) or 'none'}"
-            yield Problem(what, key, why, did_you_mean(name, list(parts), remedy))
+            yield no_such(part.meaning.partition(" ")[2], name, parts, key, remedy)
 
 
 def _dropped_options(root: type[Section], inputs: UserInput, changes: ByName) -> list[str]:

@@ -8,7 +8,7 @@ from contextlib import contextmanager
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any, TypeVar
 
-from tribodyn.errors import Argument, InputError, Problem, did_you_mean
+from tribodyn.errors import Argument, InputError, Problem, no_such
 from tribodyn.faults.cracked_tooth import GREATEST_TANGENT, LEAST_TANGENT
 from tribodyn.model import REQUIRED, choice, file_path, integer, number, numbers, text
 from tribodyn.study.case.section import NamedTables, Section, table
@@ -264,9 +264,7 @@ def _name_problems(fault: FaultTable, parts: Mapping[str, Sequence[str]]) -> Key
     for key, names in parts.items():
         reference = getattr(fault, key)
         if reference is not None and part_of(reference) not in names:
-            why = f"Known: {', '.join(names) or 'none'}"
-            remedy = did_you_mean(part_of(reference), list(names), "Correct the name")
-            problems.append((key, Problem(f'there is no {key} "{reference}"', "", why, remedy)))
+            problems.append((key, no_such(key, reference, names, "", "Correct the name")))
     return problems
 
 

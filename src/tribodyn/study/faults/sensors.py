@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple, Protocol
 
 import numpy as np
 
-from tribodyn.errors import InputError
+from tribodyn.errors import InputError, no_such
 from tribodyn.nomenclature import GEARS
 from tribodyn.study.planetary.common import only_stage
 from tribodyn.types import Array, ComplexArray
@@ -226,5 +226,4 @@ def check_sensors(places: Sensors, sensor: str | Sequence[str], tacho: str | Non
 def check_tacho(places: Sensors, shaft: str) -> None:
     """Refuse a shaft that there is not."""
     if shaft not in places.shafts:
-        why = f"The shafts are {', '.join(places.shafts)}"
-        raise InputError(f'there is no shaft "{shaft}"', "argument tacho", why, "Name one")
+        raise InputError(no_such("shaft", shaft, places.shafts, "argument tacho"))

@@ -131,19 +131,15 @@ def excitations(structure: MachineStructure, harmonics: int | None = None) -> di
     turning = abs(machine.operation.speed) / (2.0 * np.pi)
     flow = machine.kinematics
     harmonics = _harmonics(structure) if harmonics is None else harmonics
-    of_planets, orders = {m for names in _meshes_of_stages(machine).values() for m in names}, {}
+    of_planets, orders = _of_planets(machine), {}
     for name, mesh in flow.meshes.items():
         if name not in of_planets:
             for k in range(1, harmonics + 1):
                 orders[f"mesh {name} x {k}"] = k * mesh.mesh_frequency / turning
     for label, (_, order) in stage_orders(machine, harmonics).items():
         orders[label] = order / turning
-    return {
-        **orders,
-        **{
-            f"shaft {n}": abs(float(shaft.ratio)) for n, shaft in flow.shafts.items() if shaft.ratio
-        },
-    }
+    turned = {f"shaft {n}": abs(float(shaft.ratio)) for n, shaft in flow.shafts.items()}
+    return {**orders, **{name: ratio for name, ratio in turned.items() if ratio}}
 
 
 def _harmonics(structure: MachineStructure) -> int:
@@ -151,11 +147,9 @@ def _harmonics(structure: MachineStructure) -> int:
     return _HARMONICS if structure.frame is None else _TYPED
 
 
-def _meshes_of_stages(machine: Machine) -> dict[str, list[str]]:
-    return {
-        name: [mesh for names in stage.mesh_names(name).values() for mesh in names]
-        for name, stage in machine.planets.items()
-    }
+def _of_planets(machine: Machine) -> set[str]:
+    """Meshes of all stages."""
+    return set().union(*(stage._meshes(name) for name, stage in machine.planets.items()))
 
 
 def stage_orders(machine: Machine, harmonics: int) -> dict[str, tuple[str, float]]:
@@ -321,7 +315,7 @@ def mesh_orders(modes: MachineModes) -> tuple[MeshOrder, ...]:
 def _in_step(machine: Machine) -> list[list[tuple[str, ...]]]:
     """Meshes that act together, those of a stage by kind; others alone."""
     of_stages = [stage.mesh_names(name).values() for name, stage in machine.planets.items()]
-    planets = {mesh for kinds in of_stages for names in kinds for mesh in names}
+    planets = _of_planets(machine)
     groups: list[list[tuple[str, ...]]] = [[(m,)] for m in machine.meshes if m not in planets]
     for kinds in of_stages:
         same: dict[float, list[tuple[str, ...]]] = {}

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from tribodyn.errors import Argument, InputError
+from tribodyn.errors import Argument, InputError, no_such
 from tribodyn.record import Record, fact, labels_of, quantity, record
 from tribodyn.types import Array, ComplexArray
 
@@ -369,8 +369,7 @@ class MachineMotion(PeriodicSamples):
         import xarray
 
         if mesh not in self.mesh:
-            why, remedy = f"Known: {', '.join(self.mesh)}", "Name one of these"
-            raise InputError(f'there is no mesh "{mesh}"', Argument("mesh"), why, remedy)
+            raise InputError(no_such("mesh", mesh, self.mesh, Argument("mesh")))
         cycles = int(self.cycles[self.mesh.index(mesh)])
         orders = np.arange(1.0, cycles * harmonics + 1.0)
         axes = "xyz"

@@ -10,7 +10,7 @@ from dataclasses import dataclass, fields, replace
 from functools import partial
 from typing import Any, NamedTuple
 
-from tribodyn.errors import Argument, InputError, Problem
+from tribodyn.errors import Argument, InputError, Problem, no_such
 from tribodyn.machine import COUPLINGS, ROLLING_BEARINGS, Bearing, Coupling, Gear, Shaft
 from tribodyn.machine import Section as ShaftSection
 from tribodyn.model import NO_OPTIONS, REQUIRED, number
@@ -330,8 +330,7 @@ def unknown_gears(
     for name, names in meshes.items():
         for gear in names:
             if gear not in gears:
-                why, remedy = f"Known: {', '.join(gears)}", "Add the gear, or correct the name"
-                problem = Problem(f'there is no gear "{gear}"', "", why, remedy)
+                problem = no_such("gear", gear, gears, "", "Add the gear, or correct the name")
                 problems.append((f"meshes.{name}.gears", problem))
     return problems
 

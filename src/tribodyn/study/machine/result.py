@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 from tribodyn.aliases import warn_of_old_name
 from tribodyn.drawing import draw
-from tribodyn.errors import Argument, InputError, collected
+from tribodyn.errors import Argument, InputError, collected, no_such
 from tribodyn.gear import Misalignment, MisalignmentStudy, misalignment_study
 from tribodyn.machine.static.supports import clearance_supports, without_clearance_supports
 from tribodyn.record import Parts
@@ -209,11 +209,10 @@ class LoadResult:
         InputError
             If the machine has no such stage.
         """
-        stages = [*self.machine.planets]
-        chosen = name if name is not None or not stages else stages[0]
+        stages = self.machine.planets
+        chosen = next(iter(stages), "") if name is None else name
         if chosen not in stages:
-            why = f"Stages: {', '.join(stages) or 'none'}"
-            raise InputError(f'there is no stage "{chosen}"', Argument("name"), why, "Name one")
+            raise InputError(no_such("stage", chosen, stages, Argument("name")))
         return StageResult(self, chosen)
 
     def ring_sensor(

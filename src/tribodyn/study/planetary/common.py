@@ -16,8 +16,7 @@ if TYPE_CHECKING:
 def only_stage(machine: Machine) -> str | None:
     """Name of the stage to which all meshes of a machine belong; None of other machines."""
     for name, stage in machine.planets.items():
-        meshes = [mesh for names in stage.mesh_names(name).values() for mesh in names]
-        if set(meshes) == {*machine.meshes}:
+        if stage._meshes(name) == {*machine.meshes}:
             return name
     return None
 

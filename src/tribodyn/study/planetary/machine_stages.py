@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from tribodyn.errors import Problem
+from tribodyn.errors import Problem, no_such
 from tribodyn.machine import Bearing, Gear, Mesh, PlanetaryStage, Shaft, sun_to_ring_lag
 from tribodyn.machine.planetary.mesh_laws import gear_lag
 from tribodyn.machine.planetary.stage_parts import LARGEST_ERROR, mesh_kinds
@@ -286,8 +286,7 @@ def _stage_problems(key: str, table: Any, gears: ByName) -> KeyedProblems:
         problems.append((f"{key}.carrier", problem))
     for role in roles[: 3 if problems or table.planet_type == "single" else 4]:
         if (gear := getattr(table, role)) not in gears:
-            why, remedy = f"Known: {', '.join(gears)}", "Add the gear, or correct the name"
-            problem = Problem(f'there is no gear "{gear}"', "", why, remedy)
+            problem = no_such("gear", gear, gears, "", "Add the gear, or correct the name")
             problems.append((f"{key}.{role}", problem))
     ring = gears.get(table.ring)
     if ring is not None and ring.teeth is not None and ring.teeth > 0 and not ring.internal:

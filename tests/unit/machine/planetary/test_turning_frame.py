@@ -66,7 +66,7 @@ def test_a_free_helical_stage_moves_straight_on():
 
 def test_a_stage_that_there_is_not_is_refused():
     modes = machine_modes(lin_parker(3))
-    with pytest.raises(InputError, match="Stages: low"):
+    with pytest.raises(InputError, match="Known: low"):
         modes.of_stage("high")
     with pytest.raises(InputError, match="Carriers: carrier"):
         machine_modes(MachineStructure(lin_parker(3), frame="sun"))
