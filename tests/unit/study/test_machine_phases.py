@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from functools import cache
 from typing import Any
 
@@ -97,6 +98,27 @@ def test_the_period_decides_and_the_case_overrides() -> None:
         case(phases="maybe")
     with pytest.raises(td.InputError, match="unknown key"):
         case(phase="on")
+
+
+@pytest.mark.parametrize(("teeth", "over"), [((31, 53), True), ((24, 36), False)])
+def test_a_stage_with_computed_teeth_moves_over_phases_earlier(
+    teeth: tuple[int, int], over: bool
+) -> None:
+    """Seven meshes on one clock of 80 cycles take longer than two phases, not of 12 cycles."""
+    shafts = {"first": "in", "second": "rotor", "sun": "out", "ring": "held"}
+    numbers = dict(zip(shafts, (*teeth, 22, -80), strict=True))
+    gears = {n: {"shaft": s, "teeth": numbers[n], "face_width": 0.06} for n, s in shafts.items()}
+    gears |= {"planet": {"teeth": 29, "face_width": 0.06}}
+    stage = {"sun": "sun", "ring": "ring", "planet": "planet", "carrier": "rotor", "count": 3}
+    train = td.study.MachineCase(
+        gears=gears, meshes={"pair": {"gears": ["first", "second"], "normal_module": 4e-3}},
+        planets={"stage": {**stage, "normal_module": 4e-3}}, stiffness={"model": "iso6336"},
+        operation={"input": "in", "output": "out", "speed": "100 rpm", "torque": 2000.0},
+    )  # fmt: skip
+    machine = train.machine()
+    assert over_phases(train.solver, machine) is over
+    given = {name: replace(mesh, stiffness=4e8) for name, mesh in machine.meshes.items()}
+    assert not over_phases(train.solver, machine._with(meshes=given))
 
 
 def test_cost_is_stated_before_the_run_and_does_not_depend_on_the_teeth() -> None:

@@ -26,6 +26,7 @@ from tribodyn.dynamics.harmonic.phase_grid import (
     PhaseGrid,
     Points,
     doubled,
+    first_sizes,
     most_points,
     points_of,
 )
@@ -131,10 +132,7 @@ def phase_cost(
 ) -> tuple[int, float, float]:  # fmt: skip
     """Unknowns, memory [byte] and time [s] of the fields of followers, or points of a mesh."""
     followers = [Follower(*each) for each in fields]
-    fine, others = points_of(followers, orders, mesh)
-    grids = [
-        int(np.prod(np.where(_axes(each.cycles, each.turns), fine, others))) for each in followers
-    ]
+    grids = first_sizes(followers, orders, mesh)
     first = sum(each.contacts * size for each, size in zip(followers, grids, strict=True))
     phases, work = len(frequency), work or Work()
     rings = work.kind == "ringing"
@@ -158,11 +156,6 @@ def phase_cost(
     seconds += (_SUMMED + _SUMMED_EACH * work.size) * summed
     samples = along_line(np.asarray(frequency, dtype=float))
     return unknowns, memory, 0.02 + seconds + _ALONG * work.size * samples
-
-
-def _axes(cycles: Any, turns: Sequence[Any]) -> Mask:
-    """Phases that contacts follow."""
-    return np.asarray(np.any(np.array([cycles, *turns]) != 0, axis=0))
 
 
 @dataclass

@@ -159,6 +159,13 @@ def points_of(
     return fine, np.minimum(fine, felt).astype(int)
 
 
+def first_sizes(followers: Sequence[Follower], orders: Any, mesh: int | None = None) -> list[int]:
+    """Points of the first grid of each follower."""
+    fine, others = points_of(followers, orders, mesh)
+    followed = (np.any(np.array([each.cycles, *each.turns]) != 0, axis=0) for each in followers)
+    return [int(np.prod(np.where(axes, fine, others))) for axes in followed]
+
+
 def given_points(follower: Follower, orders: Any, mesh: int) -> tuple[int, ...]:
     """Points over each phase of one mesh, with so many over its mesh cycle."""
     return tuple(points_of([follower], orders, mesh)[0].tolist())

@@ -380,14 +380,16 @@ def faults_over_phases(case: MachineCase, machine: Machine) -> bool:
     if over_phases(case.solver, machine):
         return True
     excited, turned = excitations_of(case), _with_turns(case, machine)
-    several = len(phases_with_faults(turned, excited).frequency) > 1
+    phases = phases_with_faults(turned, excited)
+    several = len(phases.frequency) > 1
     if not several or case.solver.phases == "on":
         return several
     longer, clock = periods_of_turns(turned), turned.clock
     fastest = longer * max(clock.cycles.values())
     teeth = {n: Fraction(fastest) / (longer * turns) for n, turns in clock.turns.items() if turns}
     frequency = max(clock.cycles.values()) * clock.frequency
-    return repeats_late(clock_cycles(fastest, excited, teeth, frequency))
+    cycles = clock_cycles(fastest, excited, teeth, frequency)
+    return repeats_late(turned, phases, cycles, highest_orders(clock, excited, phases))
 
 
 def fault_cost(case: MachineCase, machine: Machine, work: Work | None = None) -> PhaseCost | None:

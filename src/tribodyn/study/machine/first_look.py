@@ -37,6 +37,9 @@ if TYPE_CHECKING:
 #: Mesh cycles of a period above which a warning says what they cost, steps per cycle, and bytes of
 #: a step for each coordinate: three samples of position, velocity and acceleration.
 _LONG_PERIOD, _STEPS, _BYTES = 400, 128, 72
+#: Seconds of a motion for each mesh cycle on one clock and each pair of meshes, which may need
+#: finer steps or a second search; over phases at least, and for each point and pair.
+_ON_CLOCK, _OVER_PHASES = 1.28e-3, (1.2, 2.5e-4)
 #: Coordinates that a large structure has at least after its reduction.
 _FEWEST = 60
 
@@ -45,12 +48,33 @@ def over_phases(solver: SolverTable, machine: Machine) -> bool:
     """Whether the motion of a machine is found over independent phases of its meshes."""
     if solver.phases == "off" or len(machine.phases.frequency) == 1:
         return False
-    return solver.phases == "on" or repeats_late(max(machine.clock.cycles.values()))
+    cycles = max(machine.clock.cycles.values())
+    return solver.phases == "on" or repeats_late(machine, machine.phases, cycles)
 
 
-def repeats_late(cycles: int) -> bool:
-    """Whether so many mesh cycles of a period take longer than independent phases."""
-    return cycles > _LONG_PERIOD
+def repeats_late(machine: Machine, phases: Phases, cycles: int, orders: Any = 0) -> bool:
+    """Whether so many mesh cycles of a period take longer than these phases."""
+    from tribodyn.dynamics.harmonic.phase_grid import Follower, first_sizes
+
+    meshes = machine.meshes.values()
+    if cycles > _LONG_PERIOD or not any(m.contacts or m.stiffness is None for m in meshes):
+        return cycles > _LONG_PERIOD
+    followers = [Follower(1, *each[1:]) for each in _followers(machine, phases)]
+    least, each = _OVER_PHASES
+    over_phases = least + each * len(meshes) * sum(first_sizes(followers, orders))
+    return _ON_CLOCK * cycles * len(meshes) ** 2 > over_phases
+
+
+def _followers(machine: Machine, phases: Phases) -> list[Fields]:
+    """Contacts of each mesh, and what they follow."""
+    cycles = machine.clock.cycles
+    return [
+        (
+            max(len(mesh.contacts), 1), phases.cycles[name], mesh.period,
+            tuple(phases.turns[cycles[name] * turn.waves] for turn in mesh.turning),
+        )
+        for name, mesh in machine.meshes.items()
+    ]  # fmt: skip
 
 
 class PhaseCost(NamedTuple):
@@ -82,13 +106,7 @@ def phase_cost_of(
     """Cost of the motion of a machine over phases; refuse too much, with what makes it less."""
     phases, shafts = driven or (machine.phases, ())
     names = phase_names(machine, phases, shafts)
-    followers = [
-        (
-            max(len(mesh.contacts), 1), phases.cycles[name], mesh.period,
-            tuple(phases.turns[machine.clock.cycles[name] * turn.waves] for turn in mesh.turning),
-        )
-        for name, mesh in machine.meshes.items()
-    ]  # fmt: skip
+    followers = _followers(machine, phases)
     loose = sum(each.clearance > 0.0 or each.unloaded is not None
                 for each in machine.bearings.values())  # fmt: skip
     if loose:

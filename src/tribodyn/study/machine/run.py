@@ -426,8 +426,8 @@ def _restored_load(case: MachineCase, load: LoadCase, stored: StoredLoad) -> Loa
         load = replace(load, temperature=oil, gear_temperature=gears)
     static = _balance(case, load, tables, misalignment)
     structure = structure_of(case, static.linearized())
-    phases = over_phases(case.solver, structure.machine)
-    system, motion = system_of(structure, phases=phases), motion_from(data)
+    motion = motion_from(data)
+    system = system_of(structure, phases=motion.phase_turns is not None)
     at_rest = load, structure, static, tables, misalignment
     losses = part_losses(case, load, static)
     return LoadResult(*at_rest, system, motion, heat=heat, losses=losses)
