@@ -22,6 +22,13 @@ if TYPE_CHECKING:
     from tribodyn.study.case.case import Case
 
 _SPACE = " \t\r"
+#: A string with its quotes, also one without an end; part of a key; text of a value without marks.
+_STRING = re.compile(
+    r'''"""(?:[^"\\]+|\\.|"(?!""))*(?:""")?|"(?:[^"\\\n]+|\\.)*"?'''
+    r"|'''(?:[^']+|'(?!''))*(?:''')?|'[^'\n]*'?",
+    re.DOTALL,
+)
+_NAME, _PLAIN = re.compile(r"[\w-]+"), re.compile(r"""[^"'#{\[\],}\n]+""")
 
 
 class _Scanner:
@@ -88,10 +95,9 @@ class _Scanner:
         parts, part = [], ""
         while self._peek() not in ("", "\n", end):
             character = self._peek()
-            if character in "\"'":
-                start = self.at + 1
-                self._string(character)
-                part += self.text[start : self.at - 1]
+            if name := _NAME.match(self.text, self.at) or _STRING.match(self.text, self.at):
+                part += name[0][1:-1] if character in "\"'" else name[0]
+                self.at = name.end()
                 continue
             if character == ".":
                 parts.append(part)
@@ -119,17 +125,6 @@ class _Scanner:
             self.at = first + len(value)
             self._finish((*self._table, *names), start, value)
 
-    def _string(self, quote: str) -> None:
-        """Skip the string that begins at the current position."""
-        long = self.text.startswith(quote * 3, self.at)
-        close = quote * 3 if long else quote
-        self.at += len(close)
-        while self.at < len(self.text) and not self.text.startswith(close, self.at):
-            if not long and self._peek() == "\n":
-                return
-            self.at += 2 if quote == '"' and self._peek() == "\\" else 1
-        self.at += len(close)
-
     def _value(self, key: tuple[str, ...], ends: str) -> None:
         """Skip a value, recording the keys of its inline tables."""
         depth = 0
@@ -137,8 +132,8 @@ class _Scanner:
             character = self._peek()
             if depth == 0 and character in ends:
                 return
-            if character in "\"'":
-                self._string(character)
+            if skipped := _STRING.match(self.text, self.at) or _PLAIN.match(self.text, self.at):
+                self.at = skipped.end()
                 continue
             if character == "#" and not depth:
                 return
@@ -210,7 +205,9 @@ def _lines_by_row(text: str) -> dict[str, list[int]]:
     """Line numbers of all keys, of lists of tables also by the names of their rows."""
     lines = key_lines(text)
     for table, value in tomllib.loads(text).items():
-        rows, heads = named_rows(value), lines.get(table, [])
+        if not (rows := named_rows(value)):
+            continue
+        heads = lines.get(table, [])
         inner = [(key, at) for key, at in lines.items() if key.startswith(f"{table}.")]
         for (row, _), head, end in zip(rows, heads, [*heads[1:], sys.maxsize], strict=False):
             lines[f"{table}.{row}"] = [head]
