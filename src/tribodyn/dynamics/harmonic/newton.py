@@ -20,6 +20,12 @@ if TYPE_CHECKING:
 
 #: Newton steps, halvings of a step, and steps over which the residual may rise.
 _LIMIT, _HALVINGS, _MEMORY = 40, 4, 3
+#: Damping is added where Newton's method does not converge: logarithm of one and its number of
+#: units, the highest; the first, widest, and narrowest steps in which it is taken away, the last
+#: also over the damping, and the factors of the next step after a motion and after none.
+_HIGHEST, _STEP, _WIDEST, _NARROW, _WIDER, _LESS = 6.0, 1.0, 1.5, 0.04, 1.6, 0.4
+#: Accuracy of the motions on the way, Newton steps to each, and steps that halve the error.
+_ROUGH, _TRIES, _QUICK = 1e-3, 10, 4
 #: Accuracy of a linear solution and its largest number of vectors.
 LINEAR, VECTORS = 1e-4, 120
 
@@ -70,13 +76,22 @@ def force_change(part: Any, state: State) -> Callable[[Array], Array]:
     """Change of the force on the closed structure with the motion of a part on its grid."""
     cell, (stiffness, damping) = state.cell, tangents(part.structure, state)
     breaks, damped = state.breaks, bool(np.any(damping))
+    across = None if cell is None or cell.along is None else cell.pieces.across
+    rate = part.rate
+    if cell is not None and cell.along is not None:
+        stiffness, rate = cell.along, cell.pieces.along
 
     def change(motion: Array) -> Array:
         sample = np.asarray if cell is None else cell.pieces.sample
-        force = (stiffness @ sample(motion)[..., None])[..., 0]
+        moved = sample(motion)[..., None]
+        force = (stiffness @ moved)[..., 0]
         if damped:
-            force += (damping @ sample(part.rate(motion))[..., None])[..., 0]
-        if cell is not None:
+            force += (damping @ sample(rate(motion))[..., None])[..., 0]
+        if cell is not None and across is not None:
+            forces = np.concatenate((force, (damping @ moved)[..., 0]), axis=1)
+            force, held = np.split(cell.pieces.gather(forces), 2, axis=1)
+            force = force + across(held)
+        elif cell is not None:
             force = cell.pieces.gather(force)
         if breaks.step.size:
             jumps = np.einsum("bsr,br->bs", breaks.tangent, breaks.gather(motion))
@@ -144,6 +159,40 @@ def newton(
         state = _search(residual, state, step, max(norms[-_MEMORY:]))
         norms.append(float(np.linalg.norm(state.residual)))
     return Solution(best[1], best[0], count, krylov)
+
+
+def released(
+    residual: Residual, y: Array, unit: Array, tolerance: float, patience: int, level: float
+) -> tuple[Solution | None, float, Array]:
+    """Solution by taking added damping away in steps, or none, and the least damping and motion."""
+    found: list[tuple[float, Array]] = []  # the last two levels and motions
+    step, first = _STEP, y
+    while True:
+        residual.excess = np.expm1(level) * unit
+        y = _ahead(found, level) if found else first
+        if level == 0.0:
+            trial = newton(residual, y, 0.01 * tolerance, patience=patience)
+            if trial.error <= tolerance:
+                return trial, level, trial.state.y
+        else:
+            trial = newton(residual, y, _ROUGH, _TRIES, _QUICK)
+        if level > 0.0 and trial.error <= _ROUGH:
+            found, step = [*found[-1:], (level, trial.state.y)], min(_WIDER * step, _WIDEST)
+        elif found:
+            step *= _LESS
+        else:
+            level *= 2.0
+        least = found[-1][0] if found else level
+        if (found and step < _NARROW * max(1.0, 2.0 * least)) or least > _HIGHEST:
+            residual.excess = 0.0 * unit
+            return None, least, found[-1][1] if found else first
+        level = least if not found else least - step if least > 1.3 * step else 0.0
+
+
+def _ahead(found: list[tuple[float, Array]], level: float) -> Array:
+    """Motion with other damping, on the line through two."""
+    (before, old), (last, new) = found[0], found[-1]
+    return new + (new - old) * ((level - last) / ((last - before) or 1.0))
 
 
 def _search(residual: Residual, state: State, step: Array, bound: float) -> State:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -18,7 +19,7 @@ from tribodyn.dynamics.equations.orbit_coordinates import (
 )
 from tribodyn.dynamics.equations.phases import read_frequencies
 from tribodyn.dynamics.equations.system import System, contact_label
-from tribodyn.dynamics.harmonic.newton import Solution, State, newton
+from tribodyn.dynamics.harmonic.newton import Solution, State, newton, released
 from tribodyn.dynamics.harmonic.phase_contacts import PhaseContacts
 from tribodyn.dynamics.harmonic.phase_grid import (
     Fields,
@@ -86,9 +87,11 @@ _LIMIT, _WORST = 1e-2, 0.2
 _NEARLY = 0.05
 #: Part of the largest change below which that with twice the points is not estimated again.
 _AGAIN = 1e-3
-#: Damping added at first where Newton's method does not converge, over the critical damping at
-#: the highest mesh frequency, and the factors by which it is reduced; Newton steps with each.
-_ADDED, _TRIES = (0.3, 0.1, 0.03, 0.01, 0.003), 12
+#: Unit of the damping that is added where Newton's method does not converge, over the critical
+#: damping at the highest mesh frequency, and what is added at first: logarithm of one and its
+#: number of units, for a linear motion and for that of coarser grids. Part of the least damping
+#: for which there is a motion to which it falls with more points, or these are of no use.
+_UNIT, _ADDED, _LESS, _GAINS = 0.003, 4.6, 0.5, 0.7
 #: Growth in a cycle of the fastest phase that is warned of; logarithm of the largest stated one.
 _GROWS, _HIGH = 1.001, 50.0
 #: Accuracy of the linear motion, and Newton steps in which the error halves if points suffice.
@@ -200,38 +203,43 @@ class _Search:
         static = self.still(residual)
         return static + residual.correction(residual.at(static, closed=True), _ROUGH)[0]
 
-    def damped(self, residual: PhaseResidual, y: Array, tolerance: float) -> Solution:
-        """Newton's method with damping at the contacts that is removed in steps."""
+    def solved(self, residual: PhaseResidual, y: Array, tolerance: float) -> Solution:
+        """Newton's method, with damping that is taken away where it does not converge."""
+        solution = newton(residual, y, 0.01 * tolerance, patience=_PATIENCE)
+        if solution.error <= tolerance:
+            return solution
+        return released(residual, y, self.damping, tolerance, _PATIENCE, _LESS)[0] or solution
+
+    @cached_property
+    def damping(self) -> Array:
+        """Unit of the damping that is added to the contacts [N*s/m]."""
         stiffness = self.rows.means.nodes.stiffness
         critical = stiffness.reshape(-1, stiffness.shape[-1]).mean(axis=0)
         fastest = max(abs(self.rows.rate(mesh.cycles)) * mesh.period for mesh in self.rows.meshes)
-        for part in (*_ADDED, 0.0):
-            residual.excess = part * critical / (np.pi * fastest)
-            trial = newton(residual, y, 0.01 * tolerance, _TRIES, _PATIENCE)
-            if not trial.error < 1e-3:
-                break
-            y = trial.state.y
-        residual.excess = 0.0 * critical
-        return trial if part == 0.0 else Solution(residual.at(y), np.inf, 0, 0)
+        return np.asarray(_UNIT * critical / (np.pi * fastest))
 
     def first(
         self, points: Points, start: PhaseResponse | None, tolerance: float, free: bool
     ) -> tuple[Points, PhaseResidual, Solution]:
-        """Motion on the first grids, with more points if they are free and it is not found."""
-        prior, followed = None, self.followed()
-        while True:
-            residual = self.residual(points, prior)
-            y = self.linear(residual) if start is None else self._resampled(start, residual)
-            solution = newton(residual, y, 0.01 * tolerance, patience=_PATIENCE)
+        """Motion on the first grids, on finer ones if they are free and help to find it."""
+        residual = self.residual(points)
+        y = self.linear(residual) if start is None else self._resampled(start, residual)
+        tried = points, residual, newton(residual, y, 0.01 * tolerance, patience=_PATIENCE)
+        if tried[-1].error <= tolerance:
+            return tried
+        level, before, followed = _ADDED, np.inf, self.followed()
+        while level <= _GAINS * before:
+            before = level
+            solution, level, y = released(residual, y, self.damping, tolerance, _PATIENCE, level)
+            if solution is not None:
+                return points, residual, solution
             more = doubled(points, np.ones_like(followed))
             more = more if self.size(more) <= _MOST else doubled(points, followed)
-            last = not free or np.max(points) >= _LAST or self.size(more) > _MOST
-            if last and not solution.error <= tolerance:
-                damped = self.damped(residual, y, tolerance)
-                solution = min(solution, damped, key=lambda each: each.error)
-            if last or solution.error <= tolerance:
-                return points, residual, solution
-            points, prior = more, residual
+            if not free or np.max(points) >= _LAST or self.size(more) > _MOST:
+                break
+            finer = self.residual(more, residual)
+            points, residual, y = more, finer, residual.refined(y, finer)
+        return tried
 
     def followed(self) -> Mask:
         """Phases that each part follows (parts, phases)."""
@@ -344,8 +352,10 @@ def phase_balance(
         points, limit = doubled(points, poor, times), max(tolerance, _NEARLY * errors.sum())
         finer = search.residual(points, residual)
         start_y = residual.refined(solution.state.y, finer)
-        residual, solution = finer, newton(finer, start_y, 0.01 * tolerance, patience=_PATIENCE)
-    points, residual, solution, errors = converged_motion
+        residual, solution = finer, search.solved(finer, start_y, tolerance)
+    # Without a finer motion, a coarse one that more points would change much is none.
+    if solution.error <= limit or converged_motion[-1].sum() <= _LIMIT:
+        points, residual, solution, errors = converged_motion
     step_error, converged = float(errors.sum()), bool(solution.error <= tolerance)
     error = max(solution.error, float(np.finfo(float).eps))
     facts = {"error": error, "step_error": step_error, "converged": converged}
@@ -383,7 +393,8 @@ def _integrated(
     motion: PhaseResponse,
 ) -> PhaseResponse:  # fmt: skip
     """Motion over time from one that is no solution, with a warning."""
-    text = f"{_not_converged(search, residual, solution, tolerance)}. "
+    text, worst = _not_converged(search, residual, solution, tolerance)
+    text += ". "
     meshes = search.rows.meshes
     slowest = min(meshes, key=lambda mesh: abs(search.rows.rate(mesh.cycles)))
     label = contact_label(search.rows.system, int(slowest.contacts[0]))
@@ -393,7 +404,11 @@ def _integrated(
     try:
         marched = marched_response(motion, search.structure)
         cycles = abs(int(slowest.cycles @ np.array(marched.turns)))
-        text += f"A time integration over {cycles} cycles of {label}, the slowest, replaces it"
+        share = marched.fine.mean(marched.fine.contact_force == 0.0)[worst]
+        text += (
+            f"A time integration over {cycles} cycles of {label}, the slowest, replaces it; "
+            f"{contact_label(search.rows.system, worst)} is open for {100.0 * share:.3g} % of it"
+        )
     except (ComputationError, InputError) as error:
         marched = motion
         text += f"A time integration from it failed as well: {error.problems[0].what}"
@@ -457,25 +472,22 @@ def _coarse(search: _Search, points: Points, errors: Array, automatic: bool) -> 
 
 def _not_converged(
     search: _Search, residual: PhaseResidual, solution: Solution, tolerance: float
-) -> str:
-    """Message that names the contact with the largest residual."""
-    worst: tuple[float, str] = (-1.0, "")
+) -> tuple[str, int]:
+    """Message that names the contact with the largest residual, and its number."""
+    worst: tuple[float, int, str] = (-1.0, 0, "")
     for part, state in zip(residual.parts, solution.state.each, strict=True):
         along = part.contacts.rows.along
         along = np.broadcast_to(along, (len(state.y), *along.shape[1:]))
         distance = np.abs(np.einsum("pjr,pr->pj", along, state.residual)).max(axis=0)
         number = int(np.argmax(distance))
-        rows, weight = part.structure.rows, None if state.cell is None else state.cell.pieces.weight
-        share = np.average(state.law.side[:, number] == 0.0, weights=weight)
+        rows = part.structure.rows
         mesh = next(mesh for mesh in rows.meshes if number in mesh.contacts)
         rate = abs(rows.rate(mesh.cycles)) * mesh.period
-        text = (
-            f"{contact_label(search.rows.system, int(part.structure.members[number]))} at "
-            f"{rate:.6g} Hz, {1e6 * distance[number]:.3g} um; it is open "
-            f"for {100.0 * share:.3g} % of the last attempt"
-        )
-        worst = max(worst, (float(distance[number]), text))
+        member = int(part.structure.members[number])
+        label = contact_label(search.rows.system, member)
+        text = f"{label} at {rate:.6g} Hz, {1e6 * distance[number]:.3g} um"
+        worst = max(worst, (float(distance[number]), member, text))
     return (
         f"no motion over the phases was found: certified error {solution.error:.2e}, limit "
-        f"{tolerance:.0e}. The largest residual is that of {worst[1]}"
-    )
+        f"{tolerance:.0e}. The largest residual is that of {worst[2]}"
+    ), worst[1]
