@@ -147,7 +147,7 @@ LINES: dict[str, int] = {
     "arrays": 197,
     "cases": 1360,
     "checkpoints": 142,
-    "cli": 2740,
+    "cli": 2741,
     "compiled": 238,
     "contact": 400,
     "cookbook": 102,

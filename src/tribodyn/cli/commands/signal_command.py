@@ -389,7 +389,8 @@ def _teeth_and_speed(turning: Shaft) -> tuple[int | None, int | None, float | No
     if not named:
         names = list(dict.fromkeys(name for mesh in meshes for name in mesh.teeth))
         why = f"Gears of {turning.case}: {', '.join(names)}"
-        remedy = did_you_mean(turning.gear, names, f"Write for example --gear {names[0]}")
+        remedy = f"--gear is {GEARS[0]} unless it is given. Write for example --gear {names[0]}"
+        remedy = did_you_mean(turning.gear, names, remedy)
         raise InputError(f'there is no gear "{turning.gear}"', "--gear", why, remedy)
     mesh, teeth, of_case = named[0], named[0].teeth[turning.gear], named[0].speeds[turning.gear]
     if not math.isclose(teeth * of_case, 2.0 * math.pi * mesh.frequency, rel_tol=1e-9):
