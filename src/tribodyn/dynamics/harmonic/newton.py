@@ -76,22 +76,13 @@ def force_change(part: Any, state: State) -> Callable[[Array], Array]:
     """Change of the force on the closed structure with the motion of a part on its grid."""
     cell, (stiffness, damping) = state.cell, tangents(part.structure, state)
     breaks, damped = state.breaks, bool(np.any(damping))
-    across = None if cell is None or cell.along is None else cell.pieces.across
-    rate = part.rate
-    if cell is not None and cell.along is not None:
-        stiffness, rate = cell.along, cell.pieces.along
 
     def change(motion: Array) -> Array:
         sample = np.asarray if cell is None else cell.pieces.sample
-        moved = sample(motion)[..., None]
-        force = (stiffness @ moved)[..., 0]
+        force = (stiffness @ sample(motion)[..., None])[..., 0]
         if damped:
-            force += (damping @ sample(rate(motion))[..., None])[..., 0]
-        if cell is not None and across is not None:
-            forces = np.concatenate((force, (damping @ moved)[..., 0]), axis=1)
-            force, held = np.split(cell.pieces.gather(forces), 2, axis=1)
-            force = force + across(held)
-        elif cell is not None:
+            force += (damping @ sample(part.rate(motion))[..., None])[..., 0]
+        if cell is not None:
             force = cell.pieces.gather(force)
         if breaks.step.size:
             jumps = np.einsum("bsr,br->bs", breaks.tangent, breaks.gather(motion))

@@ -89,9 +89,9 @@ _NEARLY = 0.05
 _AGAIN = 1e-3
 #: Unit of the damping that is added where Newton's method does not converge, over the critical
 #: damping at the highest mesh frequency, and what is added at first: logarithm of one and its
-#: number of units, for a linear motion and for that of coarser grids. Part of the least damping
-#: for which there is a motion to which it falls with more points, or these are of no use.
-_UNIT, _ADDED, _LESS, _GAINS = 0.003, 4.6, 0.5, 0.7
+#: number of units. Part of the least damping for which there is a motion to which it falls with
+#: more points, or these are of no use.
+_UNIT, _ADDED, _GAINS = 0.003, 4.6, 0.7
 #: Growth in a cycle of the fastest phase that is warned of; logarithm of the largest stated one.
 _GROWS, _HIGH = 1.001, 50.0
 #: Accuracy of the linear motion, and Newton steps in which the error halves if points suffice.
@@ -202,13 +202,6 @@ class _Search:
         """Motion with the contacts that are closed at rest."""
         static = self.still(residual)
         return static + residual.correction(residual.at(static, closed=True), _ROUGH)[0]
-
-    def solved(self, residual: PhaseResidual, y: Array, tolerance: float) -> Solution:
-        """Newton's method, with damping that is taken away where it does not converge."""
-        solution = newton(residual, y, 0.01 * tolerance, patience=_PATIENCE)
-        if solution.error <= tolerance:
-            return solution
-        return released(residual, y, self.damping, tolerance, _PATIENCE, _LESS)[0] or solution
 
     @cached_property
     def damping(self) -> Array:
@@ -352,7 +345,7 @@ def phase_balance(
         points, limit = doubled(points, poor, times), max(tolerance, _NEARLY * errors.sum())
         finer = search.residual(points, residual)
         start_y = residual.refined(solution.state.y, finer)
-        residual, solution = finer, search.solved(finer, start_y, tolerance)
+        residual, solution = finer, newton(finer, start_y, 0.01 * tolerance, patience=_PATIENCE)
     # Without a finer motion, a coarse one that more points would change much is none.
     if solution.error <= limit or converged_motion[-1].sum() <= _LIMIT:
         points, residual, solution, errors = converged_motion

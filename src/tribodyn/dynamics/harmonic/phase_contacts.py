@@ -142,14 +142,6 @@ class Pieces:
         fine = fft.irfft(lines, _REFINED * count, axis=-2) * _REFINED
         return np.asarray(fine.reshape(-1, values.shape[1]))
 
-    def along(self, values: Array) -> Array:
-        """Change over time of a motion on the grid (p, c) with this phase."""
-        return self.grid.rate(values, self.axis)
-
-    def across(self, values: Array) -> Array:
-        """Change over time of a motion on the grid (p, c) with all other phases."""
-        return self.grid.rate(values, self.axis, others=True)
-
     def gather(self, values: Array) -> Array:
         """Motion on the grid (p, c) with the lines of values with their weights (q, c)."""
         from scipy import fft
@@ -175,10 +167,6 @@ class Cell(NamedTuple):
     pieces: Pieces
     stiffness: Array  #: derivative of the weighted forces by the motion (q, s, r)
     damping: Array  #: and by its rate
-    #: Where dampers act only while flanks touch: the derivative by the motion without what other
-    #: phases change, and damping times penetration, whose change over other phases is a force.
-    along: Array | None = None
-    pressed: Array | None = None  #: (q, contacts)
 
 
 class _Crossings(NamedTuple):
@@ -243,19 +231,6 @@ class PhaseContacts(ContactLaw):
             stiffness=law.stiffness + push.T @ tangent @ along,
         )
 
-    @cached_property
-    def _along(self) -> PhaseContacts | None:
-        """The same with the rates over the phase of the meshes alone, if forces are their sums."""
-        # The damper of a flank that touches is the rate of its penetration over all phases; the
-        # part of other phases is that of a continuous force, which a line at a tangent to the
-        # end of the dead zone would not give.
-        part, axis = self.part, self.axis
-        others = any(np.delete(mesh.cycles, axis).any() for mesh in part.meshes)
-        if others or part.system.lead is not None or part.system.frictions or part.supports:
-            return None
-        only = np.where(np.arange(part.frequency.size) == axis, part.frequency, 0.0)
-        return replace(self, part=replace(part, frequency=only))
-
     def at(
         self, y: Array, rate: Array, excess: Array, closed: Mask | None, means: tuple[Array, Array]
     ) -> tuple[Law, Breaks, Cell | None]:
@@ -266,26 +241,18 @@ class PhaseContacts(ContactLaw):
             if closed is not None or not self._opens(law):
                 return law, NO_BREAKS, None
             self._opened.append(True)
-        parted = self._along if closed is None and self._opened else None
-        along = parted or self
-        pieces, rows = along._base
-        fine = [
-            pieces.refined(part)
-            for part in (y, rate if parted is None else self.grid.rate(y, self.axis))
-        ]
-        moved = [pieces.between @ part for part in fine]
-        law = self.law(rows, 1.0, moved[0], moved[1], excess, closed)
-        pressed, jumps = [self._pressed(rows, law, excess)] if parted else [], None
+        pieces, rows = self._base
+        fine = [pieces.refined(part) for part in (y, rate)]
+        moved = pieces.between @ fine[0], pieces.between @ fine[1]
+        law = self.law(rows, 1.0, *moved, excess, closed)
+        jumped = np.zeros((0, *law.stiffness.shape[1:]))
         if closed is None and (crossings := self._crossings(pieces, rows, law)).piece.size:
-            if not self._opened:
-                self._opened.append(True)
-                return self.at(y, rate, excess, closed, means)
             pieces = pieces.cut(crossings.piece, crossings.inside)
-            rows = along.part.projected(pieces.points, *self.bases)
-            moved = [pieces.at_cuts @ part for part in fine]
-            further = self.law(rows, 1.0, moved[0], moved[1], excess, closed)
-            pressed.extend([self._pressed(rows, further, excess)] if parted else [])
-            jumps = self._jumped(crossings, pieces, further.push, moved[0], rate)
+            rows = self.part.projected(pieces.points, *self.bases)
+            moved = pieces.at_cuts @ fine[0], pieces.at_cuts @ fine[1]
+            further = self.law(rows, 1.0, *moved, excess, closed)
+            ends = slice(-crossings.piece.size, None)
+            jumped = self._jumped(crossings, rows.at(ends), further.push[ends], moved)
             law = Law(*(
                 entries[0] if len(entries[0]) == 1 else np.concatenate(entries)
                 for entries in zip(law, further, strict=True)
@@ -295,20 +262,8 @@ class PhaseContacts(ContactLaw):
             weight * (mean - part)
             for mean, part in zip(means, (law.stiffness, law.damping), strict=True)
         )
-        cell = Cell(pieces, stiffness, damping)
-        if parted is not None:
-            cell = cell._replace(along=stiffness.copy(), pressed=np.concatenate(pressed))
-        if jumps is not None:
-            for target, values in zip((cell.stiffness, cell.along), jumps, strict=True):
-                if target is not None:
-                    target[len(target) - len(values) :] = values
-        return law, NO_BREAKS, cell
-
-    def _pressed(self, rows: Rows, law: Law, excess: Array) -> Array:
-        """Damping times the distance whose rate it acts on (q, contacts)."""
-        beyond = np.where(law.side == 0.0, 0.0, law.compression - law.side * rows.gap[..., 0])
-        beyond = np.where(self.damped_in_gap, law.compression, beyond)
-        return np.asarray(rows.nodes.damping * beyond + excess * law.compression)
+        stiffness[len(weight) - len(jumped) :] = jumped
+        return law, NO_BREAKS, Cell(pieces, stiffness, damping)
 
     def _opens(self, law: Law) -> bool:
         """Whether a flank comes to another side of its dead zone."""
@@ -342,28 +297,21 @@ class PhaseContacts(ContactLaw):
         return _Crossings(piece, half * (1.0 + x), contact, edge, slope)
 
     def _jumped(
-        self, crossings: _Crossings, pieces: Pieces, push: Array, y: Array, rate: Array
-    ) -> tuple[Array, Array]:
+        self, crossings: _Crossings, rows: Rows, push: Array, moved: tuple[Array, Array]
+    ) -> Array:
         """Derivative of the force by the motion where a damper begins or ceases to act."""
-        # The second one is that of the rate over the phase of the meshes alone.
         each, contact = np.arange(crossings.contact.size), crossings.contact
-        ends = slice(-each.size, None)
-        rows = self.part.projected(pieces.points[ends], *self.bases)
+        y, rate = (part[len(part) - each.size :] for part in moved)
 
         def of_contact(values: Array) -> Array:
             return np.asarray(values[each if len(values) > 1 else 0 * each, contact])
 
-        along, slope = of_contact(rows.along), np.abs(crossings.slope)
-        rates = pieces.at_cuts[ends] @ pieces.refined(rate)
-        speed = np.einsum("br,br->b", along, rates) - of_contact(rows.nodes.error_slope)
-        speed += np.einsum("br,br->b", of_contact(rows.along_slope), y[ends])
-        turning = self.grid.frequency[self.axis] * np.sign(crossings.slope)
-        damping = ~self.damped_in_gap[contact] * of_contact(rows.nodes.damping)
-        change = of_contact(push[ends] if len(push) > 1 else push)[:, :, None] * along[:, None]
-        return tuple(
-            -(damping * factor)[:, None, None] * change
-            for factor in (crossings.edge * speed / slope, turning)
-        )
+        along = of_contact(rows.along)
+        speed = np.einsum("br,br->b", along, rate) - of_contact(rows.nodes.error_slope)
+        speed += np.einsum("br,br->b", of_contact(rows.along_slope), y)
+        force = speed * ~self.damped_in_gap[contact] * of_contact(rows.nodes.damping)
+        factor = crossings.edge * force / np.abs(crossings.slope)
+        return np.asarray(-factor[:, None, None] * of_contact(push)[:, :, None] * along[:, None])
 
 
 def axis_of(cycles: Array) -> int:

@@ -75,13 +75,6 @@ class PhaseGrid:
         lines, axes = spectrum.reshape(*self.half, -1), tuple(range(len(self.shape)))
         return np.asarray(np.fft.irfftn(lines, self.shape, axes, "forward").reshape(self.size, -1))
 
-    def rate(self, values: Array, axis: int, *, others: bool = False) -> Array:
-        """Change of values (p, c) over time with one phase, or with all others."""
-        chosen = (np.arange(len(self.shape)) == axis) != others
-        turns = self.numbers @ np.where(chosen, self.frequency, 0.0)
-        slope = np.where(self.unpaired, 0.0, 2j * np.pi * turns)[:, None]
-        return self.values(slope * self.spectrum(values))
-
     @property
     def half(self) -> tuple[int, ...]:
         """Shape of the half spectrum."""

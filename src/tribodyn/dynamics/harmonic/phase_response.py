@@ -400,8 +400,6 @@ def _all_forces(
         members = part.structure.members
         for first, values in ((0, each.law.compression), (count, each.law.contact)):
             sampled = part.integral(values, each.cell)
-            if first and each.cell is not None and each.cell.pressed is not None:
-                sampled += each.cell.pieces.across(part.integral(each.cell.pressed, each.cell))
             columns[:, first + members] = grid.spectrum(sampled)[paired]
         others.append(columns)
     grid = max((part.grid for part in residual.parts), key=lambda grid: min(grid.shape))

@@ -66,9 +66,6 @@ class OnGrid(NamedTuple):
         force = self.integral(law.force, cell) + y @ means[0].T
         force += rate @ means[1].T
         breaks.scatter(force, breaks.correction)
-        if cell is not None and cell.pressed is not None:
-            spread = (cell.pressed[:, None] @ law.push)[:, 0]
-            force -= cell.pieces.across(self.integral(spread, cell))
         return State(y, rate, law, breaks, force, y, cell, self._mean_stiffness(law))
 
     def _mean_stiffness(self, law: Law) -> Array | None:
