@@ -138,12 +138,13 @@ def stages() -> Any:
 
 
 @pytest.mark.parametrize("gear", ["sun", "planet", "z3"])
-def test_a_cracked_tooth_of_a_train_of_three_stages_fits_in_the_memory(gear: str) -> None:
+def test_a_cracked_tooth_of_a_train_of_three_stages_needs_no_phase_more(gear: str) -> None:
+    """With one more for the shaft it would take three times the memory."""
     crack = {"kind": "crack", "gear": gear, "tooth": 1, "depth": "3 mm"}
-    faulty = with_faults(stages(), crack=crack)
+    faulty = with_faults(stages().replace({"solver.memory": "16 GB"}), crack=crack)
     cost = fault_cost(faulty, faulty.machine())
     assert len(cost.phases) == 3
-    assert cost.memory < 2.5e9
+    assert cost.memory < 7e9
 
 
 def test_a_ripple_leads_the_meshes_over_its_own_phase() -> None:

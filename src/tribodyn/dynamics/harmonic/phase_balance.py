@@ -61,8 +61,8 @@ _ROUGHLY, _LARGE = 9e-3, 2**18
 #: Times the points over its phase with which a mesh that jumps is looked at too, and the ratio of
 #: the changes above which lines that few points leave out are those of a natural frequency.
 _AHEAD, _RINGS = 8, 2.0
-#: Memory of a motion per unknown [byte].
-_BYTES = 1.5e3
+#: Memory of a motion per unknown, and of one that is looked at with more points [byte].
+_BYTES, _LOOKED = 5e3, 2.5e3
 #: Time of a grid, per unknown of it for each part of the system and for each phase [s], and part of
 #: its lines that are more than rounding: where nothing moves, of forces that are smooth along the
 #: motion, of those that jump, and excite natural frequencies, and where flanks separate.
@@ -136,12 +136,16 @@ def phase_cost(
     """Unknowns, memory [byte] and time [s] of the fields of followers, or points of a mesh."""
     followers = [Follower(*each) for each in fields]
     grids = first_sizes(followers, orders, mesh)
-    first = sum(each.contacts * size for each, size in zip(followers, grids, strict=True))
+    parts = [each.contacts * size for each, size in zip(followers, grids, strict=True)]
+    first = sum(parts)
     phases, work = len(frequency), work or Work()
     rings = work.kind == "ringing"
     largest = min(max(_AHEAD * first, 2**14), _LARGE) if rings else min(2 * first, _MOST)
     unknowns = max(first, largest) if mesh is None else first
-    memory = 2e8 + 1.4e8 * phases + _BYTES * unknowns
+    # The largest part is looked at with twice its points, and with more where its forces jump.
+    part = unknowns * max(parts) / first
+    ahead = min(_AHEAD * part, _LARGE) if work.kind not in ("steady", "smooth") else 0.0
+    memory = 2e8 + 1.4e8 * phases + _BYTES * unknowns + _LOOKED * max(2.0 * part, ahead)
     if mesh is not None:
         return unknowns, memory, 0.1 + _STATED * unknowns
     # Smooth forces need a second grid; others are refined until small changes are left.
