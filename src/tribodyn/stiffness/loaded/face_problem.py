@@ -96,12 +96,11 @@ def thin_slices(
     pinion: GearInfluence, wheel: GearInfluence, contacts: FaceContacts, places: ContactPlaces
 ) -> Array:
     """Compliance of slices of which each is a thin spur gear (p, c, c)."""
-    phases, count = places.path.shape
-    total = np.zeros((phases, count, count))
-    for k in range(contacts.slices):
-        columns = slice(k, None, contacts.slices)
-        total[:, columns, columns] = coupled_compliance(pinion, wheel, places.some(columns))
-    return total
+    each = coupled_compliance(pinion, wheel, places.slice_by_slice(contacts.slices))
+    phases, pairs, k = len(places.path), each.shape[1], np.arange(contacts.slices)
+    total = np.zeros((phases, pairs, k.size, pairs, k.size))
+    total[:, :, k, :, k] = np.moveaxis(each.reshape(phases, k.size, pairs, pairs), 1, 0)
+    return total.reshape(phases, pairs * k.size, pairs * k.size)
 
 
 def coupled_slices(

@@ -53,11 +53,13 @@ class ContactPlaces:
         """Sense in which contacts move along the path: 1 when the pinion drives, -1 otherwise."""
         return self.contact.direction
 
-    def some(self, pairs: slice) -> ContactPlaces:
-        """Places of some of these pairs."""
+    def slice_by_slice(self, slices: int) -> ContactPlaces:
+        """Places of the pairs in each slice of the face, one after the other (p s, n)."""
         columns = ("path", "separation", "pinion_curvature_radius", "wheel_curvature_radius")
-        chosen = {name: getattr(self, name)[:, pairs] for name in columns}
-        return replace(self, number=self.number[pairs], **chosen)
+        each = (getattr(self, n).reshape(len(self.phase), -1, slices) for n in columns)
+        rows = (np.moveaxis(of, 2, 1).reshape(-1, of.shape[1]) for of in each)
+        chosen = dict(zip(columns, rows, strict=True), phase=np.repeat(self.phase, slices))
+        return replace(self, number=self.number[::slices], **chosen)
 
 
 def contact_places(contact: PathOfContact, phase: ArrayLike, *, extended: bool) -> ContactPlaces:
@@ -352,13 +354,9 @@ class ContactProblem:
         """
         from tribodyn.stiffness.loaded.kernel import solve_loads
 
-        phases, slices, pairs = self.gaps.shape
-        count = len(totals)
-        equilibrium = Equilibrium(
-            np.empty((count, phases)),
-            np.empty((count, phases, slices, pairs)),
-            np.empty((count, phases)),
-        )
+        count, phases = len(totals), len(self.gaps)
+        shapes = (count, phases), (count, *self.gaps.shape), (count, phases)
+        equilibrium = Equilibrium(*map(np.empty, shapes))
         forces = np.asarray(totals, dtype=float).reshape(count, -1)
         each = np.ascontiguousarray(np.broadcast_to(forces, (count, phases)))
         self._call(solve_loads, count, self._each_width, each, *equilibrium)
