@@ -152,7 +152,7 @@ LINES: dict[str, int] = {
     "contact": 400,
     "cookbook": 102,
     "drawing": 204,
-    "dynamics": 15751,
+    "dynamics": 15753,
     "ehl": 9327,
     "errors": 221,
     "exchange": 2162,

@@ -282,6 +282,7 @@ class _Search:
         """Change with more points of each part over each phase, or of before; times the points."""
         # Twice; more where the lines between excite a natural frequency.
         errors, times = before.copy(), np.full(before.shape, 2)
+        first = _first_points(self)
 
         def change(place: Index, factor: int) -> float:
             which = np.zeros(errors.shape, dtype=bool)
@@ -295,10 +296,12 @@ class _Search:
         for place in np.argwhere(again):
             errors[*place] = change(place, 2)
             jumps = state.each[place[0]].cell is not None
-            if jumps and place[1] == self.parts[place[0]].axis:
-                ahead = change(place, _AHEAD)
+            # As far as with so many times the points of the first grids.
+            factor = _AHEAD * first[place[0]][place[1]] // points[place[0]][place[1]]
+            if jumps and place[1] == self.parts[place[0]].axis and factor > 2:
+                ahead = change(place, factor)
                 if ahead > _RINGS * errors[*place]:
-                    errors[*place], times[*place] = ahead, _AHEAD
+                    errors[*place], times[*place] = ahead, factor
         return errors, times
 
 
