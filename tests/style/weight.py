@@ -178,7 +178,7 @@ LINES: dict[str, int] = {
     "report": 1745,
     "scope": 38,
     "signals": 1727,
-    "stiffness": 5185,
+    "stiffness": 5183,
     "study": 20124,
     "surrogate": 765,
     "types": 13,

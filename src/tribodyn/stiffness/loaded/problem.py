@@ -152,22 +152,18 @@ def slice_gaps(places: ContactPlaces, face_position: Array, *, teeth_alike: bool
 
 def coupled_compliance(pinion: GearInfluence, wheel: GearInfluence, places: ContactPlaces) -> Array:
     """Structural compliance of all pairs that may touch, coupled through both gear bodies."""
-    radii = [
-        np.clip(np.abs(radius), *gear.curvature_radius[[0, -1]])
-        for gear, radius in (
-            (pinion, places.pinion_curvature_radius),
-            (wheel, places.wheel_curvature_radius),
-        )
-    ]
     count, opposite = places.path.shape[1], -places.contact.pair.wheel.sign
-    total = np.empty((places.path.shape[0], count, count))
-    for i in range(count):
-        total[:, i, i] = pinion.at(radii[0][:, i]) + wheel.at(radii[1][:, i])
-        for j in range(i + 1, count):
-            further = (j - i) * places.direction
-            cross = pinion.between(radii[0][:, i], radii[0][:, j], further)
-            cross = cross + wheel.between(radii[1][:, i], radii[1][:, j], opposite * further)
-            total[:, i, j] = total[:, j, i] = cross
+    total = np.zeros((*places.path.shape, count))
+    for gear, radius, sense in (
+        (pinion, places.pinion_curvature_radius, places.direction),
+        (wheel, places.wheel_curvature_radius, opposite * places.direction),
+    ):
+        weights = gear._weights_at(np.clip(np.abs(radius.T), *gear.curvature_radius[[0, -1]]))
+        for i in range(count):
+            total[:, i, i] += weights[i] @ gear.self_compliance
+            for j in range(i + 1, count):
+                cross = gear._coupled(weights[i], weights[j], (j - i) * sense)
+                total[:, [i, j], [j, i]] += cross[:, None]
     return total
 
 

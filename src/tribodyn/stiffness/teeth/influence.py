@@ -154,13 +154,19 @@ class GearInfluence:
             why = "The displacement of the loaded tooth has a local part"
             remedy = "Use the self compliance, and add the compression of the contact"
             raise InputError("neighbour = 0", Argument("neighbour"), why, remedy)
-        first, second = self._inside(loaded_radius), self._inside(displaced_radius)
+        first, second = np.broadcast_arrays(loaded_radius, displaced_radius)
+        return self._coupled(self._weights_at(first), self._weights_at(second), neighbour)
+
+    def _weights_at(self, curvature_radius: Array | float) -> Array:
+        """Weights (..., nodes) of the values at the nodes at places within them."""
+        return self._weights(self._inside(curvature_radius))
+
+    def _coupled(self, loaded: Array, displaced: Array, neighbour: int) -> Array:
+        """As between, of places by their weights."""
         if abs(neighbour) > self.neighbours:
-            return np.zeros(np.broadcast_shapes(first.shape, second.shape))
-        if neighbour < 0:
-            first, second = second, first
-        loaded = self._weights(first) @ self.cross_compliance[abs(neighbour) - 1]
-        return np.asarray((loaded * self._weights(second)).sum(axis=-1))
+            return np.zeros(loaded.shape[:-1])
+        first, second = (loaded, displaced) if neighbour > 0 else (displaced, loaded)
+        return np.asarray(((first @ self.cross_compliance[abs(neighbour) - 1]) * second).sum(-1))
 
     def _inside(self, curvature_radius: Array | float) -> Array:
         """Bring rounding back to the nodes, and refuse what lies beyond them."""
