@@ -48,6 +48,18 @@ def test_ringing_of_a_slow_mesh_is_that_of_one_clock():
         assert forces[:, contact].max() == pytest.approx(one.max(), rel=0.02)
 
 
+def test_a_mesh_has_the_lines_of_another_that_its_grid_lacks():
+    """The fast mesh is a spring and a damper, at the 50th multiple of the slow one too."""
+    motion = over_phases()
+    force, moved = (motion.lines(name) for name in ("contact_force", "position"))
+    compression = moved.amplitude[:, 1] - moved.amplitude[:, 2]
+    expected = (2.4e8 + 2j * np.pi * moved.frequency * 2000.0) * compression
+    assert np.array_equal(force.numbers, moved.numbers)
+    ringing = np.flatnonzero((force.numbers == (50, 0)).all(axis=1))
+    assert abs(expected[ringing]) > 1.0  # N
+    assert np.abs(force.amplitude[:, 1] - expected).max() < 1e-6 * np.abs(expected[1:]).max()
+
+
 def test_the_warning_names_mesh_and_phase():
     with pytest.warns(
         ModelWarning, match=r"that of slow over the phase of its teeth \(20 Hz\), 16"

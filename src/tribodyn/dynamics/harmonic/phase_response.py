@@ -8,6 +8,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from tribodyn.arrays.linear_algebra import fast_length
+from tribodyn.dynamics.equations.nodes import springs
 from tribodyn.dynamics.harmonic.newton import State, tangents
 from tribodyn.dynamics.harmonic.phase_march import PhaseMarch
 from tribodyn.dynamics.harmonic.phase_residual import PhaseResidual
@@ -351,6 +352,7 @@ def phase_response(
     force, torque = structure.balanced(force, np.asarray(closing))
     omega = 2.0 * np.pi * (numbers @ frequency)
     q, v = structure.motion(omega, force)
+    others += _beyond_grids(rows, residual, numbers, q, v)
     lines = np.concatenate((q, v, 1j * omega[:, None] * v, others), axis=1)
     facts |= {"extra_force": torque, "period": 0, "engine": "harmonic-balance"}
     size, count, empty = system.size, len(system.contacts), np.zeros(0)
@@ -421,3 +423,21 @@ def _all_forces(
         np.add.at(total, place.reshape(-1), columns)
         totals.append(total[order])
     return numbers[order], totals[0], totals[1]
+
+
+def _beyond_grids(
+    rows: PhaseRows, residual: PhaseResidual, numbers: Index, q: ComplexArray, v: ComplexArray
+) -> ComplexArray:
+    """Compressions and forces of contacts at lines that their grids lack, as closed at rest."""
+    nodes, count = rows.means.nodes, len(rows.system.contacts)
+    entries = springs(nodes)[0], nodes.damping, nodes.direction
+    stiffness, damping, along = (np.einsum("rs,rsj...->j...", nodes.weight, e) for e in entries)
+    columns = np.zeros((len(numbers), 2 * count), dtype=complex)
+    for part in residual.parts:
+        lacking = np.flatnonzero((2 * np.abs(numbers) >= np.array(part.grid.shape)).any(axis=1))
+        moved, rate = (lines[lacking] @ along[part.members].T for lines in (q, v))
+        closed = np.where(part.closed, stiffness[part.members], 0.0).sum(axis=-1)
+        damped = np.where(part.closed[:, 0], damping[part.members], 0.0)
+        columns[np.ix_(lacking, part.members)] = moved
+        columns[np.ix_(lacking, count + part.members)] = moved * closed + rate * damped
+    return columns
