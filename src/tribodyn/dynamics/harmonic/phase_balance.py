@@ -342,6 +342,8 @@ def phase_balance(
     poor, before = np.zeros(np.shape(points), dtype=bool), np.zeros(np.shape(points))
     while solution.error <= limit:
         again = poor | (before >= _AGAIN * before.max())
+        if solution.error <= tolerance:  # the coarser one takes memory
+            converged_motion = points, residual, solution, before
         errors, times = search.changes(points, residual, solution.state, again, before)
         smooth &= bool(errors[poor].sum() <= _FALLING * before[poor].sum())
         if solution.error <= tolerance:
