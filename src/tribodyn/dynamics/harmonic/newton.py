@@ -156,11 +156,11 @@ def released(
     residual: Residual, y: Array, unit: Array, tolerance: float, patience: int, level: float
 ) -> tuple[Solution | None, float, Array]:
     """Solution by taking added damping away in steps, or none, and the least damping and motion."""
-    found: list[tuple[float, Array]] = []  # the last two levels and motions
+    motions: list[tuple[float, Array]] = []  # the last two levels and motions
     step, first = _STEP, y
     while True:
         residual.excess = np.expm1(level) * unit
-        y = _ahead(found, level) if found else first
+        y = _ahead(motions, level) if motions else first
         if level == 0.0:
             trial = newton(residual, y, 0.01 * tolerance, patience=patience)
             if trial.error <= tolerance:
@@ -168,21 +168,21 @@ def released(
         else:
             trial = newton(residual, y, _ROUGH, _TRIES, _QUICK)
         if level > 0.0 and trial.error <= _ROUGH:
-            found, step = [*found[-1:], (level, trial.state.y)], min(_WIDER * step, _WIDEST)
-        elif found:
+            motions, step = [*motions[-1:], (level, trial.state.y)], min(_WIDER * step, _WIDEST)
+        elif motions:
             step *= _LESS
         else:
             level *= 2.0
-        least = found[-1][0] if found else level
-        if (found and step < _NARROW * max(1.0, 2.0 * least)) or least > _HIGHEST:
+        least = motions[-1][0] if motions else level
+        if (motions and step < _NARROW * max(1.0, 2.0 * least)) or least > _HIGHEST:
             residual.excess = 0.0 * unit
-            return None, least, found[-1][1] if found else first
-        level = least if not found else least - step if least > 1.3 * step else 0.0
+            return None, least, motions[-1][1] if motions else first
+        level = least if not motions else least - step if least > 1.3 * step else 0.0
 
 
-def _ahead(found: list[tuple[float, Array]], level: float) -> Array:
+def _ahead(motions: list[tuple[float, Array]], level: float) -> Array:
     """Motion with other damping, on the line through two."""
-    (before, old), (last, new) = found[0], found[-1]
+    (before, old), (last, new) = motions[0], motions[-1]
     return new + (new - old) * ((level - last) / ((last - before) or 1.0))
 
 

@@ -474,8 +474,8 @@ def unknown_key(
         return Problem(what, "", why, remedy)
     for key, option in section.specs() if section else ():
         # A row of a list has it, as sections of a shaft have their length and diameter.
-        words = re.findall(r"\w+", option.meaning) if option.example.startswith("[[") else ()
-        if set(name.split("_")) <= set(words):
+        parts = re.findall(r"\w+", option.meaning) if option.example.startswith("[[") else ()
+        if set(name.split("_")) <= set(parts):
             return Problem(what, "", why, f"Write it in {key}, such as {key} = {option.example}")
     if longer := [key for key in keys if key.endswith(f"_{name}")]:
         return Problem(what, "", why, f"Did you mean {' or '.join(longer)}?")
