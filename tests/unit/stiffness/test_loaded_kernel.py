@@ -93,16 +93,6 @@ def test_force_at_an_approach_is_the_inverse_and_its_slope_the_tangent():
     )
 
 
-def test_flanks_that_are_further_apart_at_some_phases_carry_the_same_loads():
-    near = problem(2)
-    further = np.where(np.arange(6) % 2 == 0, 0.0, 2e-4)  # many times the deflection
-    apart = replace(near, gaps=near.gaps + further[:, None, None])
-    totals = np.array([50.0, 9000.0])
-    solution, wanted = apart.at_loads(totals), near.at_loads(totals)
-    assert solution.approach - further == pytest.approx(wanted.approach, rel=1e-8)
-    assert solution.load == pytest.approx(wanted.load, abs=1e-9 * wanted.load.max())
-
-
 def test_approaches_of_another_number_of_phases_never_reach_a_kernel():
     contact_problem = problem(4)
     for ask, name in ((contact_problem.at_approach, "approach"), (contact_problem.pickups, "most")):

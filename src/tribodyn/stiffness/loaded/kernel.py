@@ -258,8 +258,7 @@ def solve_loads(
     for p in range(A.shape[0]):
         teeth = Teeth(C[p], A[p], B)
         f[:] = 0.0
-        # The approach under the first load is near that at the phase before.
-        start = delta[0, p - 1] if p > 0 else -np.inf
+        start = -np.inf
         for t in range(totals.shape[0]):
             if flag[0] != 0:
                 return STOPPED
