@@ -154,7 +154,7 @@ LINES: dict[str, int] = {
     "contact": 400,
     "cookbook": 102,
     "drawing": 204,
-    "dynamics": 15773,
+    "dynamics": 15774,
     "ehl": 9327,
     "errors": 221,
     "exchange": 2162,

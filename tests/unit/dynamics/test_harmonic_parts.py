@@ -1,5 +1,7 @@
 """Parts of harmonic balance: Krylov solution, receptances, derivative of the residual, sampling."""
 
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 
@@ -10,7 +12,7 @@ from tribodyn.dynamics.equations.grid import PointEvaluator, system_events
 from tribodyn.dynamics.equations.nodes import evaluate_rows
 from tribodyn.dynamics.equations.orbit_coordinates import direction_basis
 from tribodyn.dynamics.harmonic.harmonic_balance import prepare
-from tribodyn.dynamics.harmonic.newton import solve_linear
+from tribodyn.dynamics.harmonic.newton import newton, solve_linear
 from tribodyn.dynamics.harmonic.orbit_response import series
 from tribodyn.dynamics.harmonic.tangent_march import TangentMarch
 from tribodyn.dynamics.modal.closed_structure import ClosedStructure
@@ -251,3 +253,18 @@ def test_leading_multiplier_is_that_of_all(seed):
     modes = np.eye(march._parts[0].size)
     values = np.linalg.eigvals(np.stack([march.moved(row) for row in modes], axis=1))
     assert march.leading_multiplier() == pytest.approx(np.abs(values).max(), rel=1e-4)
+
+
+def test_a_newton_step_that_is_not_finite_ends_the_search_without_a_warning():
+    """As where an integration of the linearized equations grows beyond all numbers."""
+    state = SimpleNamespace(y=np.ones((4, 1)), residual=np.ones((4, 1)), size=1.0)
+    growing = SimpleNamespace(
+        at=lambda y: state,
+        accuracy=lambda norms: 1e-4,
+        correction=lambda state, accuracy: solve_linear(
+            lambda x: 1e200 * x, -1e200 * state.residual, accuracy, 5
+        ),
+    )
+    solution = newton(growing, state.y, 1e-8)
+    assert solution.error == np.inf
+    assert solution.state is state

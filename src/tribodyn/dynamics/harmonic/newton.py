@@ -18,8 +18,9 @@ if TYPE_CHECKING:
     from tribodyn.dynamics.harmonic.phase_contacts import Cell
     from tribodyn.dynamics.harmonic.residual import Residual
 
-#: Newton steps, halvings of a step, and steps over which the residual may rise.
-_LIMIT, _HALVINGS, _MEMORY = 40, 4, 3
+#: Newton steps, halvings of a step, steps over which the residual may rise, and the residual over
+#: the first one at which the method has diverged.
+_LIMIT, _HALVINGS, _MEMORY, _DIVERGED = 40, 4, 3, 1e8
 #: Damping is added where Newton's method does not converge: logarithm of one and its number of
 #: units, the highest; the first, widest, and narrowest steps in which it is taken away, the last
 #: also over the damping, and the factors of the next step after a motion and after none.
@@ -137,14 +138,15 @@ def newton(
     best: tuple[float, State] = (np.inf, state)
     halved = 0
     for count in range(limit + 1):
-        step, products = residual.correction(state, residual.accuracy(norms))
+        with np.errstate(over="ignore", invalid="ignore"):  # a step that is not finite ends it
+            step, products = residual.correction(state, residual.accuracy(norms))
+            error = float(np.linalg.norm(step, axis=1).max(initial=0.0)) / state.size
         krylov += products
-        error = float(np.linalg.norm(step, axis=1).max(initial=0.0)) / state.size
         if error < 0.5 * best[0]:
             halved = count
         if error < best[0]:
             best = error, state
-        stuck = count == limit or count - halved >= patience
+        stuck = count == limit or count - halved >= patience or norms[-1] > _DIVERGED * norms[0]
         if error <= tolerance or stuck or not np.isfinite(error):
             break
         state = _search(residual, state, step, max(norms[-_MEMORY:]))
