@@ -189,8 +189,8 @@ class TribodynError(Exception):
             problems = Problem(problems, where, why, remedy)
         listed = (problems,) if isinstance(problems, Problem) else tuple(problems)
         if len(listed) > _MOST:
-            rest = f"{len(listed) - _MOST} more problems are not listed"
-            listed = (*listed[:_MOST], Problem(rest, remedy="Correct these first"))
+            more = f"{len(listed) - _MOST} more problems are not listed"
+            listed = (*listed[:_MOST], Problem(more, remedy="Correct these first"))
         self.problems = listed
         super().__init__("\n".join(str(problem) for problem in self.problems))
 
@@ -485,10 +485,11 @@ def require_one_of(name: str, value: object, choices: Iterable[str]) -> str:
 def no_such(
     kind: str, name: str, names: Iterable[str], where: Argument | str = "", remedy: str = ""
 ) -> Problem:
-    """Problem of a name that is none of those known, with the closest one."""
-    known = list(names)
-    why, otherwise = f"Known: {', '.join(known) or 'none'}", remedy or "Choose one of these"
-    return Problem(f'there is no {kind} "{name}"', where, why, did_you_mean(name, known, otherwise))
+    """Problem of an unknown name, with the closest one of the list."""
+    listed = list(names)
+    remedy = did_you_mean(name, listed, remedy or "Choose one of these")
+    why = f"Known: {', '.join(listed) or 'none'}"
+    return Problem(f'there is no {kind} "{name}"', where, why, remedy)
 
 
 def did_you_mean(name: object, names: Iterable[str], otherwise: str = "") -> str:

@@ -171,12 +171,12 @@ def test_every_changed_value_loses_its_reason(name: str, tmp_path: Path) -> None
             continue
         loses_its_reason(case, changed, key, changed_text := with_every_key(changed))
         done["replace"] += 1
-        line = re.search(
+        lines = re.findall(
             rf"^{key.rpartition('.')[2]} = .*$", edited_block(changed_text, key), re.MULTILINE
         )
-        assert line is not None
+        assert len(lines) == 1, key
         for way, began in (("file", text), ("old file", old_form(text))):
-            path.write_text(edited(began, key, line.group()), encoding="utf-8")
+            path.write_text(edited(began, key, lines[0]), encoding="utf-8")
             try:
                 changed = td.load_case(path)
             except InputError:

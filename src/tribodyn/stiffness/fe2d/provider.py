@@ -174,7 +174,7 @@ def fe2d_influence(
     (True, 3)
     """
     wind_up = wind_up_to_take_off(gear, material, reference)
-    count = known_neighbours(gear, neighbours)
+    count = neighbour_count(gear, neighbours)
     unit = _unit(gear, material.poissons_ratio, count, size or MeshSize(), cache)
     self_compliance = unit.self_compliance / material.youngs_modulus - wind_up
     if not np.all(self_compliance > 0.0):
@@ -196,7 +196,7 @@ def _too_thin(gear: SpurGear) -> Problem:
     )
 
 
-def known_neighbours(gear: SpurGear, wanted: int) -> int:
+def neighbour_count(gear: SpurGear, wanted: int) -> int:
     """Number of neighbours on each side, no more than there are."""
     if wanted < 1:
         why, remedy = "Teeth in contact at the same time move one another", "Give 1 or more"

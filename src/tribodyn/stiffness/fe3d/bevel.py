@@ -226,4 +226,8 @@ def _unit(sector: BevelSector, progress: Progress) -> UnitFlankCompliances:
         return unit_flank_compliances(sector, progress=progress)
 
     name = hashlib.sha256(text.encode()).hexdigest()
-    return looked_up(UnitFlankCompliances, name, compute, method="fe3d")
+
+    def fits(unit: UnitFlankCompliances) -> bool:
+        return unit.compliance.shape[1:] == (unit.layer.size, unit.layer.size)
+
+    return looked_up(UnitFlankCompliances, name, compute, fits, "fe3d")

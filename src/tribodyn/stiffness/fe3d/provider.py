@@ -24,8 +24,8 @@ from tribodyn.stiffness.fe2d.flank_load import nodal_weights
 from tribodyn.stiffness.fe2d.provider import (
     digest_of,
     held_radius,
-    known_neighbours,
     looked_up,
+    neighbour_count,
     wind_up_to_take_off,
 )
 from tribodyn.stiffness.fe2d.ring import assembled, symmetric_factors
@@ -211,7 +211,7 @@ def fe3d_influence(
     3
     """
     wind_up = wind_up_to_take_off(gear, material, reference) / gear.face_width
-    count = known_neighbours(gear, neighbours)
+    count = neighbour_count(gear, neighbours)
     sector = gear_sector(gear, material.poissons_ratio, size or SolidSize())
     unit = _unit(sector, count, cache, progress)
     module = gear.normal_module
