@@ -3,7 +3,7 @@
 The stiffness of the contacts is a mean, and for each phase the mean over all other phases less
 that. With the part of one phase alone, the equations of the lines that differ in the number of this
 phase only are small and dense; the product of these inverses leaves what couples two phases
-through the structure, so that a few Krylov vectors remain.
+through the structure, so that a few Krylov vectors remain. Their factors have single precision.
 """
 
 from __future__ import annotations
@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from tribodyn.dynamics.harmonic.newton import State
+from tribodyn.dynamics.harmonic.phase_grid import PhaseGrid
 from tribodyn.types import Array, ComplexArray, Index
 
 if TYPE_CHECKING:
@@ -20,10 +21,10 @@ if TYPE_CHECKING:
 
 #: Part of the largest variation of a stiffness that is too small to matter.
 _SMALL = 0.02
-#: Bytes of the inverse of the lines of one phase alone, and of those that others shift; with more,
+#: Bytes of the factors of the lines of one phase alone, and of those that others shift; with more,
 #: only the lines at which the structure yields most are coupled.
-_CENTRAL, _OTHERS = 2**25, 2**27
-#: Bytes of the matrices that are inverted at once.
+_CENTRAL, _OTHERS = 2**24, 2**26
+#: Bytes of the matrices that are set up at once.
 _AT_ONCE = 2**22
 
 
@@ -71,28 +72,43 @@ class _Block(NamedTuple):
 
     rows: Index
     chosen: Index  #: lines of each row that are coupled (m, l)
-    moved: ComplexArray  #: change of these lines with the motion that is felt (m, l r, l w)
+    factors: list[tuple[Any, ...]]  #: of the equations of the motion that is felt (l w, l w)
+    others: ComplexArray  #: change of the other directions with it (m, l (r - w), l w)
 
     @classmethod
     def of(
-        cls, rows: Index, most: float, gain: ComplexArray, rate: ComplexArray, along: Array,
-        waves: list[Array],
-    ) -> _Block:  # fmt: skip
-        """Solve the equations of some rows, with a matrix of at most so many bytes for each."""
-        chosen = _softest(gain[rows], int(np.sqrt(most / 16.0) / len(along)))
-        size = chosen.shape[1] * len(along)
-        some = max(1, _AT_ONCE // (16 * size**2))
-        moved = [np.zeros((0, chosen.shape[1] * gain.shape[2], size), dtype=complex)]
+        cls, rows: Index, most: float, gain: ComplexArray, rate: ComplexArray, waves: list[Array]
+    ) -> _Block:
+        """Factorize the equations of some rows, each of at most so many bytes."""
+        from scipy.linalg.lapack import cgetrf
+
+        felt = waves[0].shape[2]
+        chosen = _softest(gain[rows], int(np.sqrt(most / 8.0) / felt))
+        size = chosen.shape[1] * felt
+        some = max(1, _AT_ONCE // (8 * size**2))
+        factors: list[tuple[Any, ...]] = []
+        others = [np.zeros((0, chosen.shape[1] * (gain.shape[2] - felt), size), np.complex64)]
         for first in range(0, len(rows), some):
             lines = chosen[first : first + some]
             place = rows[first : first + some, None], lines
             spring, damper = (_between_lines(wave, lines) for wave in waves)
-            force = spring + damper * np.repeat(rate[place], len(along), axis=1)[:, None, None]
-            change = gain[place] @ force  # of the lines with their motion (m, l, r, l w)
-            loop = np.eye(size) - (along @ change).reshape(-1, size, size)
-            change = change.reshape(len(lines), -1, size)
-            moved.append(np.asarray(change @ np.linalg.inv(loop), dtype=complex))
-        return cls(rows, chosen, np.concatenate(moved))
+            damper *= np.repeat(rate[place], felt, axis=1)[:, None, None]
+            change = gain[place] @ (spring + damper)  # of lines with their motion (m, l, r, l w)
+            others.append(change[:, :, felt:].reshape(len(lines), -1, size))
+            loops = np.eye(size, dtype=np.float32) - change[:, :, :felt].reshape(-1, size, size)
+            factors += [cgetrf(loop)[:2] for loop in loops]
+        return cls(rows, chosen, factors, np.concatenate(others))
+
+    def solve(self, lines: ComplexArray) -> None:
+        """Replace motions (m, l, r), those of directions that are felt first, by solutions."""
+        from scipy.linalg.lapack import cgetrs
+
+        felt = self.factors[0][1].size // self.chosen.shape[1]
+        pairs = zip(self.factors, lines[..., :felt].reshape(len(lines), -1), strict=True)
+        solved = np.array([cgetrs(*factors, right)[0] for factors, right in pairs])
+        lines[..., :felt] = solved.reshape(*self.chosen.shape, felt)
+        moved = self.others @ solved[..., None]
+        lines[..., felt:] += moved.reshape(*self.chosen.shape, -1)
 
 
 class _OnePhase:
@@ -102,15 +118,14 @@ class _OnePhase:
         self, residual: OnGrid, axis: int, mean: list[Array], varying: list[Array],
         mean_stiffness: Array | None,
     ) -> None:  # fmt: skip
-        grid = residual.grid
-        self.shape, self.axis = grid.shape, axis
-        teeth: int = residual.structure.rows.teeth(axis)
-        self.teeth = teeth if self.shape[axis] % teeth == 0 else 1
-        self.half = (axis - 1) % len(grid.shape) if len(grid.shape) > 1 else None
-        numbers = self._numbers()
-        omega = 2.0 * np.pi * (numbers @ grid.frequency)
-        omega[np.abs(omega) <= 1e-12 * np.abs(omega).max()] = 0.0
-        unpaired = (2 * np.abs(numbers) == np.array(grid.shape)).any(axis=-1)
+        self.shape, self.axis = residual.grid.shape, axis
+        count, teeth = self.shape[axis], residual.structure.rows.teeth(axis)
+        self.teeth: int = teeth if count % teeth == 0 else 1
+        # This phase is the first one, which has no half spectrum.
+        order = [axis, *np.delete(np.arange(len(self.shape)), axis)]
+        shape = tuple(self.shape[each] for each in order)
+        self.grid = grid = PhaseGrid(shape, residual.grid.frequency[order])
+        omega, unpaired = (each.reshape(count, -1).T for each in (grid.omega, grid.unpaired))
         receptances = residual.structure.receptances(omega.reshape(-1))
         receptances = receptances.reshape(*omega.shape, *receptances.shape[1:])
         receptances[unpaired] = 0.0
@@ -121,82 +136,54 @@ class _OnePhase:
         self.base = np.linalg.inv(np.eye(mean_gain.shape[-1]) - mean_gain)
         varying = [varying[0], varying[1] * np.abs(omega).max()]
         varying = [part.reshape(self.teeth, -1, *part.shape[1:]).mean(axis=0) for part in varying]
-        push, self.along = _bases(varying)
-        waves = [push.T @ part @ self.along.T for part in varying]
-        gain = self._by_tooth(self.base @ receptances @ push)  # (m, n, r, a)
-        rate = self._by_tooth(rate / np.abs(omega).max())
-        others = np.delete(numbers[:, 0], axis, axis=1).any(axis=1).repeat(self.teeth)
+        push, self.basis, felt = _bases(varying)
+        waves = [push.T @ part @ self.basis[:felt].T for part in varying]
+        gain = self.basis @ self.base @ receptances @ push  # (m, n, r, a)
+        gain = self._by_tooth(gain.astype(np.complex64))
+        rate = self._by_tooth((rate / np.abs(omega).max()).astype(np.complex64))
+        others = grid.numbers[: len(omega), 1:].any(axis=1).repeat(self.teeth)
         # Most of a motion has this phase alone: its lines are all coupled, of others the softest.
         self.blocks = []
         for rows, most in ((np.flatnonzero(~others), _CENTRAL), (np.flatnonzero(others), _OTHERS)):
-            self.blocks.append(_Block.of(rows, most / len(rows), gain, rate, self.along, waves))
+            self.blocks.append(_Block.of(rows, most / len(rows), gain, rate, waves))
 
     def solved(self, y: Array, *, first: bool) -> Array:
         """Solution (p, r) for the right-hand side, or for one that the mean has solved already."""
-        lines = self._lines(y)
+        turned = np.moveaxis(y.reshape(*self.shape, -1), self.axis, 0)
+        table = self.grid.spectrum(turned.reshape(y.shape))
+        lines = table.reshape(self.shape[self.axis], -1, y.shape[1]).swapaxes(0, 1)
         if first:
             lines = (self.base @ lines[..., None])[..., 0]
         lines = self._by_tooth(lines)
         for block in self.blocks:
             place = block.rows[:, None], block.chosen
-            felt = (lines[place] @ self.along.T).reshape(len(block.rows), -1, 1)
-            lines[place] += (block.moved @ felt).reshape(*block.chosen.shape, -1)
-        table = lines.reshape(-1, self.teeth, *lines.shape[1:]).swapaxes(1, 2)
-        return self._values(table.reshape(-1, self.shape[self.axis], lines.shape[-1]))
+            along = lines[place] @ self.basis.T
+            block.solve(along)
+            lines[place] = along @ self.basis
+        lines = lines.reshape(-1, self.teeth, *lines.shape[1:]).swapaxes(1, 2)
+        lines = lines.reshape(-1, self.shape[self.axis], y.shape[1]).swapaxes(0, 1)
+        values = self.grid.values(lines.reshape(table.shape))
+        return np.moveaxis(values.reshape(turned.shape), 0, self.axis).reshape(y.shape)
 
     def _by_tooth(self, lines: Any) -> Any:
         """Lines (m, n, ...) with those in a row that teeth couple which are equal on average."""
         table = lines.reshape(len(lines), -1, self.teeth, *lines.shape[2:]).swapaxes(1, 2)
         return table.reshape(-1, *table.shape[2:])
 
-    def _axes(self) -> list[int]:
-        """Phases in the order of the transform, the one of the half spectrum at the end."""
-        axes = [axis for axis in range(len(self.shape)) if axis != self.half]
-        return axes if self.half is None else [*axes, self.half]
 
-    def _numbers(self) -> Index:
-        """Whole numbers of the lines (m, n, phases), all of this phase in a row."""
-        parts = [np.rint(np.fft.fftfreq(count) * count) for count in self.shape]
-        if self.half is not None:
-            parts[self.half] = np.arange(self.shape[self.half] // 2 + 1.0)
-        lines = np.stack(np.meshgrid(*parts, indexing="ij"), axis=-1)
-        row = np.moveaxis(lines, self.axis, -2)
-        return row.reshape(-1, *row.shape[-2:]).astype(np.int64)
-
-    def _lines(self, y: Array) -> ComplexArray:
-        """Lines (m, n, r) of values (p, r)."""
-        values = y.reshape(*self.shape, -1)
-        axes = self._axes()
-        lines = (
-            np.fft.fftn(values, axes=axes) if self.half is None else np.fft.rfftn(values, axes=axes)
-        )
-        self._folded = np.moveaxis(lines, self.axis, -2).shape
-        return np.asarray(np.moveaxis(lines, self.axis, -2).reshape(-1, *self._folded[-2:]))
-
-    def _values(self, lines: ComplexArray) -> Array:
-        """Values (p, r) of lines (m, n, r)."""
-        table = np.moveaxis(lines.reshape(self._folded), -2, self.axis)
-        axes = self._axes()
-        if self.half is None:
-            values = np.fft.ifftn(table, axes=axes).real
-        else:
-            values = np.fft.irfftn(table, [self.shape[axis] for axis in axes], axes)
-        return np.asarray(values.reshape(-1, lines.shape[-1]))
-
-
-def _bases(varying: list[Array]) -> tuple[Array, Array]:
-    """Orthonormal bases (s, a) and (w, r) of the forces and motions of what varies."""
+def _bases(varying: list[Array]) -> tuple[Array, Array, int]:
+    """Orthonormal bases (s, a) of forces and (r, r) of motions, the first of which they follow."""
     stacked = np.concatenate(varying)  # (2 n, s, r)
     left, size, _ = np.linalg.svd(np.concatenate(list(stacked), axis=1), full_matrices=False)
     flat = stacked.reshape(-1, stacked.shape[-1])
     _, length, right = np.linalg.svd(flat, full_matrices=False)
-    return left[:, size > _SMALL * size[0]], right[length > _SMALL * length[0]]
+    return left[:, size > _SMALL * size[0]], right, int(np.sum(length > _SMALL * length[0]))
 
 
 def _between_lines(part: Array, chosen: Index) -> ComplexArray:
     """Force of lines of each row per motion of others (m, l, a, l w), of a stiffness (n, a, w)."""
     between = (chosen[:, :, None] - chosen[:, None]) % len(part)
-    waves = (np.fft.fft(part, axis=0) / len(part))[between]  # (m, l, l, a, w)
+    waves = (np.fft.fft(part, axis=0) / len(part)).astype(np.complex64)[between]  # (m, l, l, a, w)
     return np.asarray(np.moveaxis(waves, 3, 2).reshape(*chosen.shape, part.shape[1], -1))
 
 
