@@ -16,23 +16,25 @@ from tribodyn.errors import ModelWarning
 SLOW, FAST = 20.0, 311.7
 
 
-def gears(phases):
+def gears(phases, ramps=()):
     """A slow mesh whose stiffness jumps, and a fast one of constant stiffness."""
     slow, fast = ((1, 0), (0, 1)) if phases else (1, 1)
     first = Contact(
         [1.0, -1.0, 0.0], lambda x: np.where(np.asarray(x) % 1.0 < 0.6, 2.6e8, 1.8e8), 2000.0,
         cycles=slow, events=(0.0, 0.6), name="slow",
+        ramp_stiffness=[1e7] * len(ramps), ramp_gap=ramps,
     )  # fmt: skip
-    second = Contact([0.0, 1.0, -1.0], 2.4e8, 2000.0, cycles=fast, name="fast")
+    fewer = {"ramp_stiffness": [1e7] * len(ramps[1:]), "ramp_gap": ramps[1:]}
+    second = Contact([0.0, 1.0, -1.0], 2.4e8, 2000.0, cycles=fast, name="fast", **fewer)
     # Natural frequencies of about 1.0 and 2.1 kHz are multiples 50 and 105 of the slow mesh.
     masses, ground = np.diag([8.0, 12.0, 3.0]), np.diag([0.0, 0.0, 2e8])
     return System(masses, np.diag([300.0] * 3), ground, [5e4, 0.0, 0.0], [first, second])
 
 
 @cache
-def over_phases():
-    """Motion over the phases of both meshes."""
-    return harmonic_balance(gears(phases=True), (SLOW, FAST))
+def over_phases(ramps=()):
+    """Motion over the phases of both meshes; ramps of the slow one begin beyond its compression."""
+    return harmonic_balance(gears(phases=True, ramps=ramps), (SLOW, FAST))
 
 
 def test_ringing_of_a_slow_mesh_is_that_of_one_clock():
@@ -48,9 +50,10 @@ def test_ringing_of_a_slow_mesh_is_that_of_one_clock():
         assert forces[:, contact].max() == pytest.approx(one.max(), rel=0.02)
 
 
-def test_a_mesh_has_the_lines_of_another_that_its_grid_lacks():
+@pytest.mark.parametrize("ramps", [(), (1.0, 2.0)])
+def test_a_mesh_has_the_lines_of_another_that_its_grid_lacks(ramps):
     """The fast mesh is a spring and a damper, at the 50th multiple of the slow one too."""
-    motion = over_phases()
+    motion = over_phases(ramps)
     force, moved = (motion.lines(name) for name in ("contact_force", "position"))
     compression = moved.amplitude[:, 1] - moved.amplitude[:, 2]
     expected = (2.4e8 + 2j * np.pi * moved.frequency * 2000.0) * compression

@@ -429,15 +429,16 @@ def _beyond_grids(
     rows: PhaseRows, residual: PhaseResidual, numbers: Index, q: ComplexArray, v: ComplexArray
 ) -> ComplexArray:
     """Compressions and forces of contacts at lines that their grids lack, as closed at rest."""
-    nodes, count = rows.means.nodes, len(rows.system.contacts)
-    entries = springs(nodes)[0], nodes.damping, nodes.direction
-    stiffness, damping, along = (np.einsum("rs,rsj...->j...", nodes.weight, e) for e in entries)
+    count = len(rows.system.contacts)
     columns = np.zeros((len(numbers), 2 * count), dtype=complex)
     for part in residual.parts:
+        nodes = part.structure.rows.means.nodes
+        entries = springs(nodes)[0], nodes.damping, nodes.direction
+        stiffness, damping, along = (np.einsum("rs,rsj...->j...", nodes.weight, e) for e in entries)
         lacking = np.flatnonzero((2 * np.abs(numbers) >= np.array(part.grid.shape)).any(axis=1))
-        moved, rate = (lines[lacking] @ along[part.members].T for lines in (q, v))
-        closed = np.where(part.closed, stiffness[part.members], 0.0).sum(axis=-1)
-        damped = np.where(part.closed[:, 0], damping[part.members], 0.0)
+        moved, rate = (lines[lacking] @ along.T for lines in (q, v))
+        closed = np.where(part.closed, stiffness, 0.0).sum(axis=-1)
+        damped = np.where(part.closed[:, 0], damping, 0.0)
         columns[np.ix_(lacking, part.members)] = moved
         columns[np.ix_(lacking, count + part.members)] = moved * closed + rate * damped
     return columns
