@@ -132,18 +132,19 @@ def starting_state(residual: ClockResidual, state: State) -> tuple[Array, Array]
 
 def series(amplitudes: ComplexArray, steps: int, phase: Array) -> Array:
     """Fourier series with amplitudes (k, n) of a motion on ``steps`` samples, at any phases."""
+    from scipy import fft
+    from scipy.sparse import csr_matrix
+
     # On equal steps all phases are samples of the series.
     count = 2 * (phase.size // 3)
     if count < steps or np.abs(phase * count - np.rint(phase * count)).max() > 1e-7:
         count = _REFINED * steps
-    padded = np.zeros((count // 2 + 1, amplitudes.shape[1]), dtype=complex)
-    padded[: len(amplitudes)] = amplitudes
-    fine = np.fft.irfft(padded, count, axis=0, norm="forward")
+    fine = fft.irfft(amplitudes, count, axis=0, norm="forward")
     place = phase * count
     nearest = np.rint(place)
     if np.abs(place - nearest).max() < 1e-7:
         return np.asarray(fine[nearest.astype(np.int64) % count])
-    first = np.floor(place).astype(np.int64) - _POINTS // 2 + 1
-    shares = polynomial_shares(place[:, None] - first[:, None] - np.arange(_POINTS))
-    each = (shares[:, k, None] * fine[(first + k) % count] for k in range(_POINTS))
-    return np.asarray(sum(each))
+    points = np.floor(place).astype(np.int64)[:, None] + np.arange(_POINTS) - _POINTS // 2 + 1
+    shares = polynomial_shares(place[:, None] - points).reshape(-1)
+    ends, columns = np.arange(0, shares.size + 1, _POINTS), (points % count).reshape(-1)
+    return np.asarray(csr_matrix((shares, columns, ends), (phase.size, count)) @ fine)
