@@ -27,7 +27,7 @@ _RECORDED, _MOST = 64, 4096
 #: Logarithm of the decay after which a time integration has settled.
 _SETTLED = 5.0
 #: Numbers that are held at once in samples, and while lines are summed up.
-_TOGETHER, _WAVES = 2**22, 2**15
+_TOGETHER, _WAVES = 2**22, 2**19
 #: Samples per cycle of the fastest phase along the closed line, most cycles of it for each further
 #: phase, and cycles over which no phases fall into step on it if it can be.
 _SAMPLED, _LONGEST, _APART = 64, 512, 12
