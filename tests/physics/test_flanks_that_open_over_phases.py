@@ -9,6 +9,7 @@ import pytest
 from scipy.integrate import solve_ivp
 
 from tribodyn.dynamics import Contact, System, harmonic_balance
+from tribodyn.dynamics.harmonic import residual
 
 MASS = np.array([1.0124, 1.4138, 1.4208, 2.8117, 0.21168, 0.52338, 5.8178, 8.1268])
 FREQUENCIES = np.array([2244.0, 770.31])
@@ -51,8 +52,8 @@ def series(terms, x, order=0):
     return np.cos(angles) @ terms[:, 0] if not order else -np.sin(angles) @ (terms[:, 0] * n)
 
 
-@pytest.fixture(scope="module")
-def system():
+def pressed(share=1.0):
+    """System under a share of its load."""
     contacts = [
         Contact(
             ROWS[m], lambda x, m=m: SPRING[m] * (1 + series(STIFF[m], x)), DAMPER[m],
@@ -61,7 +62,12 @@ def system():
         )
         for m in range(2)
     ]  # fmt: skip
-    return System(np.diag(MASS), *matrices(), load(), contacts)
+    return System(np.diag(MASS), *matrices(), share * load(), contacts)
+
+
+@pytest.fixture(scope="module")
+def system():
+    return pressed()
 
 
 def slope(t, state):
@@ -105,3 +111,20 @@ def test_a_march_that_starts_on_a_motion_with_open_flanks_stays_on_it(motion):
     compression, expected = at.position @ ROWS.T, marched[:, :8] @ ROWS.T
     error = np.abs(compression - expected).max() / np.linalg.norm(expected, axis=1).max()
     assert error < 2.0 * motion.step_error
+
+
+@pytest.mark.filterwarnings("ignore:.*steady-state")
+def test_a_search_without_a_motion_ends_after_a_bounded_number_of_products(monkeypatch):
+    """Flanks that rattle have no motion over phases; what the search spends is counted."""
+    spent, linear = [], residual.solve_linear
+
+    def counted(*arguments):
+        solution, count = linear(*arguments)
+        spent.append(count)
+        return solution, count
+
+    monkeypatch.setattr(residual, "solve_linear", counted)
+    motion = harmonic_balance(pressed(0.5), FREQUENCIES)
+    assert not motion.converged
+    assert np.all(np.mean(motion.fine.contact_force == 0.0, axis=0) > 0.3)
+    assert 200 < sum(spent) < 700

@@ -155,7 +155,7 @@ LINES: dict[str, int] = {
     "contact": 400,
     "cookbook": 102,
     "drawing": 204,
-    "dynamics": 15765,
+    "dynamics": 15778,
     "ehl": 9327,
     "errors": 222,
     "exchange": 2162,

@@ -25,10 +25,14 @@ _LIMIT, _HALVINGS, _MEMORY, _DIVERGED = 40, 4, 3, 1e8
 #: units, the highest; the first, widest, and narrowest steps in which it is taken away, the last
 #: also over the damping, and the factors of the next step after a motion and after none.
 _HIGHEST, _STEP, _WIDEST, _NARROW, _WIDER, _LESS = 6.0, 1.0, 1.5, 0.04, 1.6, 0.4
-#: Accuracy of the motions on the way, Newton steps to each, and steps that halve the error.
-_ROUGH, _TRIES, _QUICK = 1e-3, 10, 4
+#: Accuracy of the motions on the way, Newton steps to each, steps that halve the error, and most
+#: products with the derivative.
+_ROUGH, _TRIES, _QUICK, _BRIEF = 1e-3, 10, 4, 120
 #: Accuracy of a linear solution and its largest number of vectors.
 LINEAR, VECTORS = 1e-4, 120
+#: Products with the derivative that may be spent if nothing else is said, and from a motion that
+#: may be near; steps in which the error halves there.
+_FREELY, _DIRECT, _PATIENCE = 10**6, 180, 8
 
 
 class State(NamedTuple):
@@ -130,16 +134,18 @@ def solve_linear(
 
 
 def newton(
-    residual: Residual, y: Array, tolerance: float, limit: int = _LIMIT, patience: int = _LIMIT
-) -> Solution:
+    residual: Residual, y: Array, tolerance: float, limit: int = _LIMIT, patience: int = _LIMIT,
+    most: int = _FREELY,
+) -> Solution:  # fmt: skip
     """Newton's method with a line search; it ends if the error halves in no ``patience`` steps."""
+    # most: products with the derivative at which it ends too
     state, krylov, error = residual.at(y), 0, np.inf
     norms = [float(np.linalg.norm(state.residual))]
     best: tuple[float, State] = (np.inf, state)
     halved = 0
     for count in range(limit + 1):
         with np.errstate(over="ignore", invalid="ignore"):  # a step that is not finite ends it
-            step, products = residual.correction(state, residual.accuracy(norms))
+            step, products = residual.correction(state, residual.accuracy(norms), most - krylov)
             error = float(np.linalg.norm(step, axis=1).max(initial=0.0)) / state.size
         krylov += products
         if error < 0.5 * best[0]:
@@ -147,28 +153,35 @@ def newton(
         if error < best[0]:
             best = error, state
         stuck = count == limit or count - halved >= patience or norms[-1] > _DIVERGED * norms[0]
-        if error <= tolerance or stuck or not np.isfinite(error):
+        if error <= tolerance or stuck or krylov >= most or not np.isfinite(error):
             break
         state = _search(residual, state, step, max(norms[-_MEMORY:]))
         norms.append(float(np.linalg.norm(state.residual)))
     return Solution(best[1], best[0], count, krylov)
 
 
+def solved(residual: Residual, y: Array, tolerance: float, most: int = _DIRECT) -> Solution:
+    """Newton's method from a motion that may be near; it gives up where it is not."""
+    return newton(residual, y, 0.01 * tolerance, _LIMIT, _PATIENCE, min(most, _DIRECT))
+
+
 def released(
-    residual: Residual, y: Array, unit: Array, tolerance: float, patience: int, level: float
-) -> tuple[Solution | None, float, Array]:
+    residual: Residual, y: Array, unit: Array, tolerance: float, level: float, most: int
+) -> tuple[Solution | None, float, Array, int]:
     """Solution by taking added damping away in steps, or none, and the least damping and motion."""
+    # most: products that may be spent; the number of those that are left comes back
     motions: list[tuple[float, Array]] = []  # the last two levels and motions
     step, first = _STEP, y
     while True:
         residual.excess = np.expm1(level) * unit
         y = _ahead(motions, level) if motions else first
         if level == 0.0:
-            trial = newton(residual, y, 0.01 * tolerance, patience=patience)
+            trial = solved(residual, y, tolerance, most)
             if trial.error <= tolerance:
-                return trial, level, trial.state.y
+                return trial, level, trial.state.y, most - trial.krylov
         else:
-            trial = newton(residual, y, _ROUGH, _TRIES, _QUICK)
+            trial = newton(residual, y, _ROUGH, _TRIES, _QUICK, min(most, _BRIEF))
+        most -= trial.krylov
         if level > 0.0 and trial.error <= _ROUGH:
             motions, step = [*motions[-1:], (level, trial.state.y)], min(_WIDER * step, _WIDEST)
         elif motions:
@@ -176,9 +189,10 @@ def released(
         else:
             level *= 2.0
         least = motions[-1][0] if motions else level
-        if (motions and step < _NARROW * max(1.0, 2.0 * least)) or least > _HIGHEST:
+        narrow = motions and step < _NARROW * max(1.0, 2.0 * least)
+        if narrow or least > _HIGHEST or most <= 0:
             residual.excess = 0.0 * unit
-            return None, least, motions[-1][1] if motions else first
+            return None, least, motions[-1][1] if motions else first, most
         level = least if not motions else least - step if least > 1.3 * step else 0.0
 
 

@@ -19,7 +19,7 @@ from tribodyn.dynamics.equations.orbit_coordinates import (
 )
 from tribodyn.dynamics.equations.phases import read_frequencies
 from tribodyn.dynamics.equations.system import System, contact_label
-from tribodyn.dynamics.harmonic.newton import Solution, State, newton, released
+from tribodyn.dynamics.harmonic.newton import Solution, State, released, solved
 from tribodyn.dynamics.harmonic.phase_contacts import PhaseContacts
 from tribodyn.dynamics.harmonic.phase_grid import (
     Fields,
@@ -95,8 +95,9 @@ _AGAIN = 1e-3
 _UNIT, _ADDED, _GAINS = 0.003, 4.6, 0.7
 #: Growth in a cycle of the fastest phase that is warned of; logarithm of the largest stated one.
 _GROWS, _HIGH = 1.001, 50.0
-#: Accuracy of the linear motion, and Newton steps in which the error halves if points suffice.
-_ROUGH, _PATIENCE = 0.1, 8
+#: Accuracy of the linear motion, most products with the derivative of the motions with added
+#: damping, and of these times unknowns.
+_ROUGH, _RELEASE, _SPENT = 0.1, 480, 8_000_000
 
 
 class Work(NamedTuple):
@@ -114,7 +115,7 @@ def work_of(system: System, frequency: Any, supports: Sequence[RadialClearance] 
     tried = residual.ends[-1] <= _TRIAL
     state = residual.at(search.still(residual))
     if tried:
-        state = newton(residual, search.linear(residual), 1e-6, patience=_PATIENCE).state
+        state = solved(residual, search.linear(residual), 1e-4).state
     kind = "smooth" if np.ptp(state.rate) or not tried else "steady"
     contacts = [part.contacts for part in residual.parts]
     jumps = any(isinstance(each, PhaseContacts) and each.jumps.line.size for each in contacts)
@@ -223,15 +224,16 @@ class _Search:
         """Motion on the first grids, on finer ones if they are free and help to find it."""
         residual = self.residual(points)
         y = self.linear(residual) if start is None else self._resampled(start, residual)
-        tried = points, residual, newton(residual, y, 0.01 * tolerance, patience=_PATIENCE)
+        tried = points, residual, solved(residual, y, tolerance)
         if tried[-1].error <= tolerance:
             return tried
         level, before, followed = _ADDED, np.inf, self.followed()
-        while level <= _GAINS * before:
+        left = min(_RELEASE, _SPENT // self.size(points))
+        while level <= _GAINS * before and left > 0:
             before = level
-            solution, level, y = released(residual, y, self.damping, tolerance, _PATIENCE, level)
-            if solution is not None:
-                return points, residual, solution
+            found, level, y, left = released(residual, y, self.damping, tolerance, level, left)
+            if found is not None:
+                return points, residual, found
             more = doubled(points, np.ones_like(followed))
             more = more if self.size(more) <= _MOST else doubled(points, followed)
             if not free or np.max(points) >= _LAST or self.size(more) > _MOST:
@@ -356,7 +358,7 @@ def phase_balance(
         points, limit = doubled(points, poor, times), max(tolerance, _NEARLY * errors.sum())
         finer = search.residual(points, residual)
         start_y = residual.refined(solution.state.y, finer)
-        residual, solution = finer, newton(finer, start_y, 0.01 * tolerance, patience=_PATIENCE)
+        residual, solution = finer, solved(finer, start_y, tolerance)
     # Without a finer motion, a coarse one that more points would change much is none.
     if solution.error <= limit or converged_motion[-1].sum() <= _LIMIT:
         points, residual, solution, errors = converged_motion

@@ -16,7 +16,7 @@ import numpy as np
 
 from tribodyn.dynamics.equations.orbit_coordinates import OverBases, Rest
 from tribodyn.dynamics.harmonic.meshwise_inverse import MeshwiseInverse
-from tribodyn.dynamics.harmonic.newton import LINEAR, State
+from tribodyn.dynamics.harmonic.newton import LINEAR, VECTORS, State
 from tribodyn.dynamics.harmonic.phase_contacts import PhaseContacts, axis_of
 from tribodyn.dynamics.harmonic.phase_grid import PhaseGrid
 from tribodyn.dynamics.harmonic.phase_rows import Mesh, PhaseRows
@@ -25,8 +25,9 @@ from tribodyn.dynamics.modal.closed_structure import ClosedStructure
 from tribodyn.dynamics.modal.contact_equations import close_contacts
 from tribodyn.types import Array, ComplexArray, Index, Mask
 
-#: Vectors of a linear solution up to which an approximate inverse serves for the next one.
-_SERVES = 12
+#: Vectors of a linear solution up to which an approximate inverse serves for the next one, and the
+#: most of one: motions that are found need fewer than 40.
+_SERVES, _MOST = 12, 60
 #: Largest part of a residual that a linear solution leaves.
 _LOOSE = 0.1
 
@@ -94,6 +95,7 @@ def parts_of(rows: PhaseRows, structure: ClosedStructure, equilibrium: Rest) -> 
 class PhaseResidual(Residual):
     """Residual of a motion over several phases."""
 
+    vectors = _MOST
     inverses: dict[int, MeshwiseInverse]  #: of the parts at their last states, while they serve
 
     def __init__(
@@ -182,9 +184,11 @@ class PhaseResidual(Residual):
             lambda right: self.joined(inverted(right)[0]),
         )
 
-    def correction(self, state: State, accuracy: float = LINEAR) -> tuple[Array, int]:
-        """Newton step of a motion, and the number of products that it took."""
-        step, count = super().correction(state, accuracy)
+    def correction(
+        self, state: State, accuracy: float = LINEAR, most: int = VECTORS
+    ) -> tuple[Array, int]:
+        """Newton step of a motion, and the number of products, of ``most``, that it took."""
+        step, count = super().correction(state, accuracy, most)
         if count > _SERVES:
             self.inverses.clear()
         return step, count

@@ -98,6 +98,7 @@ class Residual:
 
     structure: ClosedStructure
     links: dict[tuple[int, int], _Link]
+    vectors = VECTORS  #: most vectors of a linear solution
     plain = False  #: whether a few products without an approximate inverse are tried first
 
     def __init__(self, parts: Sequence[OnGrid], prior: Residual | None = None) -> None:
@@ -208,8 +209,10 @@ class Residual:
         product, nearly = self.derivative(state), self.nearly(state)
         return (product,) if nearly is None else (lambda x: product(nearly(x)), nearly)
 
-    def correction(self, state: State, accuracy: float = LINEAR) -> tuple[Array, int]:
-        """Newton step of a motion, and the number of products that it took."""
+    def correction(
+        self, state: State, accuracy: float = LINEAR, most: int = VECTORS
+    ) -> tuple[Array, int]:
+        """Newton step of a motion, and the number of products, of ``most``, that it took."""
         if np.linalg.norm(state.residual, axis=1).max(initial=0.0) <= _ROUNDING * state.size:
             return -state.residual, 0  # rounding: a body that nothing holds would magnify it
         if self.plain:
@@ -217,7 +220,7 @@ class Residual:
             if count < _PLAIN:
                 return step, count
             self.plain = False
-        vectors = int(np.clip(_MEMORY // state.y.nbytes, _FEWEST, VECTORS))
+        vectors = min(int(np.clip(_MEMORY // state.y.nbytes, _FEWEST, self.vectors)), most)
         product, *nearly = self.preconditioned(state)
         solution, count = solve_linear(product, -state.residual, accuracy, vectors)
         return (nearly[0](solution) if nearly else solution), count
