@@ -182,7 +182,7 @@ LINES: dict[str, int] = {
     "scope": 38,
     "signals": 1727,
     "stiffness": 5185,
-    "study": 20124,
+    "study": 20125,
     "surrogate": 765,
     "types": 13,
     "uncertainty": 288,

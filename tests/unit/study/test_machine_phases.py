@@ -162,6 +162,12 @@ def test_numbers_of_a_line_are_the_smallest() -> None:
     for numbers in ((1, 0, 0), (0, 3, 0), (2, -1, 0), (1, 0, -2), (0, 1, 4)):
         order = int(np.dot(turns, numbers))
         assert line_numbers(turns, [order]) == {order: numbers}
+    # High harmonics of one of four phases are no sums of a few cycles of each.
+    turns = np.array([1334, 1407, 1525, 58])
+    for numbers in ((25, 0, 0, 0), (0, 17, 0, 0), (0, 0, 19, 0), (0, 0, 0, 7), (1, -2, 0, 0)):
+        order = abs(int(np.dot(turns, numbers)))
+        sign = np.sign(np.dot(turns, numbers))
+        assert line_numbers(turns, [order]) == {order: tuple(sign * n for n in numbers)}
     meshes = {"a": (1, 0), "b": (0, 2), "c": (0, 3)}
     assert line_cause((2, 0), meshes) == "2 x a"
     assert line_cause((0, 6), meshes) == "3 x b"

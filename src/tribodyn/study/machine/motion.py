@@ -19,8 +19,8 @@ if TYPE_CHECKING:
     from tribodyn.machine.graph.clock import Phases
 
 #: Highest harmonic of the fastest mesh among the lines, least size of one over the largest, and
-#: highest number of a phase in a line.
-_HIGHEST, _LEAST, _NUMBERS = 20, 1e-9, (4096, 160, 24, 8)
+#: largest product of one more than each number of the slower phases in a line.
+_HIGHEST, _LEAST, _NUMBERS = 20, 1e-9, (4096, 4096, 1024, 512, 128)
 #: Most turns of a shaft in a phase or phases in a turn, and difference of equal rates.
 _MOST_TURNS, _EQUAL = 10_000, 1e-9
 #: Directions of forces and moments of a bearing.
@@ -73,25 +73,26 @@ class MotionLine(NamedTuple):
 
 
 def line_numbers(turns: Array, orders: Sequence[int]) -> dict[int, tuple[int, ...]]:
-    """Whole numbers of the phases, as small as possible, of orders along a closed line."""
+    """Whole numbers of the phases, as simple as possible, of orders along a closed line."""
     turns = np.asarray(turns, dtype=np.int64)
-    reach = _NUMBERS[min(turns.size, len(_NUMBERS)) - 1]
     if turns.size == 1:
         return {order: (order // int(turns[0]),) for order in orders}
-    # All phases but that with the most turns; its number follows from the order.
-    first = int(np.argmax(turns))
-    axes = [np.zeros(1, np.int64) if d == first else np.arange(-reach, reach + 1)
-            for d in range(turns.size)]  # fmt: skip
-    others = np.stack(np.meshgrid(*axes, indexing="ij"), axis=-1).reshape(-1, turns.size)
-    sums, sizes = others @ turns, np.abs(others).sum(axis=1)
-    numbers = {}
+    # Lines fall with the product of their numbers. The phase with the most turns gets what is left.
+    first, others = int(np.argmax(turns)), np.zeros((1, turns.size), dtype=np.int64)
+    size, most = np.ones(1, dtype=np.int64), _NUMBERS[min(turns.size, len(_NUMBERS)) - 1]
+    for axis in np.delete(np.arange(turns.size), first):
+        count = 2 * (most // size) - 1
+        middle = np.cumsum(count) - (count + 1) // 2
+        others, size = np.repeat(others, count, axis=0), np.repeat(size, count)
+        others[:, axis] = np.arange(len(size)) - np.repeat(middle, count)
+        size *= 1 + np.abs(others[:, axis])
+    sums, numbers = others @ turns, {}
     for order in orders:
         number, remainder = np.divmod(order - sums, turns[first])
-        place = int(np.argmin(np.where(remainder == 0, sizes + np.abs(number), 2**40)))
+        place = int(np.argmin(np.where(remainder == 0, size * (1 + np.abs(number)), 2**60)))
         if remainder[place] == 0:
-            line = others[place].tolist()
-            line[first] = int(number[place])
-            numbers[order] = tuple(line)
+            others[place, first] = number[place]
+            numbers[order] = tuple(others[place].tolist())
     return numbers
 
 
