@@ -66,36 +66,37 @@ class PhaseGrid:
 
     def spectrum(self, values: Array) -> ComplexArray:
         """Amplitudes of the lines of the half spectrum (k, ...) of values (p, ...)."""
-        axes = tuple(range(len(self.shape)))
-        lines = np.fft.rfftn(values.reshape(*self.shape, -1), axes=axes, norm="forward")
+        from scipy import fft
+
+        table, axes = values.reshape(*self.shape, -1), range(len(self.shape))
+        lines = fft.rfftn(table, axes=axes, norm="forward")
         return np.asarray(lines.reshape(-1, values.shape[1]), dtype=complex)
 
     def values(self, spectrum: ComplexArray) -> Array:
         """Values (p, c) of a half spectrum (k, c)."""
-        lines, axes = spectrum.reshape(*self.half, -1), tuple(range(len(self.shape)))
-        return np.asarray(np.fft.irfftn(lines, self.shape, axes, "forward").reshape(self.size, -1))
+        from scipy import fft
+
+        lines, axes = spectrum.reshape(*self.half, -1), range(len(self.shape))
+        return np.asarray(fft.irfftn(lines, self.shape, axes, "forward").reshape(self.size, -1))
 
     @property
     def half(self) -> tuple[int, ...]:
         """Shape of the half spectrum."""
         return (*self.shape[:-1], self.shape[-1] // 2 + 1)
 
-    def places(self, numbers: Index) -> Index:
-        """Places of lines (k, phases) of the half spectrum."""
-        at = numbers % np.array(self.shape)
-        return np.asarray(np.ravel_multi_index(tuple(at.T), self.half))
-
-    def common(self, other: PhaseGrid) -> Index:
-        """Numbers of the lines that two grids have (k, phases), the mean first."""
+    def common(self, other: PhaseGrid) -> tuple[Index, ...]:
+        """Places of the lines that two grids have, in each of them, the mean first."""
         pairs = zip(self.shape, other.shape, strict=True)
-        shared = PhaseGrid(tuple(min(pair) for pair in pairs), self.frequency)
-        return np.asarray(shared.numbers[~shared.unpaired])
+        *highest, last = ((min(pair) - 1) // 2 for pair in pairs)
+        lines = np.ix_(*(np.r_[: n + 1, -n:0] for n in highest), np.arange(last + 1))
+        halves = self.half, other.half
+        return tuple(np.ravel_multi_index(lines, n, mode="wrap").reshape(-1) for n in halves)
 
     def refined(self, values: Array, finer: PhaseGrid) -> Array:
         """Values (p, c) on another grid: with the lines that both have."""
-        numbers = self.common(finer)
+        here, there = self.common(finer)
         padded = np.zeros((math.prod(finer.half), values.shape[1]), dtype=complex)
-        padded[finer.places(numbers)] = self.spectrum(values)[self.places(numbers)]
+        padded[there] = self.spectrum(values)[here]
         return finer.values(padded)
 
     def lines(self, axis: int) -> Index:

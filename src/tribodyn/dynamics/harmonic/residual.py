@@ -117,8 +117,7 @@ class Residual:
 
     def _link(self, to: int, by: int) -> _Link:
         first, second = self.parts[to], self.parts[by]
-        numbers = first.grid.common(second.grid)
-        into, of = first.grid.places(numbers), second.grid.places(numbers)
+        into, of = first.grid.common(second.grid)
         matrices = first.structure.receptances(first.grid.omega[into], second.structure.push)
         return _Link(into, of, matrices)
 
