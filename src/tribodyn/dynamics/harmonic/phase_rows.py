@@ -46,6 +46,8 @@ _OF_CONTACTS = (
     "force_direction", "ramp_stiffness", "ramp_gap",
 )  # fmt: skip
 _OF_FRICTIONS = ("friction_direction", "friction_coefficients", "rub")
+#: Fields that the law of the contacts reads beside the projected ones.
+_OF_LAW = ("damping", "error", "error_slope", "friction_coefficients")
 
 
 @dataclass(frozen=True, eq=False)
@@ -80,12 +82,16 @@ class Mesh:
     def nodes(self, phase: Array, rate: Any, before: bool = False) -> Nodes:
         """Entries at mesh phases (p, 1, ...), slopes over time at mesh frequencies [Hz]."""
         nodes = evaluate_rows(self.system, PointEvaluator(phase, self.events, before=before))
-        slopes = {
-            name: np.reshape(rate, (-1, *[1] * (getattr(nodes, name).ndim - 1)))
-            * getattr(nodes, name)
-            for name in ("error_slope", "direction_slope")
-        }
-        return nodes._replace(**slopes)
+
+        def over_time(values: Array) -> Array:
+            if not values.any():
+                return np.broadcast_to(0.0, values.shape)
+            return np.asarray(np.reshape(rate, (-1, *[1] * (values.ndim - 1))) * values)
+
+        return nodes._replace(
+            error_slope=over_time(nodes.error_slope),
+            direction_slope=over_time(nodes.direction_slope),
+        )
 
     def at(self, turned: tuple[Array, Any]) -> tuple[Nodes, Index | slice]:
         """Entries at the different mesh phases of points, and the row of each."""
@@ -219,7 +225,7 @@ class PhaseRows:
         for mesh in self.meshes:
             nodes, rows = mesh.at(self.turned(points, mesh.cycles, mesh.offset))
             part = project_rows(nodes, along, push)
-            columns = vars_of(part.nodes) | {
+            columns = {name: each for name, each in vars_of(part.nodes).items() if name in _OF_LAW} | {
                 "along": part.along, "along_slope": part.along_slope, "push": part.push,
                 "rub": part.rub, "springs": part.stiffness, "gaps": part.gap,
             }  # fmt: skip
