@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from tribodyn.dynamics.harmonic.newton import State
+from tribodyn.dynamics.harmonic.newton import State, tangents
 from tribodyn.dynamics.harmonic.phase_grid import PhaseGrid
 from tribodyn.types import Array, ComplexArray, Index
 
@@ -33,18 +33,9 @@ class MeshwiseInverse:
 
     def __init__(self, residual: OnGrid, state: State) -> None:
         self.shape = residual.grid.shape
-        structure, cell = residual.structure, state.cell
-        stiffness: Any = structure.contact_stiffness - state.law.stiffness
-        damping: Any = structure.contact_damping - state.law.damping
-        if cell is not None:
-            stiffness, damping = (
-                cell.pieces.gather(part.reshape(len(part), -1)).reshape(-1, *part.shape[1:])
-                for part in (cell.stiffness, cell.damping)
-            )
-        wide = (residual.grid.size, *stiffness.shape[1:])
         parts = [
-            np.broadcast_to(part, wide).reshape(*self.shape, *wide[1:])
-            for part in (stiffness, damping)
+            part.reshape(*self.shape, *part.shape[1:])
+            for part in tangents(residual.structure, state)
         ]
         axes = range(len(self.shape))
         self.mean = [part.mean(axis=tuple(axes)) for part in parts]
@@ -54,7 +45,7 @@ class MeshwiseInverse:
             varying = [
                 part.mean(axis=others) - mean for part, mean in zip(parts, self.mean, strict=True)
             ]
-            if np.abs(varying).max() > _SMALL * np.abs(stiffness).max(initial=0.0):
+            if np.abs(varying).max() > _SMALL * np.abs(parts[0]).max(initial=0.0):
                 self.phases.append(
                     _OnePhase(residual, axis, self.mean, varying, state.mean_stiffness)
                 )

@@ -15,7 +15,7 @@ from tribodyn.dynamics.modal.contact_equations import Breaks, Law
 from tribodyn.types import Array
 
 if TYPE_CHECKING:
-    from tribodyn.dynamics.harmonic.phase_contacts import Cell
+    from tribodyn.dynamics.harmonic.phase_contacts import Pieces
     from tribodyn.dynamics.harmonic.residual import Residual
 
 #: Newton steps, halvings of a step, steps over which the residual may rise, and the residual over
@@ -40,11 +40,11 @@ class State(NamedTuple):
 
     y: Array  #: (steps, r)
     rate: Array
-    law: Law  #: at the samples, or at the points of the cell
+    law: Law  #: at the samples, or at the points of the pieces, its tangent with their weights
     breaks: Breaks
     force: Array  #: components of the force on the closed structure (steps, s)
     residual: Array  #: (steps, r)
-    cell: Cell | None = None  #: where forces are integrated between their breaks
+    pieces: Pieces | None = None  #: between whose breaks forces are integrated
     #: Stiffness for the mean of a change, of what nothing holds (s, r).
     mean_stiffness: Array | None = None
     parts: tuple[State, ...] = ()  #: of contacts on grids of their own
@@ -70,25 +70,24 @@ class Solution(NamedTuple):
 
 
 def tangents(closed: Any, state: State) -> tuple[Array, Array]:
-    """Changes of the force with the motion and its rate (p, s, r), weighted at those of a cell."""
-    if state.cell is not None:
-        return state.cell.stiffness, state.cell.damping
-    stiffness = closed.contact_stiffness - state.law.stiffness
-    return stiffness, closed.contact_damping - state.law.damping
+    """Changes of the force with the motion and its rate on the grid (p, s, r)."""
+    law, pieces = state.law.tangent, state.pieces
+    stiffness, damping = law.dense() if pieces is None else law.mapped(pieces.gather)
+    return closed.contact_stiffness - stiffness, closed.contact_damping - damping
 
 
 def force_change(part: Any, state: State) -> Callable[[Array], Array]:
     """Change of the force on the closed structure with the motion of a part on its grid."""
-    cell, (stiffness, damping) = state.cell, tangents(part.structure, state)
-    breaks, damped = state.breaks, bool(np.any(damping))
+    pieces, tangent, breaks, closed = state.pieces, state.law.tangent, state.breaks, part.structure
 
     def change(motion: Array) -> Array:
-        sample = np.asarray if cell is None else cell.pieces.sample
-        force = (stiffness @ sample(motion)[..., None])[..., 0]
-        if damped:
-            force += (damping @ sample(part.rate(motion))[..., None])[..., 0]
-        if cell is not None:
-            force = cell.pieces.gather(force)
+        rate = part.rate(motion)
+        if pieces is None:
+            force = tangent.force(motion, rate)
+        else:
+            force = pieces.gather(tangent.force(pieces.sample(motion), pieces.sample(rate)))
+        force += motion @ closed.contact_stiffness.T
+        force += rate @ closed.contact_damping.T
         if breaks.step.size:
             jumps = np.einsum("bsr,br->bs", breaks.tangent, breaks.gather(motion))
             breaks.scatter(force, jumps)

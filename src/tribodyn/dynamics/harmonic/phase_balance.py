@@ -299,7 +299,7 @@ class _Search:
 
         for place in np.argwhere(again):
             errors[*place] = change(place, 2)
-            jumps = state.each[place[0]].cell is not None
+            jumps = state.each[place[0]].pieces is not None
             # As far as with so many times the points of the first grids.
             factor = _AHEAD * first[place[0]][place[1]] // points[place[0]][place[1]]
             if jumps and place[1] == self.parts[place[0]].axis and factor > 2:
@@ -342,7 +342,7 @@ def phase_balance(
     points, residual, solution = search.first(points, start, tolerance, steps is None)
     limit, errors = tolerance, np.full(np.shape(points), np.nan)
     converged_motion = points, residual, solution, errors
-    smooth = all(part.cell is None for part in solution.state.each)
+    smooth = all(part.pieces is None for part in solution.state.each)
     poor, before = np.zeros(np.shape(points), dtype=bool), np.zeros(np.shape(points))
     while solution.error <= limit:
         again = poor | (before >= _AGAIN * before.max())

@@ -161,14 +161,6 @@ def _gauss(begin: Cut, width: Array) -> tuple[Cut, Array]:
     return Cut(np.repeat(begin.line, _GAUSS), place.reshape(-1)), (half * share).reshape(-1)
 
 
-class Cell(NamedTuple):
-    """How a motion at the points of pieces changes the forces on the closed structure."""
-
-    pieces: Pieces
-    stiffness: Array  #: derivative of the weighted forces by the motion (q, s, r)
-    damping: Array  #: and by its rate
-
-
 class _Crossings(NamedTuple):
     """Places where a flank opens or closes."""
 
@@ -228,14 +220,13 @@ class PhaseContacts(ContactLaw):
         return law._replace(
             contact=law.contact + change,
             force=law.force - change @ push,
-            stiffness=law.stiffness + push.T @ tangent @ along,
+            tangent=law.tangent._replace(supports=push.T @ tangent @ along),
         )
 
     def at(
-        self, y: Array, rate: Array, excess: Array, closed: Mask | None, means: tuple[Array, Array]
-    ) -> tuple[Law, Breaks, Cell | None]:
+        self, y: Array, rate: Array, excess: Array, closed: Mask | None
+    ) -> tuple[Law, Breaks, Pieces | None]:
         """Law of a motion (p, r) at the points of the grid, or of pieces where it breaks."""
-        # means: stiffness and damping of the closed contacts
         if not (self.jumps.line.size or self._opened):
             law = self.law(self.rows, 1.0, y, rate, excess, closed)
             if closed is not None or not self._opens(law):
@@ -245,25 +236,21 @@ class PhaseContacts(ContactLaw):
         fine = [pieces.refined(part) for part in (y, rate)]
         moved = pieces.between @ fine[0], pieces.between @ fine[1]
         law = self.law(rows, 1.0, *moved, excess, closed)
-        jumped = np.zeros((0, *law.stiffness.shape[1:]))
+        jumped = np.zeros((0, len(self.dead)))
         if closed is None and (crossings := self._crossings(pieces, rows, law)).piece.size:
             pieces = pieces.cut(crossings.piece, crossings.inside)
             rows = self.part.projected(pieces.points, *self.bases)
             moved = pieces.at_cuts @ fine[0], pieces.at_cuts @ fine[1]
             further = self.law(rows, 1.0, *moved, excess, closed)
             ends = slice(-crossings.piece.size, None)
-            jumped = self._jumped(crossings, rows.at(ends), further.push[ends], moved)
-            law = Law(*(
-                entries[0] if len(entries[0]) == 1 else np.concatenate(entries)
-                for entries in zip(law, further, strict=True)
-            ))  # fmt: skip
-        weight = pieces.weight[:, None, None]
-        stiffness, damping = (
-            weight * (mean - part)
-            for mean, part in zip(means, (law.stiffness, law.damping), strict=True)
+            jumped = self._jumped(crossings, rows.at(ends), moved)
+            law = _joined(law, further)
+        weight, tangent = pieces.weight[:, None], law.tangent
+        tangent = tangent._replace(
+            stiffness=weight * tangent.stiffness, damping=weight * tangent.damping
         )
-        stiffness[len(weight) - len(jumped) :] = jumped
-        return law, NO_BREAKS, Cell(pieces, stiffness, damping)
+        tangent.stiffness[len(weight) - len(jumped) :] = jumped
+        return law._replace(tangent=tangent), NO_BREAKS, pieces
 
     def _opens(self, law: Law) -> bool:
         """Whether a flank comes to another side of its dead zone."""
@@ -296,10 +283,8 @@ class PhaseContacts(ContactLaw):
         contact = contact[column % max(1, contact.size)]
         return _Crossings(piece, half * (1.0 + x), contact, edge, slope)
 
-    def _jumped(
-        self, crossings: _Crossings, rows: Rows, push: Array, moved: tuple[Array, Array]
-    ) -> Array:
-        """Derivative of the force by the motion where a damper begins or ceases to act."""
+    def _jumped(self, crossings: _Crossings, rows: Rows, moved: tuple[Array, Array]) -> Array:
+        """Stiffness of the contacts (b, c) where a damper begins or ceases to act."""
         each, contact = np.arange(crossings.contact.size), crossings.contact
         y, rate = (part[len(part) - each.size :] for part in moved)
 
@@ -310,8 +295,20 @@ class PhaseContacts(ContactLaw):
         speed = np.einsum("br,br->b", along, rate) - of_contact(rows.nodes.error_slope)
         speed += np.einsum("br,br->b", of_contact(rows.along_slope), y)
         force = speed * ~self.damped_in_gap[contact] * of_contact(rows.nodes.damping)
-        factor = crossings.edge * force / np.abs(crossings.slope)
-        return np.asarray(-factor[:, None, None] * of_contact(push)[:, :, None] * along[:, None])
+        stiffness = np.zeros((each.size, len(self.dead)))
+        stiffness[each, contact] = crossings.edge * force / np.abs(crossings.slope)
+        return stiffness
+
+
+def _joined(law: Law, further: Law) -> Law:
+    """Law at the points of one and then of another."""
+
+    def joined(first: Any, second: Any) -> Any:
+        if isinstance(first, tuple):
+            return type(first)(*map(joined, first, second))
+        return first if first is None or len(first) == 1 else np.concatenate((first, second))
+
+    return joined(law, further)
 
 
 def axis_of(cycles: Array) -> int:

@@ -280,14 +280,9 @@ def growth(residual: PhaseResidual, state: State, motion: PhaseResponse) -> floa
 
 def _tangents_along(line: tuple[int, ...], count: int, part: OnGrid, state: State) -> Array:
     """Changes of the forces of a part with its motion and rate (count, s, 2 r) along a line."""
-    grid, changes = part.grid, tangents(part.structure, state)
-    joined = np.concatenate(np.broadcast_arrays(*changes), axis=2)
-    values = joined.reshape(len(joined), -1)
-    if state.cell is not None:
-        values = state.cell.pieces.gather(values)
-    values = np.broadcast_to(values, (grid.size, values.shape[1]))
-    paired = ~grid.unpaired
-    lines = _cosines(grid.numbers[paired], grid.spectrum(values)[paired], grid.frequency)
+    grid, joined = part.grid, np.concatenate(tangents(part.structure, state), axis=2)
+    spectrum, paired = grid.spectrum(joined.reshape(grid.size, -1)), ~grid.unpaired
+    lines = _cosines(grid.numbers[paired], spectrum[paired], grid.frequency)
     along = _summed(line, count, *lines).reshape(count, *joined.shape[1:])
     if state.mean_stiffness is not None:  # it holds what nothing else does
         along[..., : joined.shape[2] // 2] -= state.mean_stiffness
@@ -401,7 +396,7 @@ def _all_forces(
         columns = np.zeros((len(lines), 2 * count), dtype=complex)
         members = part.structure.members
         for first, values in ((0, each.law.compression), (count, each.law.contact)):
-            sampled = part.integral(values, each.cell)
+            sampled = part.integral(values, each.pieces)
             columns[:, first + members] = grid.spectrum(sampled)[paired]
         others.append(columns)
     grid = max((part.grid for part in residual.parts), key=lambda grid: min(grid.shape))

@@ -225,7 +225,8 @@ class PhaseRows:
         for mesh in self.meshes:
             nodes, rows = mesh.at(self.turned(points, mesh.cycles, mesh.offset))
             part = project_rows(nodes, along, push)
-            columns = {name: each for name, each in vars_of(part.nodes).items() if name in _OF_LAW} | {
+            named = vars_of(part.nodes)
+            columns = {name: named[name] for name in _OF_LAW} | {
                 "along": part.along, "along_slope": part.along_slope, "push": part.push,
                 "rub": part.rub, "springs": part.stiffness, "gaps": part.gap,
             }  # fmt: skip

@@ -16,7 +16,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from tribodyn.dynamics.harmonic.newton import LINEAR, VECTORS, State, force_change, solve_linear
-from tribodyn.dynamics.harmonic.phase_contacts import Cell, PhaseContacts
+from tribodyn.dynamics.harmonic.phase_contacts import PhaseContacts, Pieces
 from tribodyn.dynamics.harmonic.phase_grid import PhaseGrid
 from tribodyn.dynamics.modal.closed_structure import ClosedStructure
 from tribodyn.dynamics.modal.contact_equations import ContactEquations, Law, outer
@@ -61,12 +61,11 @@ class OnGrid(NamedTuple):
     def at(self, y: Array, excess: Array, closed: bool) -> State:
         """Forces of a motion (p, r), without its residual."""
         rate, springs = self.rate(y), self.closed if closed else None
-        means = self.structure.contact_stiffness, self.structure.contact_damping
-        law, breaks, cell = self.contacts.at(y, rate, excess, springs, means)
-        force = self.integral(law.force, cell) + y @ means[0].T
-        force += rate @ means[1].T
+        law, breaks, pieces = self.contacts.at(y, rate, excess, springs)
+        force = self.integral(law.force, pieces) + y @ self.structure.contact_stiffness.T
+        force += rate @ self.structure.contact_damping.T
         breaks.scatter(force, breaks.correction)
-        return State(y, rate, law, breaks, force, y, cell, self._mean_stiffness(law))
+        return State(y, rate, law, breaks, force, y, pieces, self._mean_stiffness(law))
 
     def _mean_stiffness(self, law: Law) -> Array | None:
         """Stiffness (s, r) that holds the mean place of bodies which nothing holds in a motion."""
@@ -78,11 +77,9 @@ class OnGrid(NamedTuple):
         return np.asarray(outer(rows.push, stiffness, rows.along).mean(axis=0))
 
     @staticmethod
-    def integral(values: Array, cell: Cell | None) -> Array:
+    def integral(values: Array, pieces: Pieces | None) -> Array:
         """Values at the points of the grid from those of a law."""
-        if cell is None:
-            return values
-        return cell.pieces.gather(cell.pieces.weight[:, None] * values)
+        return values if pieces is None else pieces.gather(pieces.weight[:, None] * values)
 
 
 class _Link(NamedTuple):

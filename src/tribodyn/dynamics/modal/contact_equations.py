@@ -8,7 +8,7 @@ continuously with the place of the jump.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from typing import NamedTuple
 
@@ -58,6 +58,50 @@ class Rows(NamedTuple):
         return Rows(nodes, *(some(part) for part in self[1:]))
 
 
+class Tangent(NamedTuple):
+    """Change of the forces of contacts with their motion, by factors of each contact."""
+
+    push: Array  #: generalized force per change of each contact force (p or 1, contacts, s)
+    along: Array  #: compressions by the motion (p or 1, contacts, r)
+    turning: Array | None  #: derivative of these by time, if any
+    stiffness: Array  #: of the springs that touch (p, contacts)
+    damping: Array  #: of the dampers that act (p, contacts)
+    supports: Array | None = None  #: further stiffness (p, s, r)
+
+    def force(self, y: Array, rate: Array) -> Array:
+        """Change of the force (p, s) with a motion and its rate (p, r)."""
+        speed = components(self.along, rate)
+        if self.turning is not None:
+            speed += components(self.turning, y)
+        force = -_pushed(
+            self.push, self.stiffness * components(self.along, y) + self.damping * speed
+        )
+        if self.supports is not None:
+            force -= (self.supports @ y[..., None])[..., 0]
+        return force
+
+    def dense(self) -> tuple[Array, Array]:
+        """Minus the derivatives of the force by the motion and its rate (p, s, r)."""
+        rising = outer(self.push, self.stiffness, self.along)
+        if self.turning is not None:
+            rising += outer(self.push, self.damping, self.turning)
+        if self.supports is not None:
+            rising += self.supports
+        return rising, outer(self.push, self.damping, self.along)
+
+    def mapped(self, by: Callable[[Array], Array]) -> tuple[Array, Array]:
+        """The dense derivatives after a linear map of the points (p, m) to others."""
+        if len(self.push) == len(self.along) == 1 and self.turning is None:
+            factors = by(self.stiffness), by(self.damping)
+            return self._replace(stiffness=factors[0], damping=factors[1]).dense()
+        rows = [
+            [by(part[:, 0]) for part in self._replace(push=self.push[..., [row]]).dense()]
+            for row in range(self.push.shape[-1])
+        ]
+        stiffness, damping = (np.stack(part, axis=1) for part in zip(*rows, strict=True))
+        return stiffness, damping
+
+
 class Law(NamedTuple):
     """Result of the contact law at points of the period."""
 
@@ -65,9 +109,7 @@ class Law(NamedTuple):
     contact: Array  #: contact forces (p, contacts) [N]
     side: Array  #: side of the dead zone
     force: Array  #: components of the generalized force (p, s)
-    stiffness: Array  #: minus its derivative by the motion (p, s, r)
-    damping: Array  #: minus its derivative by the rate of the motion (p, s, r)
-    push: Array  #: generalized force per change of each contact force (p, contacts, s)
+    tangent: Tangent
 
 
 class Breaks(NamedTuple):
@@ -148,10 +190,9 @@ class ContactLaw:
             push = np.broadcast_to(push, (*d.shape, push.shape[-1])).copy()
             for f, friction in enumerate(self.system.frictions):
                 push[:, list(friction.contacts)] += slope[:, f, None, None] * rows.rub[:, f, None]
-        rising = outer(push, stiffness, rows.along)
-        if np.any(rows.along_slope):
-            rising = rising + frequency * outer(push, damping, rows.along_slope)
-        return Law(d, contact, side[..., 0], force, rising, outer(push, damping, rows.along), push)
+        turning = frequency * rows.along_slope if np.any(rows.along_slope) else None
+        tangent = Tangent(push, rows.along, turning, stiffness, damping)
+        return Law(d, contact, side[..., 0], force, tangent)
 
 
 @dataclass(frozen=True)
@@ -200,7 +241,8 @@ class ContactEquations(ContactLaw):
         )
         weight = 0.5 - fraction
         jump = right.force - left.force
-        tangent = -weight[:, None, None] * (right.stiffness - left.stiffness)
+        rising = [side.tangent.dense()[0] for side in (left, right)]
+        tangent = -weight[:, None, None] * (rising[1] - rising[0])
         return Breaks(step, after, fraction, jump, weight[:, None] * jump, tangent)
 
     def _crossings(self, law: Law, frequency: float, y: Array, rate: Array, edge: float) -> Breaks:
@@ -233,7 +275,8 @@ class ContactEquations(ContactLaw):
         bernoulli = fraction * (fraction - 1.0) + touch / 6.0
         total = (0.5 - fraction) * jump + 0.5 * bernoulli * bend
         slope = edge * (jump - (fraction - 0.5) * bend) / (end - begin)
-        push = -law.push[step if len(law.push) > 1 else 0 * step, contact]
+        push = law.tangent.push
+        push = -push[step if len(push) > 1 else 0 * step, contact]
         tangent = slope[:, None, None] * push[:, :, None] * along[:, None, :]
         return Breaks(step, after, fraction, jump[:, None] * push, total[:, None] * push, tangent)
 
