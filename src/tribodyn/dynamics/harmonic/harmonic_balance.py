@@ -437,7 +437,7 @@ def _not_converged(residual: ClockResidual, solution: Solution, tolerance: float
     along = np.broadcast_to(contacts.rows.along, (len(state.y), *contacts.rows.along.shape[1:]))
     distance = np.abs(np.einsum("pjr,pr->pj", along, state.residual)).max(axis=0)
     worst = int(np.argmax(distance))
-    open_share = float(np.mean(state.law.side[:, worst] == 0.0))
+    open_share = float(np.mean(state.law.open[:, worst]))
     reason = (
         f"it is open for {100.0 * open_share:.3g} % of the period, where several motions may exist "
         "or none repeats after a period"

@@ -140,7 +140,7 @@ def newton(
     # most: products with the derivative at which it ends too
     state, krylov, error = residual.at(y), 0, np.inf
     norms = [float(np.linalg.norm(state.residual))]
-    best: tuple[float, State] = (np.inf, state)
+    best: tuple[float, Array] = (np.inf, state.y)  # a state takes memory
     halved = 0
     for count in range(limit + 1):
         with np.errstate(over="ignore", invalid="ignore"):  # a step that is not finite ends it
@@ -150,13 +150,14 @@ def newton(
         if error < 0.5 * best[0]:
             halved = count
         if error < best[0]:
-            best = error, state
+            best = error, state.y
         stuck = count == limit or count - halved >= patience or norms[-1] > _DIVERGED * norms[0]
         if error <= tolerance or stuck or krylov >= most or not np.isfinite(error):
             break
         state = _search(residual, state, step, max(norms[-_MEMORY:]))
         norms.append(float(np.linalg.norm(state.residual)))
-    return Solution(best[1], best[0], count, krylov)
+    state = state if state.y is best[1] else residual.at(best[1])
+    return Solution(state, best[0], count, krylov)
 
 
 def solved(residual: Residual, y: Array, tolerance: float, most: int = _DIRECT) -> Solution:

@@ -121,7 +121,7 @@ def work_of(system: System, frequency: Any, supports: Sequence[RadialClearance] 
     jumps = any(isinstance(each, PhaseContacts) and each.jumps.line.size for each in contacts)
     forces = [each.law.contact for each in state.each]
     low = (each.min(axis=0) < _OPENS * each.mean(axis=0) for each in forces)
-    parted = any((each.law.side == 0.0).any() for each in state.each)
+    parted = any(each.law.open.any() for each in state.each)
     if parted or (jumps and any(map(np.any, low))):
         kind = "open"
     elif jumps:

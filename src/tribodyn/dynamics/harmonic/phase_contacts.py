@@ -16,7 +16,7 @@ import numpy as np
 from numpy.polynomial import legendre
 
 from tribodyn.dynamics.harmonic.phase_grid import PhaseGrid, polynomial_shares
-from tribodyn.dynamics.harmonic.phase_rows import Mesh, PhaseRows
+from tribodyn.dynamics.harmonic.phase_rows import Mesh, PhaseRows, PointRows
 from tribodyn.dynamics.harmonic.radial_clearance import clearance_forces
 from tribodyn.dynamics.modal.contact_equations import (
     NO_BREAKS,
@@ -36,6 +36,8 @@ _GAUSS, _STEPS = 8, 3
 #: Refinement of a grid along a phase between whose points motions are interpolated, and points of
 #: the polynomial.
 _REFINED, _POINTS = 4, 12
+#: Points at which contacts are evaluated at once, of whole pieces.
+_BLOCK = _GAUSS * 2**11
 #: Intervals of a piece that are searched for the end of a dead zone, and Newton steps to it.
 _INTERVALS, _NEWTON = 16, 4
 
@@ -170,6 +172,12 @@ class _Crossings(NamedTuple):
     edge: Array  #: 1 or -1, the side of the dead zone
     slope: Array  #: derivative of the clearance by the phase
 
+    @classmethod
+    def none(cls) -> _Crossings:
+        """No places."""
+        index, none = np.zeros(0, dtype=np.int64), np.zeros(0)
+        return cls(index, none, index, none, none)
+
 
 @dataclass(frozen=True)
 class PhaseContacts(ContactLaw):
@@ -196,10 +204,10 @@ class PhaseContacts(ContactLaw):
     @cached_property
     def rows(self) -> Rows:
         """Entries at the points of the grid."""
-        return self.part.projected(self.grid.points, *self.bases)
+        return self.part.projected(self.grid.points, *self.bases).at(slice(None))
 
     @cached_property
-    def _base(self) -> tuple[Pieces, Rows]:
+    def _base(self) -> tuple[Pieces, PointRows]:
         """Pieces between the jumps of the entries, and the entries at their points."""
         pieces = Pieces.of(self.grid, self.axis, self.jumps, self.part.teeth(self.axis))
         return pieces, self.part.projected(pieces.points, *self.bases)
@@ -235,16 +243,16 @@ class PhaseContacts(ContactLaw):
         pieces, rows = self._base
         fine = [pieces.refined(part) for part in (y, rate)]
         moved = pieces.between @ fine[0], pieces.between @ fine[1]
-        law = self.law(rows, 1.0, *moved, excess, closed)
+        law, crossings = self._laws(pieces.width, rows, *moved, excess, closed)
         jumped = np.zeros((0, len(self.dead)))
-        if closed is None and (crossings := self._crossings(pieces, rows, law)).piece.size:
+        if crossings.piece.size:
             pieces = pieces.cut(crossings.piece, crossings.inside)
             rows = self.part.projected(pieces.points, *self.bases)
             moved = pieces.at_cuts @ fine[0], pieces.at_cuts @ fine[1]
-            further = self.law(rows, 1.0, *moved, excess, closed)
-            ends = slice(-crossings.piece.size, None)
+            further, _ = self._laws(np.zeros(0), rows, *moved, excess, closed)
+            ends = slice(rows.count - crossings.piece.size, rows.count)
             jumped = self._jumped(crossings, rows.at(ends), moved)
-            law = _joined(law, further)
+            law = _joined([law, further])
         weight, tangent = pieces.weight[:, None], law.tangent
         tangent = tangent._replace(
             stiffness=weight * tangent.stiffness, damping=weight * tangent.damping
@@ -252,22 +260,39 @@ class PhaseContacts(ContactLaw):
         tangent.stiffness[len(weight) - len(jumped) :] = jumped
         return law._replace(tangent=tangent), NO_BREAKS, pieces
 
+    def _laws(
+        self, width: Array, rows: PointRows, y: Array, rate: Array, excess: Array,
+        closed: Mask | None,
+    ) -> tuple[Law, _Crossings]:  # fmt: skip
+        """Law at points, a block of them at a time, and ends of dead zones in pieces of a width."""
+        laws, crossings = [], [_Crossings.none()]
+        for begin in range(0, rows.count, _BLOCK):
+            some = slice(begin, begin + _BLOCK)
+            entries = rows.at(some)
+            laws.append(self.law(entries, 1.0, y[some], rate[some], excess, closed))
+            if closed is None and width.size:
+                first = begin // _GAUSS
+                inside = width[first : first + _BLOCK // _GAUSS]
+                crossings.append(self._crossings(first, inside, entries.gap, laws[-1].compression))
+        joined = (np.concatenate(part) for part in zip(*crossings, strict=True))
+        return _joined(laws), _Crossings(*joined)
+
     def _opens(self, law: Law) -> bool:
         """Whether a flank comes to another side of its dead zone."""
         gap = self.rows.gap
         sides = [(edge * law.compression[..., None] > gap) & self.dead for edge in (1.0, -1.0)]
         return any(bool(np.any(side != side[0])) for side in sides)
 
-    def _crossings(self, pieces: Pieces, rows: Rows, law: Law) -> _Crossings:
-        """Ends of the dead zones, from the polynomials of the clearances over the pieces."""
+    def _crossings(self, first: int, width: Array, gaps: Array, compression: Array) -> _Crossings:
+        """Ends of the dead zones, from the polynomials of the clearances over pieces."""
         # Ramps bend the force without a jump, which Gauss's rule bears.
         contact = np.flatnonzero(self.dead[:, 0])
-        gap, distance = rows.gap[:, contact, 0], law.compression[:, contact]
+        gap, distance = gaps[:, contact, 0], compression[:, contact]
         clearance = np.concatenate((distance - gap, -distance - gap), axis=1)
         node, share = legendre.leggauss(_GAUSS)
         degrees = np.arange(_GAUSS)
         into = (legendre.legvander(node, _GAUSS - 1) * share[:, None] * (degrees + 0.5)).T
-        terms = into @ clearance.reshape(pieces.width.size, _GAUSS, -1 if contact.size else 0)
+        terms = into @ clearance.reshape(width.size, _GAUSS, 2 * contact.size)
         places = np.linspace(-1.0, 1.0, _INTERVALS + 1)
         closed = legendre.legvander(places, _GAUSS - 1) @ terms > 0.0
         piece, interval, column = np.nonzero(closed[:, 1:] != closed[:, :-1])
@@ -277,11 +302,11 @@ class PhaseContacts(ContactLaw):
         for _ in range(_NEWTON):
             step = legendre.legval(x, chosen, False) / legendre.legval(x, slopes, False)
             x = np.clip(x - step, places[interval], places[interval + 1])
-        half = 0.5 * pieces.width[piece]
+        half = 0.5 * width[piece]
         edge = np.where(column < contact.size, 1.0, -1.0)
         slope = legendre.legval(x, slopes, False) / half
         contact = contact[column % max(1, contact.size)]
-        return _Crossings(piece, half * (1.0 + x), contact, edge, slope)
+        return _Crossings(first + piece, half * (1.0 + x), contact, edge, slope)
 
     def _jumped(self, crossings: _Crossings, rows: Rows, moved: tuple[Array, Array]) -> Array:
         """Stiffness of the contacts (b, c) where a damper begins or ceases to act."""
@@ -300,15 +325,12 @@ class PhaseContacts(ContactLaw):
         return stiffness
 
 
-def _joined(law: Law, further: Law) -> Law:
-    """Law at the points of one and then of another."""
-
-    def joined(first: Any, second: Any) -> Any:
-        if isinstance(first, tuple):
-            return type(first)(*map(joined, first, second))
-        return first if first is None or len(first) == 1 else np.concatenate((first, second))
-
-    return joined(law, further)
+def _joined(parts: Sequence[Any]) -> Any:
+    """Laws at points one after the other, with rows that all points have once."""
+    first = parts[0]
+    if isinstance(first, tuple):
+        return type(first)(*map(_joined, zip(*parts, strict=True)))
+    return first if first is None or len(first) == 1 else np.concatenate(parts)
 
 
 def axis_of(cycles: Array) -> int:

@@ -10,7 +10,7 @@ import math
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -219,9 +219,9 @@ class PhaseRows:
         motion.contact[:, 0, first:] = bearing_force
         return motion
 
-    def projected(self, points: Array, along: Array, push: Array) -> Rows:
+    def projected(self, points: Array, along: Array, push: Array) -> PointRows:
         """Rows at points along two bases."""
-        parts = []
+        parts: list[tuple[dict[str, Array], Index | slice]] = []
         for mesh in self.meshes:
             nodes, rows = mesh.at(self.turned(points, mesh.cycles, mesh.offset))
             part = project_rows(nodes, along, push)
@@ -230,19 +230,14 @@ class PhaseRows:
                 "along": part.along, "along_slope": part.along_slope, "push": part.push,
                 "rub": part.rub, "springs": part.stiffness, "gaps": part.gap,
             }  # fmt: skip
-            parts.append((columns, rows))
-        fields = self._joined(parts, axis=1)
-        error, slope = self._turned(points, fields["error"], fields["error_slope"])
-        fields |= {"error": error, "error_slope": slope}
-        nodes = Nodes(**{name: fields.get(name, np.zeros((1, 1))) for name in Nodes._fields})
-        stiffness, gap = (
-            np.broadcast_to(fields[name], (len(points), *fields[name].shape[1:]))
-            for name in ("springs", "gaps")
-        )
-        return Rows(
-            nodes, fields["along"], fields["along_slope"], fields["push"], fields["rub"],
-            self.force(points) @ push, stiffness, gap,
-        )  # fmt: skip
+            parts.append((columns, rows if isinstance(rows, slice) else rows.astype(np.int32)))
+        errors = [
+            ({name: columns.pop(name) for name in ("error", "error_slope")}, rows)
+            for columns, rows in parts
+        ]
+        fields = self._joined(errors, axis=1)
+        turned = self._turned(points, fields["error"], fields["error_slope"])
+        return PointRows(self, parts, turned, self.force(points) @ push, len(points))
 
     def _joined(
         self, parts: Sequence[tuple[dict[str, Array], Index | slice]], axis: int
@@ -271,6 +266,41 @@ class PhaseRows:
                 error[:, contact] += values
                 slope[:, contact] += rate * slopes
         return error, slope
+
+
+class PointRows(NamedTuple):
+    """Entries at points, held once for each different phase of a mesh."""
+
+    rows: PhaseRows
+    parts: list[tuple[dict[str, Array], Index | slice]]  #: entries, and the one of each point
+    turned: tuple[Array, Array]  #: errors and their rates (p or 1, contacts)
+    load: Array  #: external force along the basis (p or 1, s)
+    count: int
+
+    def at(self, some: slice) -> Rows:
+        """Entries at some of the points."""
+
+        def chosen(values: Array) -> Array:
+            return values if len(values) == 1 else values[some]
+
+        parts = [
+            (columns, rows[some])
+            if not isinstance(rows, slice)
+            else ({name: chosen(values) for name, values in columns.items()}, rows)
+            for columns, rows in self.parts
+        ]
+        fields = self.rows._joined(parts, axis=1)
+        fields |= dict(zip(("error", "error_slope"), map(chosen, self.turned), strict=True))
+        nodes = Nodes(**{name: fields.get(name, np.zeros((1, 1))) for name in Nodes._fields})
+        count = len(range(self.count)[some])
+        stiffness, gap = (
+            np.broadcast_to(fields[name], (count, *fields[name].shape[1:]))
+            for name in ("springs", "gaps")
+        )
+        return Rows(
+            nodes, fields["along"], fields["along_slope"], fields["push"], fields["rub"],
+            chosen(self.load), stiffness, gap,
+        )  # fmt: skip
 
 
 def vars_of(part: Nodes) -> dict[str, Array]:

@@ -62,14 +62,15 @@ class OnGrid(NamedTuple):
         """Forces of a motion (p, r), without its residual."""
         rate, springs = self.rate(y), self.closed if closed else None
         law, breaks, pieces = self.contacts.at(y, rate, excess, springs)
-        force = self.integral(law.force, pieces) + y @ self.structure.contact_stiffness.T
+        law = law._replace(force=self.integral(law.force, pieces))
+        force = law.force + y @ self.structure.contact_stiffness.T
         force += rate @ self.structure.contact_damping.T
         breaks.scatter(force, breaks.correction)
         return State(y, rate, law, breaks, force, y, pieces, self._mean_stiffness(law))
 
     def _mean_stiffness(self, law: Law) -> Array | None:
         """Stiffness (s, r) that holds the mean place of bodies which nothing holds in a motion."""
-        open_throughout = self.floating & (law.side == 0.0).all(axis=0)
+        open_throughout = self.floating & law.open.all(axis=0)
         if not open_throughout.any():
             return None
         rows = self.contacts.rows

@@ -107,7 +107,7 @@ class Law(NamedTuple):
 
     compression: Array  #: (p, contacts) [m]
     contact: Array  #: contact forces (p, contacts) [N]
-    side: Array  #: side of the dead zone
+    open: Mask  #: whether the first spring carries nothing (p, contacts)
     force: Array  #: components of the generalized force (p, s)
     tangent: Tangent
 
@@ -190,9 +190,10 @@ class ContactLaw:
             push = np.broadcast_to(push, (*d.shape, push.shape[-1])).copy()
             for f, friction in enumerate(self.system.frictions):
                 push[:, list(friction.contacts)] += slope[:, f, None, None] * rows.rub[:, f, None]
-        turning = frequency * rows.along_slope if np.any(rows.along_slope) else None
+        still = len(rows.along_slope) == 1 and not np.any(rows.along_slope)
+        turning = None if still else frequency * rows.along_slope
         tangent = Tangent(push, rows.along, turning, stiffness, damping)
-        return Law(d, contact, side[..., 0], force, tangent)
+        return Law(d, contact, side[..., 0] == 0.0, force, tangent)
 
 
 @dataclass(frozen=True)
@@ -211,7 +212,7 @@ class ContactEquations(ContactLaw):
         return replace(self, frequency=frequency)
 
     def at(
-        self, y: Array, rate: Array, excess: Array, closed: Mask | None, _: tuple[Array, Array]
+        self, y: Array, rate: Array, excess: Array, closed: Mask | None
     ) -> tuple[Law, Breaks, None]:
         """Law of a motion (steps, r) at the steps, and where it jumps between them."""
         motion = self.frequency, y, rate, excess, closed
