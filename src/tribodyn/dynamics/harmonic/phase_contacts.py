@@ -250,7 +250,7 @@ class PhaseContacts(ContactLaw):
             rows = self.part.projected(pieces.points, *self.bases)
             moved = pieces.at_cuts @ fine[0], pieces.at_cuts @ fine[1]
             further, _ = self._laws(np.zeros(0), rows, *moved, excess, closed)
-            ends = slice(rows.count - crossings.piece.size, rows.count)
+            ends = slice(rows.length - crossings.piece.size, rows.length)
             jumped = self._jumped(crossings, rows.at(ends), moved)
             law = _joined([law, further])
         weight, tangent = pieces.weight[:, None], law.tangent
@@ -266,7 +266,7 @@ class PhaseContacts(ContactLaw):
     ) -> tuple[Law, _Crossings]:  # fmt: skip
         """Law at points, a block of them at a time, and ends of dead zones in pieces of a width."""
         laws, crossings = [], [_Crossings.none()]
-        for begin in range(0, rows.count, _BLOCK):
+        for begin in range(0, rows.length, _BLOCK):
             some = slice(begin, begin + _BLOCK)
             entries = rows.at(some)
             laws.append(self.law(entries, 1.0, y[some], rate[some], excess, closed))

@@ -275,7 +275,7 @@ class PointRows(NamedTuple):
     parts: list[tuple[dict[str, Array], Index | slice]]  #: entries, and the one of each point
     turned: tuple[Array, Array]  #: errors and their rates (p or 1, contacts)
     load: Array  #: external force along the basis (p or 1, s)
-    count: int
+    length: int  #: number of points
 
     def at(self, some: slice) -> Rows:
         """Entries at some of the points."""
@@ -292,7 +292,7 @@ class PointRows(NamedTuple):
         fields = self.rows._joined(parts, axis=1)
         fields |= dict(zip(("error", "error_slope"), map(chosen, self.turned), strict=True))
         nodes = Nodes(**{name: fields.get(name, np.zeros((1, 1))) for name in Nodes._fields})
-        count = len(range(self.count)[some])
+        count = len(range(self.length)[some])
         stiffness, gap = (
             np.broadcast_to(fields[name], (count, *fields[name].shape[1:]))
             for name in ("springs", "gaps")
