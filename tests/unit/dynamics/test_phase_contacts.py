@@ -2,10 +2,15 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 from tribodyn.dynamics import Contact, System, harmonic_balance
+from tribodyn.dynamics.harmonic import phase_contacts
+from tribodyn.dynamics.harmonic.newton import tangents
+from tribodyn.dynamics.harmonic.phase_balance import _Search
 from tribodyn.dynamics.harmonic.phase_contacts import Cut, Pieces
 from tribodyn.dynamics.harmonic.phase_grid import PhaseGrid
 
@@ -66,3 +71,68 @@ def test_teeth_that_are_alike_have_no_sidebands(teeth):
     alike = lines.numbers[:, 0] % teeth == 0
     size = np.abs(lines.amplitude[:, 0])
     assert size[~alike].max(initial=0.0) < 1e-9 * size[1:].max()
+
+
+def searched(contact, size=(40, 10)):
+    """A contact over two phases, its residual on a grid and the motion with closed contacts."""
+    system = System(np.diag([1.0, 2.0]), 20.0 * np.eye(2), np.zeros((2, 2)), [3e3, -3e3], [contact])
+    search = _Search.of(system, np.array([900.0, 91.0]))
+    residual = search.residual((size,))
+    return residual, search.linear(residual)
+
+
+def jumping(**changes):
+    """A contact whose stiffness jumps, with ramps and an error that turns with a shaft."""
+    return Contact(
+        [1.0, -1.0], lambda x: 2e8 * (1.0 + 0.4 * (np.asarray(x) % 1.0 < 0.6)), 3e3, 0.0, 2e-5,
+        ramp_stiffness=lambda x: np.tile([3e7, 2e8], (np.size(x), 1)),
+        ramp_gap=lambda x: 1e-6 * np.tile([29.0, 31.0], (np.size(x), 1)), events=(0.0, 0.6),
+        cycles=(1, 0), turning_error=lambda x: 2e-6 * np.cos(2 * np.pi * x), turning_cycles=(0, 1),
+        **changes,
+    )  # fmt: skip
+
+
+def test_forces_do_not_depend_on_the_blocks_in_which_they_are_evaluated(monkeypatch):
+    residual, y = searched(jumping())
+    y = 1.2 * y - 0.2 * y.mean(axis=0) - 0.3 * np.abs(y).max() * np.cos(np.arange(len(y)))[:, None]
+    whole = residual.at(y)
+    assert whole.law.open.any()  # the flank parts, so that pieces are cut
+    monkeypatch.setattr(phase_contacts, "_BLOCK", 16)
+    residual, _ = searched(jumping())
+    blocks = residual.at(y)
+    np.testing.assert_allclose(blocks.force, whole.force, rtol=0, atol=1e-14 * whole.force.max())
+    np.testing.assert_array_equal(blocks.pieces.at.place, whole.pieces.at.place)
+    for mine, other in zip(blocks.law.tangent[3:5], whole.law.tangent[3:5], strict=True):
+        np.testing.assert_allclose(mine, other, rtol=1e-13)
+
+
+@pytest.mark.parametrize("turns", [False, True])
+def test_derivative_is_the_limit_of_differences(turns):
+    direction = {"direction": lambda x: np.stack(
+        (1.0 + 0.1 * np.cos(2 * np.pi * x), -1.0 + 0.05 * np.sin(2 * np.pi * x)), axis=-1
+    )} if turns else {}  # fmt: skip
+    residual, y = searched(replace(jumping(), **direction))
+    grid = residual.parts[0].grid
+    phase = 2 * np.pi * grid.points
+    move = np.cos(phase @ [1, 2])[:, None] + np.sin(phase @ [3, -1])[:, None] * np.ones(y.shape[1])
+    small = 1e-7 * np.abs(y).max()
+    ahead, back = (residual.at(y + sign * small * move).residual for sign in (1, -1))
+    expected = (ahead - back) / (2 * small)
+    product = residual.derivative(residual.at(y))(move)
+    np.testing.assert_allclose(product, expected, rtol=0, atol=1e-6 * np.abs(expected).max())
+
+
+@pytest.mark.parametrize("turns", [False, True])
+def test_tangents_on_the_grid_are_those_of_the_forces(turns):
+    """A motion that is the same everywhere is felt with the tangent on the grid."""
+    direction = {"direction": lambda x: np.stack(
+        (1.0 + 0.1 * np.cos(2 * np.pi * x), -1.0 + 0.05 * np.sin(2 * np.pi * x)), axis=-1
+    )} if turns else {}  # fmt: skip
+    residual, y = searched(replace(jumping(), **direction))
+    (part,) = residual.parts
+    state = residual.at(y)
+    move = np.tile(np.arange(1.0, 1.0 + y.shape[1]), (len(y), 1))
+    (change,) = residual.changes(state)
+    stiffness, _ = tangents(part.structure, state)
+    expected = (stiffness @ move[..., None])[..., 0]
+    np.testing.assert_allclose(change(move), expected, rtol=0, atol=1e-11 * np.abs(stiffness).max())

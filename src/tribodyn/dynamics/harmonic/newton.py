@@ -33,6 +33,8 @@ LINEAR, VECTORS = 1e-4, 120
 #: Products with the derivative that may be spent if nothing else is said, and from a motion that
 #: may be near; steps in which the error halves there.
 _FREELY, _DIRECT, _PATIENCE = 10**6, 180, 8
+#: Unknowns of a linear solution above which its vectors have single precision.
+_SINGLE = 2**16
 
 
 class State(NamedTuple):
@@ -105,11 +107,12 @@ def solve_linear(
     size = float(np.linalg.norm(right))
     if size == 0.0:
         return np.zeros_like(right), 0
-    basis = np.empty((limit + 1, right.size))
+    basis = np.empty((limit + 1, right.size), np.float32 if right.size > _SINGLE else float)
     basis[0] = right.reshape(-1) / size
     upper, target, turns = np.zeros((limit, limit)), [size], np.zeros(0, dtype=complex)
     for count in range(1, limit + 1):
-        vector = product(basis[count - 1].reshape(right.shape)).reshape(-1)
+        vector = product(basis[count - 1].reshape(right.shape).astype(float, copy=False))
+        vector = vector.reshape(-1).astype(basis.dtype, copy=False)
         column = np.zeros(count)
         for _ in range(2):  # twice is enough for orthogonality
             along = basis[:count] @ vector
@@ -129,7 +132,8 @@ def solve_linear(
             break
         basis[count] = vector / length
     weights = np.linalg.solve(upper[:count, :count], np.array(target[:count]))
-    return (weights @ basis[:count]).reshape(right.shape), count
+    weights = weights.astype(basis.dtype, copy=False)
+    return (weights @ basis[:count]).astype(float, copy=False).reshape(right.shape), count
 
 
 def newton(
