@@ -14,7 +14,7 @@ from tribodyn.dynamics import PhaseResponse
 from tribodyn.dynamics.harmonic.phase_balance import _ALONG, Work
 from tribodyn.dynamics.harmonic.phase_response import along_line, recorded
 from tribodyn.study.machine.first_look import over_phases, phase_cost_of, warn_of_motion
-from tribodyn.study.machine.motion import line_cause, line_numbers
+from tribodyn.study.machine.motion import line_cause, machine_motion
 
 TEETH = {"z1": 29, "z2": 71, "z3": 23, "z4": 67, "z5": 19, "z6": 61}
 
@@ -157,17 +157,24 @@ def test_a_stored_result_keeps_its_phases(tmp_path: Any) -> None:
     assert stored.operation.system.phases == 3
 
 
-def test_numbers_of_a_line_are_the_smallest() -> None:
-    turns = np.array([578, 20, 101])
-    for numbers in ((1, 0, 0), (0, 3, 0), (2, -1, 0), (1, 0, -2), (0, 1, 4)):
-        order = int(np.dot(turns, numbers))
-        assert line_numbers(turns, [order]) == {order: numbers}
-    # High harmonics of one of four phases are no sums of a few cycles of each.
-    turns = np.array([1334, 1407, 1525, 58])
-    for numbers in ((25, 0, 0, 0), (0, 17, 0, 0), (0, 0, 19, 0), (0, 0, 0, 7), (1, -2, 0, 0)):
-        order = abs(int(np.dot(turns, numbers)))
-        sign = np.sign(np.dot(turns, numbers))
-        assert line_numbers(turns, [order]) == {order: tuple(sign * n for n in numbers)}
+def test_a_line_near_a_combination_of_phases_keeps_its_frequency_and_cause() -> None:
+    """Harmonic 28 of the last mesh falls on the order of first plus two second of the record."""
+    machine = case({"z1": 23, "z2": 71, "z3": 19, "z4": 83, "z5": 17, "z6": 77}).machine()
+    wavy = replace(machine.meshes["mesh3"], error=lambda p: 1e-6 * np.cos(56.0 * np.pi * p))
+    structure = td.machine.machine_structure(machine._with(meshes={"mesh3": wavy}))
+    rates = machine.phases.frequency
+    system = td.machine.system(structure, phases=True)
+    motion = machine_motion(structure, td.dynamics.harmonic_balance(system, rates))
+    assert motion.phase_turns is not None
+    assert motion.phase_turns @ [1, 2, -28] == 0.0
+    lines = motion.lines(motion.mesh_force[:, 2], 3)
+    line = max(lines, key=lambda line: abs(line.amplitude))
+    assert (line.cause, line.numbers) == ("28 x mesh3", (0, 0, 28))
+    assert line.frequency == pytest.approx(28 * 1000 / 60 * 23 / 71 * 19 / 83 * 17, rel=1e-12)
+    assert rates[0] + 2.0 * rates[1] > line.frequency + 0.1
+
+
+def test_causes_of_lines_in_words() -> None:
     meshes = {"a": (1, 0), "b": (0, 2), "c": (0, 3)}
     assert line_cause((2, 0), meshes) == "2 x a"
     assert line_cause((0, 6), meshes) == "3 x b"

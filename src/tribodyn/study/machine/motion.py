@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from fractions import Fraction
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, NamedTuple
@@ -18,9 +18,8 @@ if TYPE_CHECKING:
     from tribodyn.machine import Machine, MachineStructure
     from tribodyn.machine.graph.clock import Phases
 
-#: Highest harmonic of the fastest mesh among the lines, least size of one over the largest, and
-#: largest product of one more than each number of the slower phases in a line.
-_HIGHEST, _LEAST, _NUMBERS = 20, 1e-9, (4096, 4096, 1024, 512, 128)
+#: Highest harmonic of the fastest mesh among the lines, and least size of one over the largest.
+_HIGHEST, _LEAST = 20, 1e-9
 #: Most turns of a shaft in a phase or phases in a turn, and difference of equal rates.
 _MOST_TURNS, _EQUAL = 10_000, 1e-9
 #: Directions of forces and moments of a bearing.
@@ -70,30 +69,6 @@ class MotionLine(NamedTuple):
     amplitude: complex  #: of a cosine
     numbers: tuple[int, ...]  #: cycles of each phase in it; on one clock its order
     cause: str  #: in words: ``2 x first - 1 x second``
-
-
-def line_numbers(turns: Array, orders: Sequence[int]) -> dict[int, tuple[int, ...]]:
-    """Whole numbers of the phases, as simple as possible, of orders along a closed line."""
-    turns = np.asarray(turns, dtype=np.int64)
-    if turns.size == 1:
-        return {order: (order // int(turns[0]),) for order in orders}
-    # Lines fall with the product of their numbers. The phase with the most turns gets what is left.
-    first, others = int(np.argmax(turns)), np.zeros((1, turns.size), dtype=np.int64)
-    size, most = np.ones(1, dtype=np.int64), _NUMBERS[min(turns.size, len(_NUMBERS)) - 1]
-    for axis in np.delete(np.arange(turns.size), first):
-        count = 2 * (most // size) - 1
-        middle = np.cumsum(count) - (count + 1) // 2
-        others, size = np.repeat(others, count, axis=0), np.repeat(size, count)
-        others[:, axis] = np.arange(len(size)) - np.repeat(middle, count)
-        size *= 1 + np.abs(others[:, axis])
-    sums, numbers = others @ turns, {}
-    for order in orders:
-        number, remainder = np.divmod(order - sums, turns[first])
-        place = int(np.argmin(np.where(remainder == 0, size * (1 + np.abs(number)), 2**60)))
-        if remainder[place] == 0:
-            others[place, first] = number[place]
-            numbers[order] = tuple(others[place].tolist())
-    return numbers
 
 
 class Unit(NamedTuple):
@@ -222,6 +197,8 @@ class MachineMotion(PeriodicSamples):
         Cycles of each phase along the closed line.
     mesh_phases : (meshes, phases) array, optional
         Mesh cycles of each mesh over each phase.
+    line_numbers : (lines, phases) array, optional
+        Whole numbers of the strongest spectral line of the mesh forces at each order of the record.
     units : tuple of Unit
         What turns with each phase, of a motion with faults.
     """
@@ -242,6 +219,7 @@ class MachineMotion(PeriodicSamples):
     phase_frequency: Array | None = quantity("phase", unit="Hz", default=None)
     phase_turns: Array | None = quantity("phase", unit="1", default=None)
     mesh_phases: Array | None = quantity("mesh", "phase", unit="1", default=None)
+    line_numbers: Array | None = quantity("line", "phase", unit="1", default=None)
     units: tuple[Unit, ...] = ()
 
     @property
@@ -294,21 +272,33 @@ class MachineMotion(PeriodicSamples):
             By rising frequency; amplitudes in the unit of the signal.
         """
         phases, frequency = self._phases
-        turns = np.ones(1) if self.phase_turns is None else self.phase_turns
         highest = min(len(signal) // 2 - 1, _HIGHEST * int(self.cycles.max()))
         waves = self.harmonics(signal, np.arange(1.0, highest + 1))
         sizes = np.abs(waves)
         least = _LEAST * sizes.max(initial=0.0)
-        chosen = np.argsort(-sizes, kind="stable")[:count]
-        numbers = line_numbers(turns, [int(n) + 1 for n in chosen if sizes[n] > least])
+        chosen = np.argsort(-sizes, kind="stable")[:count] + 1
+        numbers = self._numbers
         labels = dict(zip(self.mesh, phases.astype(int).tolist(), strict=True))
         lines = [
             MotionLine(
                 float(np.dot(k, frequency)), waves[order - 1], k, line_cause(k, labels, self.units)
             )
-            for order, k in numbers.items()
+            for order in chosen.tolist()
+            if sizes[order - 1] > least and (k := numbers(order))
         ]
         return sorted(lines, key=lambda line: line.frequency)
+
+    @property
+    def _numbers(self) -> Callable[[int], tuple[int, ...]]:
+        """Whole numbers of the phases by order; none where the motion has no line."""
+        if self.phase_turns is None:
+            return lambda order: (order,)
+        if self.line_numbers is None:
+            why = "An earlier version stored this motion"
+            raise InputError("the lines have no whole numbers", "", why, "Compute the case again")
+        orders = (self.line_numbers @ self.phase_turns).astype(int).tolist()
+        found = dict(zip(orders, map(tuple, self.line_numbers.astype(int).tolist()), strict=True))
+        return lambda order: found.get(order, ())
 
     def mesh_orders(self, count: int) -> dict[int, list[tuple[str, int]]]:
         """Orders of the clock that meshes excite.
@@ -474,12 +464,18 @@ def _over_phases(machine: Machine, response: Response, over: Phases) -> dict[str
     periods = np.array([mesh.period for mesh in machine.meshes.values()])
     phases = np.array([over.cycles[name] for name in machine.meshes]) * periods[:, None]
     fastest = int(np.argmax(frequency))
+    _, amplitude, numbers = response.lines()
+    largest = np.maximum(np.abs(amplitude).max(axis=0), np.finfo(float).tiny)
+    size, order = (np.abs(amplitude) / largest).max(axis=1), numbers @ turns
+    falling = np.argsort(-size, kind="stable")
+    strongest = falling[np.unique(order[falling], return_index=True)[1]]
     return {
         "cycles": phases @ turns,
         "frequency": float(frequency[fastest] / turns[fastest]),
         "phase_frequency": frequency,
         "phase_turns": turns.astype(float),
         "mesh_phases": phases.astype(float),
+        "line_numbers": numbers[strongest].astype(float),
     }
 
 
