@@ -155,7 +155,7 @@ def _record(
     return {**facts, "units": dict(recorded.units), **truth}, [
         f"{ready.title}\n{recorded}",
         f"Recording: {file}, truth: {file.with_suffix('.json')}",
-        f"Analyse it: tribodyn signal {file} --channel {names[0]} --tacho tacho",
+        f'Analyse it: tribodyn signal {file} --channel "{names[0]}" --tacho tacho',
     ]
 
 
