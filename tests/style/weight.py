@@ -183,7 +183,7 @@ LINES: dict[str, int] = {
     "scope": 38,
     "signals": 1727,
     "stiffness": 5185,
-    "study": 20122,
+    "study": 20110,
     "surrogate": 765,
     "types": 13,
     "uncertainty": 288,

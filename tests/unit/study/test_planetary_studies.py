@@ -86,8 +86,9 @@ def test_speeds_share_the_teeth_that_do_not_depend_on_them(case, monkeypatch):
     assert len(computed) == 2  # of the sun meshes and of the ring meshes
     sys.modules["tribodyn.mesh.build"]._cached_teeth.cache_clear()
     alone = td.run(stage.replace(changes[2])).summary()
+    # A motion depends on no other one, and so not on how speeds are grouped.
     for name, value in results[2].figures.items():
-        assert alone[name] == pytest.approx(value, rel=1e-8, abs=1e-9), name
+        assert alone[name] == value, name
 
 
 def test_a_slow_run_up_has_the_levels_of_steady_motions(case, result):

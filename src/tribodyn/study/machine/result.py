@@ -54,23 +54,16 @@ if TYPE_CHECKING:
 STEPS, _OF_STAGE, _MOST = 128, 240, 1024
 
 
-def steady_motion(
-    structure: MachineStructure, system: System, start: Response | None = None
-) -> Response:
-    """Motion on one clock, with steps that suffice, or over phases; coordinates of a start fit."""
-    from tribodyn.dynamics import PhaseResponse
+def steady_motion(structure: MachineStructure, system: System) -> Response:
+    """Motion on one clock, with steps that suffice, or over phases."""
     from tribodyn.dynamics.harmonic.harmonic_balance import STEP_LIMIT
 
-    if start is not None and start.names != tuple(system.names):
-        start = None
     if system.phases:
-        start = start if isinstance(start, PhaseResponse) else None
-        return _motion(structure, system, structure.machine.phases.frequency, start=start)
+        return _motion(structure, system, structure.machine.phases.frequency)
     steps = steps_of(structure)
     while True:
-        search = {"start": start, "steps": steps}
         with collected() as model_warnings:
-            response = _motion(structure, system, structure.machine.clock.frequency, **search)
+            response = _motion(structure, system, structure.machine.clock.frequency, steps=steps)
         if not response.step_error > STEP_LIMIT or steps >= _MOST:
             break
         steps *= 2

@@ -71,7 +71,7 @@ from tribodyn.study.pipeline.tooth_contact import (
 from tribodyn.study.settle import settle
 
 if TYPE_CHECKING:
-    from tribodyn.dynamics import LoadFriction, Response
+    from tribodyn.dynamics import LoadFriction
     from tribodyn.machine import Machine, MeshBalance, StaticBalance
     from tribodyn.mesh import MeshTable
     from tribodyn.types import Array
@@ -125,20 +125,16 @@ def run_machine(case: MachineCase, progress: Progress = SILENT) -> MachineResult
 
 
 def run_load(
-    case: MachineCase,
-    load: LoadCase,
-    progress: Progress,
-    of_meshes: list[MeshWarning],
-    start: Response | None = None,
+    case: MachineCase, load: LoadCase, progress: Progress, of_meshes: list[MeshWarning]
 ) -> LoadResult:
-    """Compute a machine under one load; its motion is searched from that of a similar one."""
+    """Compute a machine under one load."""
     state = balanced_machine(case, load, progress)
     of_meshes += state.warnings
     progress.start(f"Motion: {load.name}")
     structure = state.structure(case)
     system = system_of(structure, phases=over_phases(case.solver, structure.machine))
     with friction_suspected(state.tables.values()):
-        response = by_engine(case.solver.engine, steady_motion(structure, system, start))
+        response = by_engine(case.solver.engine, steady_motion(structure, system))
     progress.finish()
     motion = machine_motion(structure, response)
     of_meshes += _of_motion(case, load, structure.machine, motion)

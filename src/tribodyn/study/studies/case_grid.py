@@ -84,7 +84,7 @@ def results_under(
     case: MachineCase, changes: Sequence[Mapping[str, object]], progress: Progress = SILENT
 ) -> Iterator[tuple[LoadResult | InputError | ComputationError, tuple[str, ...]]]:
     """Results of a case at its operating point for changes of its keys, and warning codes."""
-    start, stages = None, StageProgress(progress)
+    stages = StageProgress(progress)
     for change in changes:
         refuse_stopped(STOPPED * int(stop_flag()[0]))
         of_meshes: list[MeshWarning] = []
@@ -92,12 +92,11 @@ def results_under(
             try:
                 changed = case.replace(change)
                 point = changed.operating_point
-                result = run_load(changed, point, stages, of_meshes, start)
+                result = run_load(changed, point, stages, of_meshes)
                 result.figures.update(shape_figures(changed) | rated_figures(changed, result))
             except (InputError, ComputationError) as error:
                 yield error, ()
                 continue
-        start = result.response  # the next motion is similar
         yield result, tuple(w.code for w in (*caught, *(each.warning for each in of_meshes)))
 
 
