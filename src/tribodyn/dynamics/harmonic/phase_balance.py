@@ -63,7 +63,7 @@ _ROUGHLY, _LARGE = 9e-3, 2**18
 _AHEAD, _RINGS = 8, 2.0
 #: Memory per unknown of a motion on stated points, of one whose points grow, and of one that is
 #: looked at with more points [byte].
-_PLAIN, _BYTES, _LOOKED = 1.5e3, 5e3, 2.5e3
+_PLAIN, _BYTES, _LOOKED = 1.5e3, 1.2e3, 6e2
 #: Time of a grid, per unknown of it for each part of the system and for each phase [s], and part of
 #: its lines that are more than rounding: where nothing moves, of forces that are smooth along the
 #: motion, of those that jump, and excite natural frequencies, and where flanks separate.
@@ -147,7 +147,7 @@ def phase_cost(
     # The largest part is looked at with twice its points, and with more where its forces jump.
     part = unknowns * max(parts) / first
     ahead = min(_AHEAD * part, _LARGE) if work.kind not in ("steady", "smooth") else 0.0
-    memory = 2e8 + 1.4e8 * phases
+    memory = 1e8 + 1.2e8 * phases
     if mesh is not None:
         return unknowns, memory + _PLAIN * unknowns, 0.1 + _STATED * unknowns
     memory += _BYTES * unknowns + _LOOKED * max(2.0 * part, ahead)
