@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
@@ -77,6 +79,31 @@ def test_of_closed_flanks(seed, meshes, shafts):
     error = true_error(system, frequencies, motion, points)
     assert error < 1.5 * motion.step_error + 1e-10
     assert motion.step_error < 3.0 * error + 1e-10
+
+
+def negative(function):
+    """The same with the other sign."""
+    return lambda x: -function(x)
+
+
+@pytest.mark.parametrize(("seed", "meshes", "shafts"), [(0, 2, 0), (3, 1, 2)])
+def test_flanks_on_the_other_side_carry_the_same(seed, meshes, shafts):
+    """A contact whose direction and errors have the other sign is the same with minus its force."""
+    system, frequencies = drawn(seed, meshes, shafts)
+    contacts = [
+        replace(
+            each, direction=-np.asarray(each.direction), error=negative(each.error),
+            turning_error=[negative(error) for error in each.turning_error],
+        )
+        for each in system.contacts
+    ]  # fmt: skip
+    mirrored = harmonic_balance(replace(system, contacts=contacts), frequencies)
+    motion = harmonic_balance(system, frequencies)
+    assert mirrored.converged
+    assert mirrored.fine.contact_force.max() < 0.0
+    expected, force = motion.fine.position, motion.fine.contact_force
+    assert np.abs(felt(system, mirrored.fine.position - expected)).max() < 1e-8 * np.ptp(expected)
+    assert np.abs(mirrored.fine.contact_force + force).max() < 1e-8 * force.max()
 
 
 @pytest.mark.slow

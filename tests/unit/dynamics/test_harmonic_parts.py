@@ -261,7 +261,7 @@ def test_a_newton_step_that_is_not_finite_ends_the_search_without_a_warning():
     growing = SimpleNamespace(
         at=lambda y: state,
         accuracy=lambda norms: 1e-4,
-        correction=lambda state, accuracy: solve_linear(
+        correction=lambda state, accuracy, most: solve_linear(
             lambda x: 1e200 * x, -1e200 * state.residual, accuracy, 5
         ),
     )

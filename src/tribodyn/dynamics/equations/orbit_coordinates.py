@@ -18,6 +18,7 @@ import numpy as np
 
 from tribodyn.arrays.linear_algebra import each_times
 from tribodyn.arrays.memory import Memo
+from tribodyn.dynamics.equations.balanced import balanced_position
 from tribodyn.dynamics.equations.compiled import Compiled
 from tribodyn.dynamics.equations.grid import unrepeated
 from tribodyn.dynamics.equations.motion import compression, forces, has_gap
@@ -366,20 +367,46 @@ def _compressed(compiled: Sampled, position: Array) -> Array:
 
 def static_start(compiled: Sampled) -> Array:
     """State at rest under the mean loads, every contact on its driving flank."""
+    position = _on_flanks(compiled, np.ones(compiled.nodes.gap.shape[-1]))
+    return np.concatenate((position, np.zeros(compiled.system.size)))
+
+
+def _loaded(compiled: OverBases) -> Array:
+    """Position at rest (n,) with contacts on the flanks that the mean loads press."""
+    position = _on_flanks(compiled, np.ones(compiled.nodes.gap.shape[-1]))
+    force, most = _carried(compiled, position)
+    pulled = has_gap(compiled.nodes) & (force < -_UNLOADED * most.max(initial=0.0))
+    if pulled.any():
+        other = _on_flanks(compiled, np.where(pulled, -1.0, 1.0))
+        if (side_of(compiled, other)[pulled] < 0.0).all():
+            return other
+    return position
+
+
+def _on_flanks(compiled: Sampled, side: Array) -> Array:
+    """Position at rest (n,), each contact on a side of its dead zone (contacts,)."""
     nodes = compiled.nodes
     lowest = lowest_of_each_law(nodes)[:, None]
     stiffness, gap = springs(nodes)
     lowest = np.pad(lowest, ((0, 0), (0, stiffness.shape[-1] - 1)))  # no ramp is the lowest
-    carrying = stiffness
-    position = _equilibrium(compiled, carrying, gap)
+    carrying, edge = stiffness, side[:, None] * gap
+    position = _equilibrium(compiled, carrying, edge)
     for _ in range(0 if lowest.all() else _ROUNDS):
-        beyond = _compressed(compiled, position)[..., None] > gap
+        beyond = (side * _compressed(compiled, position))[..., None] > gap
         closed = np.where(lowest | beyond, stiffness, 0.0)
         if np.array_equal(closed, carrying):
             break
         carrying = closed
-        position = _equilibrium(compiled, carrying, gap)
-    return np.concatenate((position, np.zeros(compiled.system.size)))
+        position = _equilibrium(compiled, carrying, edge)
+    return position
+
+
+def side_of(compiled: Sampled, position: Array) -> Array:
+    """Side (contacts,) of the dead zone on which a position (n,) holds each contact, or 1."""
+    weight, nodes = compiled.nodes.weight, compiled.nodes
+    place, gap = (np.einsum("rs,rsj->j", weight, np.broadcast_to(part, nodes.gap.shape))
+                  for part in (_compressed(compiled, position), nodes.gap))  # fmt: skip
+    return np.where(has_gap(nodes) & (place < -gap), -1.0, 1.0)
 
 
 class Rest(NamedTuple):
@@ -391,31 +418,37 @@ class Rest(NamedTuple):
 
 def at_rest(compiled: OverBases) -> Rest:
     """Static equilibrium; a body that nothing loads is in the middle between its flanks."""
-    nodes, position = compiled.nodes, static_start(compiled)
+    nodes, loaded = compiled.nodes, _loaded(compiled)
     lowest = lowest_of_each_law(nodes) & nodes.stiffness.any(axis=(0, 1))
-    floating, state = has_gap(nodes) & lowest & _unloaded(compiled, position), position
+    floating, position = has_gap(nodes) & lowest & _unloaded(compiled, loaded), loaded
     while floating.any():
-        middle = nodes._replace(gap=np.where(floating, 0.0, nodes.gap))
-        state = static_start(replace(compiled, nodes=middle))
-        free = floating & _unloaded(replace(compiled, nodes=middle), state)
+        middle = replace(compiled, nodes=nodes._replace(gap=np.where(floating, 0.0, nodes.gap)))
+        position = _loaded(middle)
+        free = floating & _unloaded(middle, position)
         if np.array_equal(free, floating):
             break
-        floating, state = free, position
-    return Rest(state[: compiled.system.size], floating)
+        floating, position = free, loaded
+    return Rest(position, floating)
 
 
-def _unloaded(compiled: OverBases, state: Array) -> Mask:
+def _unloaded(compiled: OverBases, position: Array) -> Mask:
     """Contacts without a mean force at rest, where those lowest of a force law are closed."""
+    force, most = _carried(compiled, position)
+    return np.asarray(np.abs(force) <= _UNLOADED * most.max(initial=0.0))
+
+
+def _carried(compiled: Sampled, position: Array) -> tuple[Array, Array]:
+    """Mean force of each contact at a position on its driving flank, and the size of its parts."""
     nodes = compiled.nodes
     stiffness, gap = springs(nodes)
-    pressed = _compressed(compiled, state[: compiled.system.size])[..., None] - gap
+    pressed = _compressed(compiled, position)[..., None] - gap
     closed = pressed > 0.0
     closed[..., 0] |= lowest_of_each_law(nodes)
     force, most = (
-        np.abs(np.einsum("rs,rsjm->j", nodes.weight, stiffness * np.where(closed, part, 0.0)))
+        np.einsum("rs,rsjm->j", nodes.weight, stiffness * np.where(closed, part, 0.0))
         for part in (pressed, np.abs(pressed) + gap)
     )
-    return np.asarray(force <= _UNLOADED * most.max(initial=0.0))
+    return force, most
 
 
 def _equilibrium(compiled: Sampled, carrying: Array, gap: Array) -> Array:
@@ -425,7 +458,7 @@ def _equilibrium(compiled: Sampled, carrying: Array, gap: Array) -> Array:
         pressed, carrying = (carrying * gap).sum(axis=-1), carrying.sum(axis=-1)
         nodes = nodes._replace(gap=pressed / np.where(carrying > 0.0, carrying, 1.0))
     else:
-        carrying = carrying[..., 0]
+        nodes, carrying = nodes._replace(gap=gap[..., 0]), carrying[..., 0]
     bases = compiled.bases if isinstance(compiled, OverBases) else None
     position = balanced_position(system, nodes, carrying, nodes.force_direction, bases)
     for _ in range(_ROUNDS if system.frictions else 0):
@@ -440,52 +473,3 @@ def _equilibrium(compiled: Sampled, carrying: Array, gap: Array) -> Array:
         if np.abs(position - last).max() <= 1e-12 * np.abs(position).max():
             break
     return position
-
-
-def balanced_position(
-    system: System,
-    nodes: Nodes,
-    carrying: Array,
-    push: Array,
-    bases: tuple[Array, Array] | None = None,
-) -> Array:
-    """Position at rest if each newton of a contact pushes with ``push`` (..., contacts, n)."""
-    # bases: those along which directions and ``push`` have components
-    weight = nodes.weight[..., None] * carrying
-    stiffness, pushed = _sums(push, weight, nodes.direction, nodes.error + nodes.gap)
-    if bases is not None:
-        stiffness, pushed = bases[1] @ stiffness @ bases[0].T, pushed @ bases[1].T
-    stiffness = stiffness + np.asarray(system.stiffness)
-    force = np.einsum("...rs,...rsi->...i", nodes.weight, nodes.force) + pushed
-    # Least squares in mass-weighted coordinates: free motions get no displacement.
-    scale = 1.0 / np.sqrt(np.diag(np.asarray(system.mass)))
-    matrix = stiffness * np.outer(scale, scale)
-    if matrix.ndim == 2:
-        return np.asarray(scale * np.linalg.lstsq(matrix, scale * force, rcond=1e-12)[0])
-    inverse = np.linalg.pinv(matrix, rcond=1e-12)
-    return np.asarray(scale * np.einsum("...ij,...j->...i", inverse, scale * force))
-
-
-def _sums(push: Array, weight: Array, along: Array, shift: Array) -> tuple[Array, Array]:
-    """Sums of ``weight push along`` (..., s, r) and of ``weight push shift`` (..., s)."""
-    lead, size, wide = push.shape[:-4], push.shape[-1], along.shape[-1]
-    constant_push, constant_along = (
-        not lead and unrepeated(part, 2).size == part[0, 0].size for part in (push, along)
-    )
-    if constant_push and constant_along:
-        total, moved = weight.sum(axis=(0, 1)), (weight * shift).sum(axis=(0, 1))
-        return (push[0, 0].T * total) @ along[0, 0], push[0, 0].T @ moved
-    if constant_along:
-        # Of each contact only the sum of its pushes counts.
-        flat = push.reshape(-1, *push.shape[2:])
-        pairs = np.stack((weight, weight * shift)).reshape(2, *flat.shape[:2])
-        total, moved = np.stack([pairs[..., j] @ flat[:, j] for j in range(flat.shape[1])], axis=1)
-        return total.T @ along[0, 0], moved.sum(axis=0)
-    flat = np.swapaxes(push.reshape(*lead, -1, size), -1, -2)
-    factors = np.stack((weight, weight * shift), axis=-1).reshape(*lead, -1, 2)
-    if (constant := unrepeated(along, 1)).size == wide:  # a factor of the sum
-        sums = flat @ factors
-        return sums[..., :1] * constant.reshape(wide), sums[..., 1]
-    each = np.broadcast_to(along, (*push.shape[:-1], wide)).reshape(*lead, -1, wide)
-    weighted = factors[..., :1] * each
-    return flat @ weighted, (flat @ factors[..., 1:])[..., 0]

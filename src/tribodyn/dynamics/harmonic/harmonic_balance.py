@@ -43,7 +43,7 @@ from tribodyn.errors import ComputationError, InputError, require_positive, warn
 from tribodyn.interrupt import single_blas_thread
 from tribodyn.nomenclature import require_flag, require_number, require_whole
 from tribodyn.progress import SILENT, Progress
-from tribodyn.types import Array, ComplexArray, Mask
+from tribodyn.types import Array, ComplexArray
 
 #: An orbit whose certified error is above this is not converged.
 TOLERANCE = 1e-8
@@ -74,7 +74,7 @@ class Prepared:
 
     system: System
     structure: ClosedStructure
-    closed: Mask  #: springs that are closed at rest (contacts, m)
+    closed: Array  #: sides of springs that are closed at rest, 0 of others (contacts, m)
     equilibrium: Rest  #: static equilibrium
     grids: dict[int, Compiled]
     samples: dict[int, ContactEquations] = field(default_factory=dict)

@@ -26,7 +26,7 @@ from tribodyn.dynamics.modal.contact_equations import (
     Rows,
     with_dead_zone,
 )
-from tribodyn.types import Array, Index, Mask
+from tribodyn.types import Array, Index
 
 if TYPE_CHECKING:
     from scipy.sparse import csr_matrix
@@ -214,7 +214,7 @@ class PhaseContacts(ContactLaw):
 
     def law(
         self, rows: Rows, frequency: float, y: Array, rate: Array, excess: Array,
-        closed: Mask | None = None,
+        closed: Array | None = None,
     ) -> Law:  # fmt: skip
         """Contact forces at rows; those of supports with a clearance are all of a part."""
         law, supports = super().law(rows, frequency, y, rate, excess, closed), self.part.supports
@@ -232,7 +232,7 @@ class PhaseContacts(ContactLaw):
         )
 
     def at(
-        self, y: Array, rate: Array, excess: Array, closed: Mask | None
+        self, y: Array, rate: Array, excess: Array, closed: Array | None
     ) -> tuple[Law, Breaks, Pieces | None]:
         """Law of a motion (p, r) at the points of the grid, or of pieces where it breaks."""
         if not (self.jumps.line.size or self._opened):
@@ -262,7 +262,7 @@ class PhaseContacts(ContactLaw):
 
     def _laws(
         self, width: Array, rows: PointRows, y: Array, rate: Array, excess: Array,
-        closed: Mask | None,
+        closed: Array | None,
     ) -> tuple[Law, _Crossings]:  # fmt: skip
         """Law at points, a block of them at a time, and ends of dead zones in pieces of a width."""
         laws, crossings = [], [_Crossings.none()]

@@ -45,7 +45,7 @@ class Part:
     push: Array  #: basis of forces (n, s)
     contact_stiffness: Array  #: means of these contacts (s, r) [1/s^2]
     contact_damping: Array
-    closed: Mask  #: springs that are closed at rest
+    closed: Array  #: sides of springs that are closed at rest, 0 of others
     floating: Mask  #: contacts that carry nothing at rest
 
     @property

@@ -40,13 +40,13 @@ class OnGrid(NamedTuple):
     slope: ComplexArray  #: derivative of each line by time (k, 1)
     loaded: ComplexArray  #: lines of the motion under external forces that act apart (k or 1, r)
     members: Index  #: numbers of the contacts in the system
-    closed: Mask  #: springs that are closed at rest
+    closed: Array  #: sides of springs that are closed at rest, 0 of others
     floating: Mask  #: contacts that carry nothing at rest
 
     @classmethod
     def of(
         cls, structure: Any, grid: PhaseGrid, contacts: PhaseContacts | ContactEquations,
-        loaded: ComplexArray, members: Index, closed: Mask, floating: Mask,
+        loaded: ComplexArray, members: Index, closed: Array, floating: Mask,
     ) -> OnGrid:  # fmt: skip
         """Contacts with the receptances at the lines of their grid."""
         receptances = structure.receptances(grid.omega)
@@ -228,7 +228,7 @@ class ClockResidual(Residual):
 
     def __init__(
         self, structure: ClosedStructure, contacts: ContactEquations, frequency: float,
-        closed: Mask, floating: Mask,
+        closed: Array, floating: Mask,
     ) -> None:  # fmt: skip
         grid = PhaseGrid((contacts.steps,), np.array([frequency]))
         structure.refuse_resonance(grid.omega)

@@ -25,7 +25,7 @@ from tribodyn.dynamics.equations.nodes import (
     lowest_of_each_law,
     springs,
 )
-from tribodyn.dynamics.equations.orbit_coordinates import OverBases, Rest, at_rest
+from tribodyn.dynamics.equations.orbit_coordinates import OverBases, Rest, at_rest, side_of
 from tribodyn.dynamics.equations.system import System
 from tribodyn.dynamics.modal.closed_structure import ClosedStructure
 from tribodyn.types import Array, Index, Mask
@@ -160,21 +160,18 @@ class ContactLaw:
         y: Array,
         rate: Array,
         excess: Array,
-        closed: Mask | None = None,
+        closed: Array | None = None,
     ) -> Law:
         """Contact forces at rows, for motions and rates (p, r)."""
-        # excess (contacts,): damping on both sides of every contact; closed (contacts, m): springs
-        # that stay closed, all others open, whatever the motion.
+        # excess (contacts,): damping on both sides of every contact; closed (contacts, m): sides of
+        # springs that stay closed, 0 of those that stay open, whatever the motion.
         nodes = rows.nodes
         d = components(rows.along, y) - nodes.error
         speed = components(rows.along, rate) + frequency * (
             components(rows.along_slope, y) - nodes.error_slope
         )
         every = d[..., None]
-        if closed is None:
-            side = sides(every, rows.gap, self.dead)
-        else:
-            side = np.where(closed, 1.0, 0.0 * every)
+        side = sides(every, rows.gap, self.dead) if closed is None else closed + 0.0 * every
         springs = np.where(side != 0.0, rows.stiffness, 0.0)
         stiffness = springs.sum(axis=-1)
         touching = (side[..., 0] != 0.0) | self.damped_in_gap
@@ -212,7 +209,7 @@ class ContactEquations(ContactLaw):
         return replace(self, frequency=frequency)
 
     def at(
-        self, y: Array, rate: Array, excess: Array, closed: Mask | None
+        self, y: Array, rate: Array, excess: Array, closed: Array | None
     ) -> tuple[Law, Breaks, None]:
         """Law of a motion (steps, r) at the steps, and where it jumps between them."""
         motion = self.frequency, y, rate, excess, closed
@@ -228,7 +225,7 @@ class ContactEquations(ContactLaw):
         return replace(self, rows=rows, steps=self.steps // 2)
 
     def _event_breaks(
-        self, frequency: float, y: Array, rate: Array, excess: Array, closed: Mask | None
+        self, frequency: float, y: Array, rate: Array, excess: Array, closed: Array | None
     ) -> Breaks:
         """Jumps at the events."""
         place = self.events * self.steps
@@ -300,12 +297,13 @@ def _touch_factor(
 
 def close_contacts(
     compiled: OverBases, equilibrium: Rest | None = None
-) -> tuple[ClosedStructure, Mask]:
-    """Structure with closed contacts, and those closed at rest."""
+) -> tuple[ClosedStructure, Array]:
+    """Structure with closed contacts, and the sides of those closed at rest, 0 of others."""
     nodes, bases = compiled.nodes, (compiled.push, compiled.along)
     still, floating = equilibrium or at_rest(compiled)
     stiffness, gap = springs(nodes)
-    pressed = compression(nodes, still @ compiled.bases[0])[..., None] - gap
+    side = side_of(compiled, still)
+    pressed = (side * compression(nodes, still @ compiled.bases[0]))[..., None] - gap
     closed = np.einsum("rs,rsjm->jm", nodes.weight, pressed) > 0.0
     closed[:, 0] |= lowest_of_each_law(nodes)
     carried = np.where(closed, stiffness, 0.0).sum(axis=-1)
@@ -314,7 +312,7 @@ def close_contacts(
     means = [outer(into[0], part[:, 0], into[1]) for part in (carried, damped)]
     shifts = [np.tensordot(nodes.weight.sum(axis=1), part, 1) for part in means]
     structure = ClosedStructure(compiled.system, compiled.coordinates, *bases, *shifts)
-    return structure, closed & ~floating[:, None]
+    return structure, np.where(closed & ~floating[:, None], side[:, None], 0.0)
 
 
 def contact_equations(

@@ -17,6 +17,7 @@ import numpy as np
 
 from tribodyn.arrays.memory import Memory, new_memory, reused_memory
 from tribodyn.dynamics._engine.blocks import WIDTH
+from tribodyn.dynamics.equations.balanced import balanced_position
 from tribodyn.dynamics.equations.batched_tables import (
     batch_rates,
     coarsen_nodes,
@@ -30,7 +31,6 @@ from tribodyn.dynamics.equations.nodes import Nodes, halved_grid
 from tribodyn.dynamics.equations.orbit_coordinates import (
     Balance,
     OrbitCoordinates,
-    balanced_position,
     orbit_coordinates,
 )
 from tribodyn.dynamics.equations.step_limit import LIMIT
