@@ -10,7 +10,7 @@ import numpy as np
 
 from tribodyn import plot
 from tribodyn.drawing import Sketch, draws, load_figures
-from tribodyn.errors import InputError, collected
+from tribodyn.errors import ComputationError, InputError, collected
 from tribodyn.gear import Misalignment, tooth_contact
 from tribodyn.plot import FIGURES, Drawing
 from tribodyn.plot.theme.style import TOP
@@ -116,6 +116,11 @@ class _Place(NamedTuple):
         return replace(block, topic=_TOPIC_OF.get(figure.name, "Figures"))
 
 
+def _within(heading: str) -> str:
+    """A heading as the second part of another one."""
+    return f"{heading[0].lower()}{heading[1:]}"
+
+
 def _joined(blocks: Iterable[Block]) -> list[Block]:
     """Merge the sections of figures that are missing for the same reason."""
     joined: list[Block] = []
@@ -123,7 +128,7 @@ def _joined(blocks: Iterable[Block]) -> list[Block]:
     for block in blocks:
         if block.missing in place:
             first = joined[place[block.missing]]
-            heading = f"{first.heading}, {block.heading[0].lower()}{block.heading[1:]}"
+            heading = f"{first.heading}, {_within(block.heading)}"
             joined[place[block.missing]] = replace(first, heading=heading)
             continue
         if block.missing:
@@ -143,7 +148,8 @@ def figure_blocks(result: Any) -> list[Block]:
     if kind_of(result.case) in PAIRS:
         return _joined(place.block() for place in (*_of_pair(result), *_of_others(result)))
     places = (*_of_parts(result), *_of_others(result))
-    return [block for place in places if not (block := place.block()).missing]
+    blocks = (place.block() for place in places)
+    return [*(block for block in blocks if not block.missing), *_with_faults(result)]
 
 
 def _of_others(result: object) -> Iterator[_Place]:
@@ -179,6 +185,21 @@ def _of_parts(result: MachineResult) -> Iterator[_Place]:
         yield _Place(figure, result)
 
 
+def _with_faults(result: MachineResult) -> Iterator[Block]:
+    """Figures of the motion with faults, which the others leave out, or why there is none."""
+    if not result.case.faults:
+        return
+    try:
+        motion = result.turning_motion.motion
+    except (InputError, ComputationError) as error:
+        yield Block("with-faults", "With faults", missing=str(error), topic="Motion")
+        return
+    if motion is not result.operation.motion:  # defects of bearings act in recordings
+        for figure in (plot.machine_orders, plot.machine_forces):
+            heading = f"With faults: {_within(figure.heading)}"
+            yield _Place(figure, motion, f"{figure.name}-with-faults", heading).block()
+
+
 def _of_stages(result: MachineResult) -> Iterator[_Place]:
     """Figures of each planetary stage."""
     for number, name in enumerate(result.machine.planets):
@@ -204,7 +225,7 @@ def _of_meshes(result: MachineResult) -> Iterator[_Place]:
         tables.add(id(table))
         for name, subject in _of_teeth(result, mesh, table):
             if isinstance(figure := FIGURES[name], Drawing):
-                heading = f"Mesh {mesh}: {figure.heading[0].lower()}{figure.heading[1:]}"
+                heading = f"Mesh {mesh}: {_within(figure.heading)}"
                 yield _Place(figure, subject, f"{name.replace('_', '-')}-{number}", heading)
     for number, (mesh, errors) in enumerate(load.misalignment.items(), 1):
         if isinstance(errors, Misalignment):
