@@ -10,7 +10,9 @@ import pytest
 
 from tribodyn.dynamics import Contact, System, harmonic_balance
 from tribodyn.dynamics.equations.phases import read_frequencies
-from tribodyn.dynamics.harmonic.phase_balance import Work, _Search, phase_cost, work_of
+from tribodyn.dynamics.harmonic.newton import solved
+from tribodyn.dynamics.harmonic.phase_balance import _poor, _Search, phase_cost, work_of
+from tribodyn.dynamics.harmonic.phase_grid import Work
 from tribodyn.errors import ModelWarning
 
 SLOW, FAST = 20.0, 311.7
@@ -99,8 +101,9 @@ def test_grids_grow_beyond_the_usual_limit_only_where_a_mesh_rings():
     points = ((256, 96), (256, 96))  # as many unknowns as forces that jump get
     errors = np.array([[0.1, 0.0], [0.0, 0.0]])
     twice, ahead = np.full((2, 2), 2), np.array([[8, 2], [2, 2]])
-    assert not search.poor(points, errors, twice, False).any()
-    assert search.poor(points, errors, ahead, False).tolist() == [[True, False], [False, False]]
+    assert not _poor(search.size, points, errors, twice, False).any()
+    chosen = _poor(search.size, points, errors, ahead, False)
+    assert chosen.tolist() == [[True, False], [False, False]]
 
 
 def test_the_cost_of_a_mesh_that_rings_is_known_before():
@@ -113,3 +116,17 @@ def test_the_cost_of_a_mesh_that_rings_is_known_before():
         phase_cost(followers, (SLOW, FAST), work=Work(kind))[0] for kind in ("ringing", "broken")
     )
     assert 0.5 < (2 * rings / jumps) / (over_phases().points[0] / 24) < 2.0
+
+
+def test_a_trial_on_few_points_has_the_changes_of_the_first_grids():
+    system, frequency = gears(phases=True), (SLOW, FAST)
+    search = _Search.of(system, read_frequencies(frequency, system.phases))
+    residual = search.residual(((24, 12), (12, 24)))
+    state = solved(residual, search.linear(residual), 1e-6).state
+    every, none = np.eye(2, dtype=bool), np.zeros((2, 2))
+    errors, times = search.changes(((24, 12), (12, 24)), residual, state, every, none)
+    (slow, change, more), (fast, small, _) = work_of(system, frequency).changes
+    assert (slow, fast) == pytest.approx(frequency)
+    assert change == pytest.approx(errors[0, 0], rel=1e-3)
+    assert more == times[0, 0] == 8
+    assert small < 1e-6 * change

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from tribodyn.dynamics.harmonic.newton import State, tangents
-from tribodyn.dynamics.harmonic.phase_grid import PhaseGrid
+from tribodyn.dynamics.harmonic.phase_grid import CENTRAL, OTHERS, PhaseGrid
 from tribodyn.types import Array, ComplexArray, Index
 
 if TYPE_CHECKING:
@@ -21,9 +21,6 @@ if TYPE_CHECKING:
 
 #: Part of the largest variation of a stiffness that is too small to matter.
 _SMALL = 0.02
-#: Bytes of the factors of the lines of one phase alone, and of those that others shift; with more,
-#: only the lines at which the structure yields most are coupled.
-_CENTRAL, _OTHERS = 2**24, 2**26
 #: Bytes of the matrices that are set up at once.
 _AT_ONCE = 2**22
 
@@ -135,7 +132,7 @@ class _OnePhase:
         others = grid.numbers[: len(omega), 1:].any(axis=1).repeat(self.teeth)
         # Most of a motion has this phase alone: its lines are all coupled, of others the softest.
         self.blocks = []
-        for rows, most in ((np.flatnonzero(~others), _CENTRAL), (np.flatnonzero(others), _OTHERS)):
+        for rows, most in ((np.flatnonzero(~others), CENTRAL), (np.flatnonzero(others), OTHERS)):
             self.blocks.append(_Block.of(rows, most / len(rows), gain, rate, waves))
 
     def solved(self, y: Array, *, first: bool) -> Array:

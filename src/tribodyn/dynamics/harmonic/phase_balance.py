@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 
@@ -20,16 +20,18 @@ from tribodyn.dynamics.equations.orbit_coordinates import (
 from tribodyn.dynamics.equations.phases import read_frequencies
 from tribodyn.dynamics.equations.system import System, contact_label
 from tribodyn.dynamics.harmonic.newton import Solution, State, released, solved
-from tribodyn.dynamics.harmonic.phase_contacts import PhaseContacts
 from tribodyn.dynamics.harmonic.phase_grid import (
+    AHEAD,
     Fields,
     Follower,
     PhaseGrid,
     Points,
+    Work,
     doubled,
     first_sizes,
     most_points,
     points_of,
+    time_of_grids,
 )
 from tribodyn.dynamics.harmonic.phase_residual import Part, PhaseResidual, parts_of
 from tribodyn.dynamics.harmonic.phase_response import (
@@ -58,30 +60,19 @@ _MANY, _MOST = 2**17, 3 * 2**14
 _SMOOTH, _FALLING, _BROKEN = ((2e-7, _MANY),), 0.1, ((1e-5, 2**13), (2e-3, _MOST))
 #: Change above which grids grow further where a mesh rings, and the most unknowns for it.
 _ROUGHLY, _LARGE = 9e-3, 2**18
-#: Times the points over its phase with which a mesh that jumps is looked at too, and the ratio of
-#: the changes above which lines that few points leave out are those of a natural frequency.
-_AHEAD, _RINGS = 8, 2.0
+#: Ratio of the changes with more and with twice the points above which lines that few points leave
+#: out are those of a natural frequency.
+_RINGS = 2.0
 #: Memory per unknown of a motion on stated points, of one whose points grow, and of one that is
 #: looked at with more points [byte].
 _PLAIN, _BYTES, _LOOKED = 1.5e3, 1.2e3, 6e2
-#: Time of a grid, per unknown of it for each part of the system and for each phase [s], and part of
-#: its lines that are more than rounding: where nothing moves, of forces that are smooth along the
-#: motion, of those that jump, and excite natural frequencies, and where flanks separate.
-_WORK = {
-    "steady": (0.01, 1e-6, 4e-6, 0.0),
-    "smooth": (0.01, 1e-5, 2e-6, 0.25),
-    "broken": (0.06, 4e-6, 3e-6, 1.0),
-    "ringing": (0.06, 1e-5, 8e-6, 1.0),
-    "open": (0.06, 2e-5, 6e-6, 1.0),
-}
 #: Least force of a contact on the first grids, over its mean, below which jumps may open it.
 _OPENS = 0.5
 #: Time per unknown of a motion on stated points [s], and unknowns of the first grids up to which a
 #: trial motion shows what forces do.
-_STATED, _TRIAL = 6e-5, 2**16
-#: Time per line and sample of the record, and more for each coordinate; per sample of the closed
-#: line and coordinate [s].
-_SUMMED, _SUMMED_EACH, _ALONG = 1.2e-8, 2e-9, 3.5e-7
+_STATED, _TRIAL, _FEW = 6e-5, 2**16, 4
+#: Time per line and sample of the record, and per sample of the closed line and column [s].
+_SUMMED, _ALONG = 1.3e-8, 1e-7
 #: Step error that causes a warning; part of the largest change with which a phase is refined too.
 _LIMIT, _WORST = 1e-2, 0.2
 #: Part of the step error that the error of a motion on the way to finer grids may have.
@@ -100,35 +91,40 @@ _GROWS, _HIGH = 1.001, 50.0
 _ROUGH, _RELEASE, _SPENT = 0.1, 480, 8_000_000
 
 
-class Work(NamedTuple):
-    """What the time of a motion depends on beside its grids."""
-
-    kind: str = "broken"  #: what forces do along the motion: a key of _WORK
-    size: int = 12  #: coordinates
-
-
 def work_of(system: System, frequency: Any, supports: Sequence[RadialClearance] = ()) -> Work:
     """What the motion of a system over phases takes, from a trial on its first grids."""
     search = _Search.of(system, read_frequencies(frequency, system.phases), supports)
     points = _first_points(search)
+    few = np.where(search.followed(), points, np.minimum(points, _FEW)).tolist()
+    points = tuple(map(tuple, few))
     residual = search.residual(points)
-    tried = residual.ends[-1] <= _TRIAL
-    state = residual.at(search.still(residual))
-    if tried:
-        state = solved(residual, search.linear(residual), 1e-4).state
-    kind = "smooth" if np.ptp(state.rate) or not tried else "steady"
-    contacts = [part.contacts for part in residual.parts]
-    jumps = any(isinstance(each, PhaseContacts) and each.jumps.line.size for each in contacts)
+    if residual.ends[-1] > _TRIAL:
+        return Work("broken", system.size)
+    solution = solved(residual, search.linear(residual), 1e-4)
+    state = solution.state
+    own = np.zeros(np.shape(points), dtype=bool)
+    for number, part in enumerate(search.parts):
+        own[number, part.axis] = bool(part.axes)
+    errors, times = search.changes(points, residual, state, own, np.zeros(own.shape))
+    cells = [each.pieces is not None for each in state.each]
     forces = [each.law.contact for each in state.each]
-    low = (each.min(axis=0) < _OPENS * each.mean(axis=0) for each in forces)
-    parted = any(each.law.open.any() for each in state.each)
-    if parted or (jumps and any(map(np.any, low))):
+    low = [(each.min(axis=0) < _OPENS * each.mean(axis=0)).any() for each in forces]
+    parted = [each.law.open.any() for each in state.each]
+    kind = "smooth" if np.ptp(state.rate) else "steady"
+    if any(parted) or any(np.logical_and(cells, low)):
         kind = "open"
-    elif jumps:
-        every, none = np.ones(np.shape(points), dtype=bool), np.zeros(np.shape(points))
-        rings = tried and (search.changes(points, residual, state, every, none)[1] > 2).any()
-        kind = "ringing" if rings else "broken"
-    return Work(kind, system.size)
+    elif any(cells):
+        kind = "ringing" if (times > 2).any() else "broken"
+    rows = search.rows
+    changes = tuple(
+        (abs(rows.rate(part.rows.meshes[0].cycles)), errors[n, part.axis], times[n, part.axis])
+        for n, part in enumerate(search.parts)
+    )
+    springs = 1 + rows.means.nodes.ramp_gap.shape[-1]
+    # One step more has the accuracy of a motion.
+    steps, products = solution.newton + 1, solution.krylov * (solution.newton + 1)
+    products //= max(solution.newton, 1)
+    return Work(kind, system.size, steps, products, springs, changes)
 
 
 def phase_cost(
@@ -142,30 +138,20 @@ def phase_cost(
     first = sum(parts)
     phases, work = len(frequency), work or Work()
     rings = work.kind == "ringing"
-    largest = min(max(_AHEAD * first, 2**14), _LARGE) if rings else min(2 * first, _MOST)
+    largest = min(max(AHEAD * first, 2**14), _LARGE) if rings else min(2 * first, _MOST)
     unknowns = max(first, largest) if mesh is None else first
     # The largest part is looked at with twice its points, and with more where its forces jump.
     part = unknowns * max(parts) / first
-    ahead = min(_AHEAD * part, _LARGE) if work.kind not in ("steady", "smooth") else 0.0
+    ahead = min(AHEAD * part, _LARGE) if work.kind not in ("steady", "smooth") else 0.0
     memory = 1e8 + 1.2e8 * phases
     if mesh is not None:
         return unknowns, memory + _PLAIN * unknowns, 0.1 + _STATED * unknowns
     memory += _BYTES * unknowns + _LOOKED * max(2.0 * part, ahead)
-    # Smooth forces need a second grid; others are refined until small changes are left.
-    least, most = {
-        "steady": (1, 1), "smooth": (2, 2**11), "broken": (2, 2**13), "ringing": (2, unknowns),
-        "open": (3, 2**14),
-    }[work.kind]  # fmt: skip
-    sizes = [first]
-    while len(sizes) < least or sizes[-1] < most:
-        sizes.append(2 * sizes[-1])
-    grid, part, phase, strong = _WORK[work.kind]
-    same = dict(zip([(tuple(each.cycles), each.turns) for each in followers], grids, strict=True))
-    seconds = len(sizes) * grid + (part * len(same) + phase * phases) * sum(sizes)
-    summed = strong * sum(same.values()) * sizes[-1] / first * recorded(frequency)
-    seconds += (_SUMMED + _SUMMED_EACH * work.size) * summed
-    samples = along_line(np.asarray(frequency, dtype=float))
-    return unknowns, memory, 0.02 + seconds + _ALONG * work.size * samples
+    rates = np.asarray(frequency, dtype=float)
+    seconds, lines = time_of_grids(followers, orders, rates, work, _poor)
+    columns = 3 * work.size + 2 * sum(each.contacts for each in followers)
+    seconds += _SUMMED * lines * recorded(rates) + _ALONG * columns * along_line(rates)
+    return unknowns, memory, seconds
 
 
 @dataclass
@@ -247,22 +233,6 @@ class _Search:
         phases = range(self.rows.frequency.size)
         return np.array([[axis in part.axes for axis in phases] for part in self.parts])
 
-    def poor(self, points: Points, errors: Array, times: Index, smooth: bool) -> Mask:
-        """Grids whose points are too few: those with the largest errors; none if they are small."""
-        chosen = np.zeros(errors.shape, dtype=bool)
-        # Where flanks part and nothing rings, more points would change the motion as much again.
-        further = ((_ROUGHLY, _LARGE),) if (times > 2).any() else ()
-        for limit, most in (*(_SMOOTH if smooth else _BROKEN), *further):
-            large = errors > (limit / errors.size if smooth else _WORST * errors.max())
-            left = errors.sum()
-            if left <= limit or chosen.any():
-                break
-            for place in np.argsort(-errors, axis=None)[: np.count_nonzero(large)]:
-                chosen.flat[place] = most != _LARGE or left > limit
-                chosen.flat[place] &= self.size(doubled(points, chosen, times)) <= most
-                left -= errors.flat[place] * chosen.flat[place]
-        return chosen
-
     def size(self, points: Points) -> int:
         """Number of unknowns on grids with so many points over each phase."""
         widths = (part.along.shape[1] for part in self.parts)
@@ -301,12 +271,31 @@ class _Search:
             errors[*place] = change(place, 2)
             jumps = state.each[place[0]].pieces is not None
             # As far as with so many times the points of the first grids.
-            factor = _AHEAD * first[place[0]][place[1]] // points[place[0]][place[1]]
+            factor = AHEAD * first[place[0]][place[1]] // points[place[0]][place[1]]
             if jumps and place[1] == self.parts[place[0]].axis and factor > 2:
                 ahead = change(place, factor)
                 if ahead > _RINGS * errors[*place]:
                     errors[*place], times[*place] = ahead, factor
         return errors, times
+
+
+def _poor(
+    size: Callable[[Points], int], points: Points, errors: Array, times: Index, smooth: bool
+) -> Mask:
+    """Grids whose points are too few: those with the largest errors; none if they are small."""
+    chosen = np.zeros(errors.shape, dtype=bool)
+    # Where flanks part and nothing rings, more points would change the motion as much again.
+    further = ((_ROUGHLY, _LARGE),) if (times > 2).any() else ()
+    for limit, most in (*(_SMOOTH if smooth else _BROKEN), *further):
+        large = errors > (limit / errors.size if smooth else _WORST * errors.max())
+        left = errors.sum()
+        if left <= limit or chosen.any():
+            break
+        for place in np.argsort(-errors, axis=None)[: np.count_nonzero(large)]:
+            chosen.flat[place] = most != _LARGE or left > limit
+            chosen.flat[place] &= size(doubled(points, chosen, times)) <= most
+            left -= errors.flat[place] * chosen.flat[place]
+    return chosen
 
 
 def _supported(
@@ -352,7 +341,7 @@ def phase_balance(
         smooth &= bool(errors[poor].sum() <= _FALLING * before[poor].sum())
         if solution.error <= tolerance:
             converged_motion = points, residual, solution, errors
-        poor, before = search.poor(points, errors, times, smooth), errors
+        poor, before = _poor(search.size, points, errors, times, smooth), errors
         if steps is not None or not poor.any():
             break
         points, limit = doubled(points, poor, times), max(tolerance, _NEARLY * errors.sum())

@@ -8,7 +8,7 @@ The line of the whole numbers ``k`` has the frequency ``k.f``; a derivative over
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any, NamedTuple
@@ -23,6 +23,21 @@ _MESH, _SHAFT = 24, 8
 #: Points of the first grids over phases that a part does not follow, of meshes and of shafts alone,
 #: by the number of phases, and over each of their mesh cycles where teeth differ.
 _OTHERS, _TURNED, _TEETH = (12, 12, 12, 8, 4), (12, 12, 12, 4, 4), 4
+#: Times the points over its phase with which a mesh that jumps is looked at too, as far as with so
+#: many times the points of the first grids.
+AHEAD = 8
+#: Forces that do not break along the motion, and points of a phase at which others are evaluated.
+_WHOLE, _CUT = ("steady", "smooth"), 8 / 3
+#: Time of what a search does once; of Newton's step for each point and contact, and further for
+#: each pair of contacts and spring where forces are evaluated; of a product with the derivative,
+#: for each point and contact, and each number of the factors of an inverse; of a look at more
+#: points, for each of them and contact, pair of contacts, and further broken forces and their
+#: springs; of these factors, for each number and further for each row [s].
+_ONCE, _STEP, _PRODUCT = 0.2, (4.6e-7, 1e-8, 4.8e-8), (4e-4, 3.3e-7, 1.9e-9)
+_LOOK, _FACTOR = (1.2e-3, 3.5e-7, 3.5e-7, 1.1e-6, 2e-7), (3.1e-8, 2.6e-11)
+#: Bytes of the factors of the lines of one phase alone, and of those that others shift, in an
+#: approximate inverse; with more, only the lines at which the structure yields most are coupled.
+CENTRAL, OTHERS = 2**24, 2**26
 #: Part of the largest frequency that is none.
 _STILL = 1e-12
 
@@ -170,3 +185,83 @@ def first_sizes(followers: Sequence[Follower], orders: Any, mesh: int | None = N
 def given_points(follower: Follower, orders: Any, mesh: int) -> tuple[int, ...]:
     """Points over each phase of one mesh, with so many over its mesh cycle."""
     return tuple(points_of([follower], orders, mesh)[0].tolist())
+
+
+class Work(NamedTuple):
+    """What the time of a motion depends on beside its grids, from a trial on the first ones."""
+
+    kind: str = "broken"  #: steady or smooth forces, broken ones, ringing meshes, or open flanks
+    size: int = 12  #: coordinates
+    newton: int = 4  #: steps of Newton's method on a grid
+    products: int = 30  #: with the derivative in them
+    springs: int = 1  #: of a contact
+    #: Frequency of each mesh [Hz], the change with more points over its own phase, and how many.
+    changes: tuple[tuple[float, float, int], ...] = ()
+
+    def change(self, frequency: float) -> tuple[float, int]:
+        """Change of a mesh of this frequency with so many times the points."""
+        if not self.changes or frequency == 0.0:
+            return (0.02 if frequency else 0.0), 2
+        return min(self.changes, key=lambda each: abs(each[0] - frequency))[1:]
+
+
+def time_of_grids(
+    followers: Sequence[Follower], orders: Array | float, frequency: Array, work: Work,
+    poor: Callable[..., Mask],
+) -> tuple[float, float]:  # fmt: skip
+    """Time of a search [s], whose grids are refined as of a motion, and lines of its last grids."""
+    fine, others = points_of(followers, orders)
+    widths: dict[tuple[tuple[int, ...], ...], int] = {}
+    for each in followers:
+        key = tuple(each.cycles), *each.turns
+        widths[key] = widths.get(key, 0) + each.contacts
+    cycles = np.array([each for each, *_ in widths])
+    felt = np.array([np.any(each, axis=0) for each in widths])
+    own = np.where(cycles == 0, np.inf, np.abs(cycles)).argmin(axis=1)
+    points: Points = tuple(map(tuple, np.where(felt, fine, others).tolist()))
+    errors, times = np.zeros(felt.shape), np.full(felt.shape, 2)
+    for place, rate in enumerate(np.abs(cycles @ frequency)):
+        at = place, own[place]
+        errors[at], times[at] = work.change(rate)
+
+    def size(grids: Points) -> int:
+        return sum(math.prod(grid) * w for grid, w in zip(grids, widths.values(), strict=True))
+
+    first, again, smooth = points, np.ones(felt.shape, dtype=bool), work.kind in _WHOLE
+    seconds, teeth = _ONCE, np.where(cycles != 0, fine[None] // _MESH, 1).max(axis=1)
+    while True:
+        for place, (grid, width) in enumerate(zip(points, widths.values(), strict=True)):
+            axis = int(own[place])
+            ahead = AHEAD * first[place][axis] // grid[axis]
+            looked = 2 * int(again[place].sum())
+            looked += ahead if ahead > 2 and work.kind not in _WHOLE else 0
+            seconds += _time(grid, width, axis, looked, work, int(teeth[place]))
+        chosen = poor(size, points, errors, times, smooth)
+        if not chosen.any():
+            return seconds, 0.0 if work.kind == "steady" else 0.4 * sum(map(math.prod, points))
+        # Forces that bend cause lines that fall with the square of their number, and those of a
+        # natural frequency fall as much once they are reached.
+        points, errors = doubled(points, chosen, times), errors / np.where(chosen, 4.0, 1.0)
+        times, again, smooth = np.full(felt.shape, 2), felt | (cycles != 0).any(axis=0), False
+
+
+def _time(
+    grid: tuple[int, ...], width: int, axis: int, looked: int, work: Work, teeth: int
+) -> float:
+    """Time of one part on a grid [s]; it is looked at with so many times its points."""
+    points, broken = math.prod(grid), work.kind not in _WHOLE
+    inside = points * width * (_CUT if broken else 1.0)  # where forces are evaluated
+    each = _STEP[0] * points * width + inside * (_STEP[1] * width + _STEP[2] * work.springs)
+    seconds = (work.newton + 1) * each
+    seconds += work.products * (_PRODUCT[0] + _PRODUCT[1] * points * width)
+    each = _LOOK[0] + points * width * (_LOOK[1] + _LOOK[2] * width)
+    each += broken * points * (_LOOK[3] + _LOOK[4] * width * work.springs)
+    seconds += looked * each
+    if work.kind == "steady":
+        return seconds
+    others = teeth * (points // grid[axis] // 2)
+    for rows, most in ((teeth, CENTRAL), (others, OTHERS)):
+        equations = min(grid[axis] // teeth * width, math.sqrt(most / (8.0 * max(rows, 1))))
+        factor = _FACTOR[0] + _FACTOR[1] * equations + _PRODUCT[2] * work.products
+        seconds += rows * equations**2 * factor
+    return seconds

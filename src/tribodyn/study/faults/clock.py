@@ -33,7 +33,7 @@ from tribodyn.study.machine.first_look import (
 from tribodyn.study.machine.motion import Unit, unit_of
 
 if TYPE_CHECKING:
-    from tribodyn.dynamics.harmonic.phase_balance import Work
+    from tribodyn.dynamics.harmonic.phase_grid import Work
     from tribodyn.machine import Machine
     from tribodyn.study.case.pair import PairCase
     from tribodyn.study.machine.case import MachineCase

@@ -51,7 +51,7 @@ from tribodyn.types import Tree
 
 if TYPE_CHECKING:
     from tribodyn.dynamics import Response
-    from tribodyn.dynamics.harmonic.phase_balance import Work
+    from tribodyn.dynamics.harmonic.phase_grid import Work
     from tribodyn.faults.driven import Lead
     from tribodyn.machine import Machine, MachineStructure
     from tribodyn.study.machine.case import MachineCase
@@ -79,7 +79,8 @@ def rehearse_faults(case: MachineCase, state: Balanced) -> list[str]:
 
 def _work(case: MachineCase, state: Balanced) -> Work:
     """What the motion over phases takes, from a trial with the sound teeth."""
-    from tribodyn.dynamics.harmonic.phase_balance import Work, work_of
+    from tribodyn.dynamics.harmonic.phase_balance import work_of
+    from tribodyn.dynamics.harmonic.phase_grid import Work
     from tribodyn.machine import system as system_of
 
     structure = state.structure(case)

@@ -26,8 +26,7 @@ from tribodyn.study.pipeline.summary_figures import PARTS
 from tribodyn.study.planetary.machine_stages import motion_of_stage
 
 if TYPE_CHECKING:
-    from tribodyn.dynamics.harmonic.phase_balance import Work
-    from tribodyn.dynamics.harmonic.phase_grid import Fields
+    from tribodyn.dynamics.harmonic.phase_grid import Fields, Work
     from tribodyn.machine import Machine
     from tribodyn.machine.graph.clock import Phases
     from tribodyn.study.case.pair import PairCase

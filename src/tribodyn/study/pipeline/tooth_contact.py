@@ -34,8 +34,8 @@ if TYPE_CHECKING:
 
 #: Load over the nominal load below which friction may be missing.
 _LIGHT = 0.3
-#: Phase intervals of a rehearsal.
-_FEWEST = 16
+#: Phase intervals of a rehearsal, of hypoid teeth and with so many cells.
+_FEWEST, _HYPOID = 32, 16
 
 
 def mesh_of(case: PairCase, progress: Progress = SILENT, **options: Any) -> MeshTable:
@@ -68,7 +68,7 @@ def mesh_table(
         )
     settings = _rehearsed(inputs.settings) if rehearsal else inputs.settings
     if isinstance(inputs.teeth, HypoidTeeth):
-        fewest = {"steps": _FEWEST, "cells": _FEWEST} if rehearsal else {}
+        fewest = {"steps": _HYPOID, "cells": _HYPOID} if rehearsal else {}
         loaded = hypoid_loaded_contact_of(inputs, load=load, progress=progress, **fewest)
         return _friction_in_cells(inputs, loaded, settings).table()
     return of_cylindrical(
