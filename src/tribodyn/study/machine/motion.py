@@ -197,10 +197,10 @@ class MachineMotion(PeriodicSamples):
         Cycles of each phase along the closed line.
     mesh_phases : (meshes, phases) array, optional
         Mesh cycles of each mesh over each phase.
-    line_numbers : (lines, phases) array, optional
-        Whole numbers of the strongest spectral line of the mesh forces at each order of the record.
     units : tuple of Unit
         What turns with each phase, of a motion with faults.
+    line_numbers : (lines, phases) array, optional
+        Whole numbers of the strongest spectral line of the mesh forces at each order of the record.
     """
 
     clock: Array = quantity("clock", unit="1", axis=True)
@@ -219,8 +219,8 @@ class MachineMotion(PeriodicSamples):
     phase_frequency: Array | None = quantity("phase", unit="Hz", default=None)
     phase_turns: Array | None = quantity("phase", unit="1", default=None)
     mesh_phases: Array | None = quantity("mesh", "phase", unit="1", default=None)
-    line_numbers: Array | None = quantity("line", "phase", unit="1", default=None)
     units: tuple[Unit, ...] = ()
+    line_numbers: Array | None = quantity("line", "phase", unit="1", default=None)
 
     @property
     def mesh_frequency(self) -> Array:
