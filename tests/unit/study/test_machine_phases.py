@@ -303,4 +303,4 @@ def test_the_stated_time_follows_from_what_the_forces_do() -> None:
         times.append(float(text.partition(" GB and ")[2].partition(" s ")[0]))
     assert kinds == ["steady", "smooth", "ringing", "open"]
     assert times[0] < times[1]
-    assert max(times[:2]) < min(times[2:])
+    assert 4.0 * max(times[:2]) < min(times[2:])

@@ -28,11 +28,12 @@ _HIGHEST, _STEP, _WIDEST, _NARROW, _WIDER, _LESS = 6.0, 1.0, 1.5, 0.04, 1.6, 0.4
 #: Accuracy of the motions on the way, Newton steps to each, steps that halve the error, and most
 #: products with the derivative.
 _ROUGH, _TRIES, _QUICK, _BRIEF = 1e-3, 10, 4, 120
-#: Accuracy of a linear solution and its largest number of vectors.
-LINEAR, VECTORS = 1e-4, 120
+#: Accuracy of a linear solution, its largest number of vectors, and those after which it is on half
+#: the way.
+LINEAR, VECTORS, _HALFWAY = 1e-4, 120, 60
 #: Products with the derivative that may be spent if nothing else is said, and from a motion that
 #: may be near; steps in which the error halves there.
-_FREELY, _DIRECT, _PATIENCE = 10**6, 180, 8
+_FREELY, _DIRECT, _PATIENCE = 10**6, 300, 8
 #: Unknowns of a linear solution above which its vectors have single precision.
 _SINGLE = 2**16
 
@@ -128,7 +129,9 @@ def solve_linear(
         turns, column[-1] = np.append(turns, turn), radius
         upper[:count, count - 1] = column
         target[-1:] = [turn.real * target[-1], -turn.imag * target[-1]]
-        if abs(target[-1]) <= accuracy * size or length <= 1e-14 * size:
+        left = abs(target[-1]) / size
+        late = count == _HALFWAY and left > accuracy**0.5
+        if left <= accuracy or late or length <= 1e-14 * size:
             break
         basis[count] = vector / length
     weights = np.linalg.solve(upper[:count, :count], np.array(target[:count]))

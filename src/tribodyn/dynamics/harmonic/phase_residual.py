@@ -25,9 +25,8 @@ from tribodyn.dynamics.modal.closed_structure import ClosedStructure
 from tribodyn.dynamics.modal.contact_equations import close_contacts
 from tribodyn.types import Array, ComplexArray, Index, Mask
 
-#: Vectors of a linear solution up to which an approximate inverse serves for the next one, and the
-#: most of one: motions that are found need fewer than 40.
-_SERVES, _MOST = 12, 60
+#: Vectors of a linear solution up to which an approximate inverse serves for the next one.
+_SERVES = 12
 #: Largest part of a residual that a linear solution leaves.
 _LOOSE = 0.1
 
@@ -95,7 +94,6 @@ def parts_of(rows: PhaseRows, structure: ClosedStructure, equilibrium: Rest) -> 
 class PhaseResidual(Residual):
     """Residual of a motion over several phases."""
 
-    vectors = _MOST
     inverses: dict[int, MeshwiseInverse]  #: of the parts at their last states, while they serve
 
     def __init__(

@@ -96,7 +96,6 @@ class Residual:
 
     structure: ClosedStructure
     links: dict[tuple[int, int], _Link]
-    vectors = VECTORS  #: most vectors of a linear solution
     plain = False  #: whether a few products without an approximate inverse are tried first
 
     def __init__(self, parts: Sequence[OnGrid], prior: Residual | None = None) -> None:
@@ -217,7 +216,7 @@ class Residual:
             if count < _PLAIN:
                 return step, count
             self.plain = False
-        vectors = min(int(np.clip(_MEMORY // state.y.nbytes, _FEWEST, self.vectors)), most)
+        vectors = min(int(np.clip(_MEMORY // state.y.nbytes, _FEWEST, VECTORS)), most)
         product, *nearly = self.preconditioned(state)
         solution, count = solve_linear(product, -state.residual, accuracy, vectors)
         return (nearly[0](solution) if nearly else solution), count
