@@ -78,7 +78,7 @@ def run(
         from tribodyn.cases.load import run as compute
 
         result: Result = compute(ready, progress)
-        progress.start("Report")
+        progress.start("Motion with faults and report" if result.case.faults else "Report")
         result.save(target, force=force, csv=csv)
         progress.finish()
     if printed.json:
