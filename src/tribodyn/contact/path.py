@@ -304,10 +304,8 @@ class PathOfContact:
         )
         length = self.pair.line_of_action_length
         wheel_radius, wheel_speed = length - pinion_radius, speed / self.pair.ratio
-        direction, cosine = (
-            self.sliding_direction(pinion_radius),
-            math.cos(self.pair.base_helix_angle),
-        )
+        direction = self.sliding_direction(pinion_radius)
+        cosine = math.cos(self.pair.base_helix_angle)
         distance = np.abs(pinion_radius - self.C)
         sliding = direction * distance * (speed + wheel_speed)
         entrainment = 0.5 * (speed * pinion_radius + wheel_speed * wheel_radius)

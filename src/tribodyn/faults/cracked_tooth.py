@@ -258,10 +258,8 @@ def _move_to_quarters(mesh: SectorMesh, row: int, tip: int) -> None:
     for a in (1, -1):
         for b in (1, -1):
             patch = nodes[grid[np.ix_(tip + a * np.arange(3), row + b * np.arange(3))]]
-            corners, edges = (
-                patch[::2, ::2].sum((0, 1)),
-                patch[::2, 1].sum(0) + patch[1, ::2].sum(0),
-            )
+            corners = patch[::2, ::2].sum((0, 1))
+            edges = patch[::2, 1].sum(0) + patch[1, ::2].sum(0)
             nodes[grid[tip + a, row + b]] = 0.5 * edges - 0.25 * corners
 
 

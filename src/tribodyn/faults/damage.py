@@ -54,10 +54,8 @@ class Spall(ToothFault):
         for name in ("start", "end", "face_share"):
             require_between(name, getattr(self, name), 0.0, 1.0, "")
         if self.end < self.start:
-            what, why = (
-                f"end = {self.end:g}, start = {self.start:g}",
-                "A spall ends above its start",
-            )
+            what = f"end = {self.end:g}, start = {self.start:g}"
+            why = "A spall ends above its start"
             raise InputError(what, "end", why, "Count from the lowest point of the flank")
 
     @property

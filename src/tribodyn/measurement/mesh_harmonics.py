@@ -112,10 +112,8 @@ def _of_shaft(
     seconds = (mesh.size - 1) / recording.sample_rate
     cycles = float(mesh[-1] - mesh[0]) / (2.0 * np.pi)
     if cycles <= 0.0:
-        what, why = (
-            f"the {method} does not rise",
-            "The angle must increase in the direction of rotation",
-        )
+        what = f"the {method} does not rise"
+        why = "The angle must increase in the direction of rotation"
         raise InputError(what, Argument("angle"), why, "Negate it")
     step = min(max(round(tooth_count * mesh.size / cycles), 1), mesh.size - 1)  # one revolution
     unit = 2.0 * np.pi * frequency / recording.sample_rate

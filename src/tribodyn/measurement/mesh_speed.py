@@ -176,10 +176,8 @@ def mesh_speed(
     wide = tolerance + _WIDER
     count = min(count, int(0.5 * sample_rate / (frequency * (1.0 + wide)) - 0.5))
     if count < 1:
-        what, why = (
-            f"mesh_frequency = {frequency:g} Hz",
-            f"Sampled with {sample_rate:g} Hz, it and ",
-        )
+        what = f"mesh_frequency = {frequency:g} Hz"
+        why = f"Sampled with {sample_rate:g} Hz, it and "
         why += "the noise above it are not in the record"
         raise InputError(what, Argument("mesh_frequency"), why, "Sample faster")
     cycles = rows.shape[1] / sample_rate * frequency

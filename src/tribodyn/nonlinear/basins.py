@@ -284,10 +284,8 @@ def start_plane(
 
 def _across_mesh(compiled: Compiled, mesh_frequency: float, contact: int) -> StartPlane:
     nodes = compiled.nodes
-    along, turning = (
-        nodes.direction[0, 0, contact],
-        mesh_frequency * nodes.direction_slope[0, 0, contact],
-    )
+    along = nodes.direction[0, 0, contact]
+    turning = mesh_frequency * nodes.direction_slope[0, 0, contact]
     push = np.linalg.solve(np.asarray(compiled.system.mass), along)
     push = push / (along @ push)
     still = np.zeros_like(along)

@@ -304,10 +304,8 @@ def _summarize(carrier: Carrier, growth: Array, divergence: Array, count: int) -
         repeated = list(carrier.last)[-period:]
         values, share, separated = floquet_growth(repeated, carrier.frame, carrier.braked)
         averages, deviations = _averages(growth)
-        values, errors = (
-            np.where(separated, values / span, averages),
-            np.where(separated, mismatch / span, deviations),
-        )
+        values = np.where(separated, values / span, averages)
+        errors = np.where(separated, mismatch / span, deviations)
         mean = float(divergence[-period:].mean())
     elif not np.nanmax(values) > _SURE * np.nan_to_num(errors[int(values.argmax())]):
         mean = float(_windowed(divergence[:, None])[0])

@@ -140,10 +140,8 @@ class Carrier:
         for pattern, first in zip(*np.unique(patterns, return_index=True), strict=True):
             which = np.flatnonzero(~crossed & (patterns == pattern))
             step_tables = tables.whole_steps(touching[first])
-            matrices[which], traces[which] = (
-                step_tables[0][number[which]],
-                step_tables[1][number[which]],
-            )
+            matrices[which] = step_tables[0][number[which]]
+            traces[which] = step_tables[1][number[which]]
         which = np.flatnonzero(crossed)
         if which.size:
             matrices[which], traces[which] = carry_over_crossings(

@@ -219,11 +219,9 @@ class Outcomes:
         index, to = indices[done], numbers[done]
         figures = measure(motions, index, survey)
         self.first[to], self.settled[to] = motions.start[index], motions.state[index]
-        self.section[to], self.period[to], self.rms[to] = (
-            figures.points,
-            figures.period,
-            figures.rms,
-        )
+        self.section[to] = figures.points
+        self.period[to] = figures.period
+        self.rms[to] = figures.rms
         self.contact_loss_share[to], self.last[to] = figures.contact_loss_share, figures.last
         self.force[to], self.finished[to] = motions.force[index], True
         self.repeats[to], self.rate[to] = motions.period[index], motions.rate[index]

@@ -92,10 +92,8 @@ def arc_section(ring: CylindricalGear) -> RootSection:
     root = 0.5 * z + ring.rack.dedendum_coefficient - shift
     arc = root_arc(root, base, half, z, ring.rack.tip_radius_coefficient)  # type: ignore[arg-type]
     # Its normal makes 30 degrees with the middle of the tooth where its tangent makes 60.
-    x, y = (
-        arc.center_radius * math.cos(arc.center_angle),
-        arc.center_radius * math.sin(arc.center_angle),
-    )
+    x = arc.center_radius * math.cos(arc.center_angle)
+    y = arc.center_radius * math.sin(arc.center_angle)
     normal = math.pi / 2.0 - _tangent_angle(ring)
     x, y = x + arc.arc_radius * math.cos(normal), y - arc.arc_radius * math.sin(normal)
     return RootSection(2.0 * y, arc.arc_radius, x, "arc of the drawing")

@@ -221,10 +221,8 @@ def sobol(
         from tribodyn.report.nonlinear_report_data import sobol_report_data
 
         if not ready.uncertain:
-            what, why = (
-                "no value of the case has a tolerance",
-                "Shares of a variance need keys with tolerances",
-            )
+            what = "no value of the case has a tolerance"
+            why = "Shares of a variance need keys with tolerances"
             remedy = 'Give values their tolerances, as in --set "operation.torque=90 N*m +- 5 %"'
             raise InputError(what, case, why, remedy)
         return sobol_report_data(ready, figures, size, seed, progress)

@@ -95,10 +95,8 @@ def compression_rate(rows: Nodes, beat: Numbers, q: Array, v: Array) -> Array:
 
 def _turning(rows: Nodes, beat: Numbers, q: Array, error: Numbers = 1.0) -> Array:
     """Rate of every compression because the mesh turns at the mesh frequency ``beat``."""
-    turning, slope = (
-        -error * unrepeated(rows.error_slope, 1),
-        unrepeated(rows.direction_slope, 2),
-    )
+    turning = -error * unrepeated(rows.error_slope, 1)
+    slope = unrepeated(rows.direction_slope, 2)
     if slope.any():
         turning = turning + _along(rows.direction_slope, q)
     return np.asarray(beat * turning)

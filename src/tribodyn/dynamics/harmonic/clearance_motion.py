@@ -82,10 +82,8 @@ def clearance_motion(
     for support in supports:
         if np.asarray(support.directions).shape[1] != system.size:
             what = f"a support has {np.asarray(support.directions).shape[1]} coordinates"
-            why, remedy = (
-                f"The system has {system.size}",
-                "Give directions with one column for each",
-            )
+            why = f"The system has {system.size}"
+            remedy = "Give directions with one column for each"
             raise InputError(what, Argument("supports"), why, remedy)
     if system.phases:
         points = None if steps == _STEPS else steps

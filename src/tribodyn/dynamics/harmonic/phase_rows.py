@@ -210,10 +210,8 @@ class PhaseRows:
         if not self.supports:
             return forces(self.system, nodes, 1.0, q[:, None], v[:, None], extra=extra)
         moved, springs = compression(nodes, q[:, None])[:, 0, first:], nodes.stiffness[0, 0, first:]
-        bearing_force, rows = (
-            clearance_forces(self.supports, moved)[0],
-            nodes.direction[0, 0, first:],
-        )
+        bearing_force = clearance_forces(self.supports, moved)[0]
+        rows = nodes.direction[0, 0, first:]
         further = extra + (moved * springs - bearing_force) @ rows
         motion = forces(self.system, nodes, 1.0, q[:, None], v[:, None], extra=further[:, None])
         motion.contact[:, 0, first:] = bearing_force

@@ -211,8 +211,6 @@ def clearance_forces(
     for number, support in enumerate(supports):
         at = slice(2 * number, 2 * number + 2)
         displacement = compression[:, at] - np.asarray(support.offset)
-        force[:, at], tangent[:, at, at] = (
-            support.force(displacement),
-            support.tangent(displacement),
-        )
+        force[:, at] = support.force(displacement)
+        tangent[:, at, at] = support.tangent(displacement)
     return force, tangent

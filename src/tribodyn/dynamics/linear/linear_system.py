@@ -169,10 +169,8 @@ class _Rest:
         left, values, right = np.linalg.svd(matrix + basis.T @ mean @ basis)
         nonzero = values > _ZERO * values[0]
         # Motion along the directions of the contacts per force, and the forces that move freely.
-        reach, free = (
-            (basis @ right[nonzero].T / values[nonzero]) @ left[:, nonzero].T,
-            left[:, ~nonzero],
-        )
+        reach = (basis @ right[nonzero].T / values[nonzero]) @ left[:, nonzero].T
+        free = left[:, ~nonzero]
         self._nodes, self._feel, self._square = nodes, feel, reach @ reach.T
         self._still, self._lost = np.eye(len(basis)) - reach @ basis.T @ mean, mean.T @ basis @ free
         self._project = scale[:, None] * np.hstack((reach.T, free))

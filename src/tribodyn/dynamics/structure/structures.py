@@ -168,10 +168,8 @@ def _supports(default: object) -> dict[str, Option]:
 
 def _ratio(default: float, purpose: str, absent: str) -> Option:
     """Damping ratio of supports."""
-    origin, meaning = (
-        "supports lie between 0.01 and 0.1",
-        f"damping {purpose} over its critical value",
-    )
+    origin = "supports lie between 0.01 and 0.1"
+    meaning = f"damping {purpose} over its critical value"
     option: Option = number(default, 0.0, 2.0, origin, meaning=meaning, absent=absent)
     return option
 

@@ -295,14 +295,10 @@ class ContactLines:
             middle_margin = self.margin(rotation, middle)
             is_inside = middle_margin > 0.0
             # The end that stays counts half the next time (Illinois).
-            inside_margin, outside_margin = (
-                np.where(is_inside, middle_margin, 0.5 * inside_margin),
-                np.where(is_inside, 0.5 * outside_margin, middle_margin),
-            )
-            outside, inside = (
-                np.where(is_inside, outside, middle),
-                np.where(is_inside, middle, inside),
-            )
+            inside_margin = np.where(is_inside, middle_margin, 0.5 * inside_margin)
+            outside_margin = np.where(is_inside, 0.5 * outside_margin, middle_margin)
+            outside = np.where(is_inside, outside, middle)
+            inside = np.where(is_inside, middle, inside)
             if np.nanmax(np.minimum(np.abs(middle_margin), np.abs(outside - inside))) < 1e-13:
                 break
         return np.asarray(inside)

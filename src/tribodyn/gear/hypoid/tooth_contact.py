@@ -349,11 +349,9 @@ def _analysis(
         )
         error = error.copy()
         error[inner] = conjugate.sense * (exact_points.wheel_rotation - rotation[inner])
-        position[inner], normal[inner], places[inner] = (
-            exact_points.position,
-            exact_points.normal,
-            exact_points.places,
-        )
+        position[inner] = exact_points.position
+        normal[inner] = exact_points.normal
+        places[inner] = exact_points.places
     return ToothContact(
         rotation=conjugate.sense * rotation,
         angular_transmission_error=error,

@@ -374,11 +374,9 @@ def rating_problems(case: PairCase) -> Iterator[tuple[str, Problem]]:
             what, why = "materials has no effect here", "Only a rating needs strengths"
             yield "materials", Problem(what, "", why, "Add [rating], or remove it")
         for role in ("pinion", "wheel"):
-            gear, why, remedy = (
-                getattr(case.gears, role),
-                "Only a rating needs it",
-                "Add [rating], or remove it",
-            )
+            gear = getattr(case.gears, role)
+            why = "Only a rating needs it"
+            remedy = "Add [rating], or remove it"
             if (name := gear.material) is not None:
                 what = f'material = "{name}" has no effect here'
                 yield f"gears.{role}.material", Problem(what, "", why, remedy)

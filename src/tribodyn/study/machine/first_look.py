@@ -179,10 +179,8 @@ def warn_of_period(machine: Machine, memory: float = math.inf) -> None:
         for name, mesh in machine.meshes.items()
     )
     turning = longer > 1 or any(mesh.period > 1 for mesh in machine.meshes.values())
-    reason, remedy = (
-        "the teeth have few common factors",
-        'Set solver.phases = "auto", which finds the motion without a common period',
-    )
+    reason = "the teeth have few common factors"
+    remedy = 'Set solver.phases = "auto", which finds the motion without a common period'
     if turning:
         reason = "unequal teeth repeat with whole turns of their gears"
         remedy = 'Set solver.phases = "auto", or compute a case of its stage alone'

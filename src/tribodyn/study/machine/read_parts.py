@@ -410,10 +410,8 @@ def _history_loads(
         return ()
     faults = list(history_problems(rating, point.speed))
     if not faults and has_load_cases and rating is not None and rating.torque_history is not None:
-        what, why = (
-            "torque_history and [[load_cases]] are both given",
-            "Both are loads of the machine",
-        )
+        what = "torque_history and [[load_cases]] are both given"
+        why = "Both are loads of the machine"
         faults = [("rating.torque_history", Problem(what, "", why, "Remove one of both"))]
     problems += faults
     return () if faults else tuple(
