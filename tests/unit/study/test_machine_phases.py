@@ -204,6 +204,10 @@ def test_the_spectrum_names_the_largest_combination_lines() -> None:
         assert abs(expected) == pytest.approx(hertz, rel=1e-9)
     constant = td.run(base).motion  # of constant stiffness: linear, no combinations
     assert all(trace.name != "several phases" for trace in plot.machine_orders(constant).data)
+    fault = {"kind": "eccentricity", "gear": "z1", "amplitude": "20 um"}
+    turning = td.run(base.replace({"faults": {"e": fault}})).turning_motion.motion
+    named = [t for t in plot.machine_orders(turning).data if t.name == "several phases"]
+    assert [(t.text, list(t.x)) for t in named[:1]] == [(("1 x in",), [pytest.approx(1000 / 60)])]
 
 
 def held(base: Any, clearance: float = 20e-6) -> Any:

@@ -33,9 +33,9 @@ if TYPE_CHECKING:
 
 
 _HARMONICS = 10
-#: Strongest lines of a part that are searched, parts with the largest swing, and combinations of
-#: phases that are named in a figure.
-_STRONGEST, _SEARCHED, _NAMED = 60, 6, 5
+#: Strongest lines of a part that are searched, parts with the largest swing, lines of other causes
+#: than one mesh, and the distance of those that are named, over the highest mesh frequency.
+_STRONGEST, _SEARCHED, _NAMED, _APART = 60, 6, 5, 2.2
 
 
 def _lines(motion: MachineMotion, quantity: str, amplitudes: Array) -> list[Trace]:
@@ -66,14 +66,14 @@ def _lines(motion: MachineMotion, quantity: str, amplitudes: Array) -> list[Trac
 
 
 def _combinations(motion: MachineMotion, quantity: str, signal: Array) -> list[Trace]:
-    """Largest lines that several phases make together in one part, with their causes."""
+    """Largest lines in one part that are no harmonic of a mesh, with their causes."""
     if motion.phase_turns is None:
         return []  # on one clock an order has no cause of its own
     columns = signal.reshape(len(signal), -1)
     largest: dict[str, tuple[float, float]] = {}
     for column in np.argsort(-np.ptp(columns, axis=0), kind="stable")[:_SEARCHED]:
         for each in motion.lines(columns[:, column], _STRONGEST):
-            if np.count_nonzero(each.numbers) > 1 and (" + " in each.cause or " - " in each.cause):
+            if each.cause.partition(" x ")[2] not in motion.mesh:
                 before = largest.get(each.cause, (0.0, 0.0))
                 largest[each.cause] = max(before, (abs(each.amplitude), each.frequency))
     chosen = sorted(largest, key=lambda cause: -largest[cause][0])[:_NAMED]
@@ -86,8 +86,13 @@ def _combinations(motion: MachineMotion, quantity: str, signal: Array) -> list[T
         x, y, "several phases", MUTED, 6, symbol="diamond", text=chosen, showlegend=False,
         textposition="top center", hovertemplate=f"{hover}, %{{text}}<extra></extra>",
     )  # fmt: skip
-    named = {**points, "mode": "markers+text", "cliponaxis": False}
-    return [strokes(*stems(x, y), MUTED, 1, showlegend=False), named]
+    apart, named = _APART * motion.mesh_frequency.max(), list[int]()
+    for place, at in enumerate(frequencies):
+        if all(abs(at - frequencies[other]) > apart for other in named):
+            named.append(place)
+    words = {"x": x[named], "y": y[named], "text": [chosen[place] for place in named]}
+    texts = {**points, **words, "mode": "text", "cliponaxis": False, "hoverinfo": "skip"}
+    return [strokes(*stems(x, y), MUTED, 1, showlegend=False), points, texts]
 
 
 def _total(motion: MachineMotion, signal: Array) -> Array:
@@ -109,8 +114,8 @@ def _caption(motion: MachineMotion) -> str:
         + below * bool(kinds)
         + " The colour names the mesh whose harmonic lies at that frequency."
         * (len(motion.mesh) > 1)
-        + " Diamonds are the largest lines that several phases make together, in one part, with "
-        "their cause." * (motion.phase_turns is not None)
+        + " Diamonds are the largest lines in one part that are no harmonic of a mesh; pointing at "
+        "one shows its cause." * (motion.phase_turns is not None)
     )
 
 
