@@ -158,7 +158,7 @@ LINES: dict[str, int] = {
     "contact": 398,
     "cookbook": 102,
     "drawing": 204,
-    "dynamics": 15917,
+    "dynamics": 15875,
     "ehl": 9327,
     "errors": 222,
     "exchange": 2162,

@@ -103,14 +103,7 @@ def evaluate_batch(systems: Sequence[System], grid: Grid, memory: Memory = new_m
     )
     if np.any(unrepeated(nodes.stiffness) < 0.0):
         for number in range(len(systems)):
-            system_rows = rows_of_system(nodes, number)
-            refuse_falling_force(
-                system_rows.phase,
-                system_rows.stiffness,
-                system_rows.gap,
-                system_rows.direction,
-                system_rows.error,
-            )
+            refuse_falling_force(rows_of_system(nodes, number))
     if grid.width.sum() > 0.99:
         for system in systems:
             object.__setattr__(system, "_checked", min(widest, system._checked))

@@ -6,7 +6,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from tribodyn.dynamics.equations.nodes import Nodes, friction_tangent, push_with_friction
+from tribodyn.dynamics.equations.nodes import Nodes, nominal_push
 from tribodyn.dynamics.equations.step_limit import state_roots
 from tribodyn.dynamics.equations.system import System
 from tribodyn.errors import ComputationError
@@ -214,7 +214,7 @@ def _friction_cause(
 
 def _friction_strength(system: System, nodes: Nodes, rub: float) -> tuple[float, float]:
     """Greatest friction over contact force, both as accelerations, and its mesh phase."""
-    push, along = _push(system, nodes), nodes.direction
+    push, along = nominal_push(system, nodes), nodes.direction
     inverse = np.linalg.inv(np.linalg.cholesky(np.asarray(system.mass)))
     size = [np.linalg.norm(part @ inverse.T, axis=-1) for part in (rub * (push - along), along)]
     ratio = size[0] / np.maximum(size[1], 1e-300) * (size[1] > 0.0)
@@ -222,30 +222,18 @@ def _friction_strength(system: System, nodes: Nodes, rub: float) -> tuple[float,
     return float(ratio.max(initial=0.0)), float(nodes.phase[at[0], at[1]])
 
 
-def _push(system: System, nodes: Nodes) -> Array:
-    """Generalized force per contact force; frictions as they change about their nominal load."""
-    if not system.frictions:
-        return nodes.force_direction
-    nominal = np.array([friction.load for friction in system.frictions])
-    ratio = friction_tangent(system, nodes.friction_coefficients, nominal)
-    return push_with_friction(system, nodes, ratio)
-
-
 def _mean_matrices(system: System, nodes: Nodes, factors: Array) -> tuple[Array, Array, Array]:
     """Stiffness and damping with all contacts closed, and the contributions of friction."""
     stiff, damp, rub = factors[:3]
-    push, along = _push(system, nodes), nodes.direction
-    spring, damper = (
-        np.einsum("rs,rsj,rsji,rsjk->ik", nodes.weight, part, along, along)
-        for part in (stiff * nodes.stiffness, damp * nodes.damping)
-    )
-    sliding = rub * (push - along)
-    added = [
-        np.einsum("rs,rsj,rsji,rsjk->ik", nodes.weight, part, sliding, along)
-        for part in (stiff * nodes.stiffness, damp * nodes.damping)
-    ]
-    total = spring + np.asarray(system.stiffness), damper + system.rate_matrix
-    return (*total, np.array(added))
+    along = nodes.direction
+    (spring, damper), added = (
+        np.array([
+            np.einsum("rs,rsj,rsji,rsjk->ik", nodes.weight, part, push, along)
+            for part in (stiff * nodes.stiffness, damp * nodes.damping)
+        ])
+        for push in (along, rub * (nominal_push(system, nodes) - along))
+    )  # fmt: skip
+    return spring + np.asarray(system.stiffness), damper + system.rate_matrix, added
 
 
 def _negative_direction(matrix: Array, system: System) -> str:

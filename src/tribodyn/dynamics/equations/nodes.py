@@ -140,6 +140,15 @@ def push_with_friction(system: System, nodes: Nodes, ratio: Array) -> Array:
     return push
 
 
+def nominal_push(system: System, nodes: Nodes) -> Array:
+    """Generalized force per contact force; frictions as they change about their nominal load."""
+    if not system.frictions:
+        return nodes.force_direction
+    nominal = np.array([friction.load for friction in system.frictions])
+    ratio = friction_tangent(system, nodes.friction_coefficients, nominal)
+    return push_with_friction(system, nodes, ratio)
+
+
 #: Sums of stiffnesses below zero by less than this part of the largest are rounding.
 _ROUNDING = 1e-9
 #: Gaps below zero by less than this are rounding [m].
@@ -191,7 +200,7 @@ def evaluate_nodes(system: System, grid: Grid) -> Nodes:
     nodes = evaluate_rows(system, RowEvaluator(grid, checks=widest < 0.49 * system._checked))
     fractions = grid.width[:, None] * np.array([0.0, 0.5, 1.0])
     nodes = nodes._replace(phase=grid.left[:, None] + fractions, weight=step_weights(grid))
-    refuse_falling_force(nodes.phase, nodes.stiffness, nodes.gap, nodes.direction, nodes.error)
+    refuse_falling_force(nodes)
     if grid.width.sum() > 0.99:
         object.__setattr__(system, "_checked", min(widest, system._checked))
     return nodes
@@ -335,22 +344,17 @@ def sampled(system: System, steps: int) -> tuple[Grid, Nodes]:
     return grid, evaluate_nodes(system, grid)
 
 
-def refuse_falling_force(
-    phase: Array, stiffness: Array, gap: Array, direction: Array, error: Array
-) -> None:
+def refuse_falling_force(nodes: Nodes) -> None:
     """Refuse dead zones beyond which the force of a mesh falls with compression."""
+    phase, stiffness, gap = nodes.phase, nodes.stiffness, nodes.gap
     dead = np.flatnonzero(np.any(unrepeated(gap, 1) > 0.0, axis=(0, 1)))
     if not np.any(unrepeated(stiffness, 1)[:, :, dead] < 0.0):
         return
-    floor = -_ROUNDING * float(np.abs(stiffness).max())
+    floor, laws = -_ROUNDING * float(np.abs(stiffness).max()), force_laws(nodes)
     for j in dead:
         total = np.zeros(phase.shape)
-        for i in range(stiffness.shape[2]):
-            same = np.array_equal(direction[:, :, i], direction[:, :, j]) and np.array_equal(
-                error[:, :, i], error[:, :, j]
-            )
-            if same:
-                total += np.where(gap[:, :, i] <= gap[:, :, j], stiffness[:, :, i], 0.0)
+        for i in np.flatnonzero(laws == laws[j]):
+            total += np.where(gap[:, :, i] <= gap[:, :, j], stiffness[:, :, i], 0.0)
         if total.min() < floor:
             at = np.unravel_index(int(np.argmin(total)), total.shape)
             raise InputError(

@@ -464,12 +464,8 @@ def _equilibrium(compiled: Sampled, carrying: Array, gap: Array) -> Array:
     for _ in range(_ROUNDS if system.frictions else 0):
         load = carried_load(system, carrying * (_compressed(compiled, position) - nodes.gap))
         ratio = friction_secant(system, nodes.friction_coefficients, load)
-        last, position = (
-            position,
-            balanced_position(
-                system, nodes, carrying, push_with_friction(system, nodes, ratio), bases
-            ),
-        )
+        last, push = position, push_with_friction(system, nodes, ratio)
+        position = balanced_position(system, nodes, carrying, push, bases)
         if np.abs(position - last).max() <= 1e-12 * np.abs(position).max():
             break
     return position

@@ -13,12 +13,7 @@ import numpy as np
 
 from tribodyn.dynamics.equations.grid import Grid, RowEvaluator, build_grid, system_events
 from tribodyn.dynamics.equations.lane_parameters import LaneParameters
-from tribodyn.dynamics.equations.nodes import (
-    Nodes,
-    evaluate_nodes,
-    friction_tangent,
-    push_with_friction,
-)
+from tribodyn.dynamics.equations.nodes import Nodes, evaluate_nodes, nominal_push
 from tribodyn.dynamics.equations.system import System
 from tribodyn.errors import InputError, require_positive
 from tribodyn.nomenclature import require_number
@@ -56,11 +51,7 @@ def rates_at(
     """
     along, push = nodes.direction[places], nodes.force_direction[places]
     if system.frictions:
-        at = Nodes(*(part[places] for part in nodes))
-        nominal = np.array([friction.load for friction in system.frictions])
-        push = push_with_friction(
-            system, at, friction_tangent(system, at.friction_coefficients, nominal)
-        )
+        push = nominal_push(system, Nodes(*(part[places] for part in nodes)))
     spring, damper, rub = (column[:, None, None, None] for column in factors.T)
     outer = np.einsum("...mji,...mjk->...mjik", along + rub * (push - along), along)
     stiffness = np.einsum("...mj,...mjik->...mik", nodes.stiffness[places], outer)

@@ -173,6 +173,15 @@ class SystemBatch:
         return image_of(self.coordinates, self.balance, points, state)
 
 
+def _keep_in(states: Array, every: int = 1) -> Callable[[int, Array], None]:
+    """Function that takes the rows of a motion (rows, 2 n, 1) of a system into ``states``."""
+
+    def keep(number: int, record: Array) -> None:
+        states[number] = record[::every, :, 0]
+
+    return keep
+
+
 class _Touch(NamedTuple):
     """Clearance of the flanks of motions from separation, at the ends of all steps (p, rows)."""
 
@@ -241,10 +250,8 @@ class _Cycles(NamedTuple):
         states = np.empty((len(point), group.grid.steps + 1, 2 * group.system.size))
         states[np.delete(np.arange(len(point)), which)] = 0.0
 
-        def motion(number: int, record: Array) -> None:
-            states[number] = record[..., 0]
-
-        residual = (group.march(group.full_steps, point, which, motion) - point)[:, 0]
+        image = group.march(group.full_steps, point, which, _keep_in(states))
+        residual = (image - point)[:, 0]
         way = _times(inverse, residual)
         distance = np.linalg.norm(way, axis=1)
         distance += np.linalg.norm(residual - _times(slope, way), axis=1)
@@ -330,13 +337,10 @@ def _step_errors(group: SystemBatch, orbits: _Orbits) -> Array:
     states, way = group.full_steps.memory("states", cycles.states.shape), np.full(len(at), np.inf)
     states[~orbits.good] = 0.0
 
-    def store_coarse(number: int, record: Array) -> None:
-        states[number] = record[::2, :, 0]
-
     for _ in range(ROUNDS):
         if not left.size:
             break
-        image = group.march(group.halved, at, left, store_coarse)
+        image = group.march(group.halved, at, left, _keep_in(states, 2))
         step = _times(orbits.inverse, (image - at)[:, 0])[:, None]
         last, way = way, np.linalg.norm(step[:, 0], axis=1)
         far = np.linalg.norm((at + step - cycles.point)[:, 0], axis=1)
@@ -349,11 +353,8 @@ def _step_errors(group: SystemBatch, orbits: _Orbits) -> Array:
         left = left[~close]
     ended = np.flatnonzero(~np.isnan(fine[:, 0, 0]))
 
-    def coarse(number: int, record: Array) -> None:
-        states[number] = record[..., 0]
-
     # The remaining distance shifts both motions by the same amount.
-    group.march(group.full_steps, cycles.point + moved, ended, coarse)
+    group.march(group.full_steps, cycles.point + moved, ended, _keep_in(states))
     fine += group.coordinates.reduce(states) - cycles.reduced
     return _greatest(fine - cycles.reduced) / _greatest(fine)
 

@@ -32,7 +32,7 @@ from tribodyn.dynamics.orbits.continuation_path import (
     with_values,
 )
 from tribodyn.dynamics.orbits.orbit_map import OrbitMap, newton
-from tribodyn.dynamics.orbits.search import find_orbit
+from tribodyn.dynamics.orbits.search import find_orbit, motion_size
 from tribodyn.dynamics.orbits.solution_branch import Branch, SpecialPoint
 from tribodyn.dynamics.time.response import Response, build_response, sample_extremes
 from tribodyn.dynamics.time.simulate import read_start
@@ -186,7 +186,7 @@ def _first(
     y = mapping.start(state)
     if start is not None:
         # The start may be a state of an unstable orbit, which a search would leave.
-        function.size = _motion(mapping, y)
+        function.size = motion_size(mapping, mapping.follow(y)[1])
         try:
             point = correct(function, np.append(y / function.size, 0.0), hold(y.size + 1), None)
             if np.linalg.norm(point.x[:-1] - y / function.size) < _NEAR:
@@ -201,7 +201,7 @@ def _first(
             why=f"The limit is {TOLERANCE:.0e}",
             remedy="Begin at another value, give a start, or try periods = 2, 3, 4",
         )
-    function.size = _motion(mapping, y)
+    function.size = motion_size(mapping, mapping.follow(y)[1])
     x = np.append(y / function.size, 0.0)
     return correct(function, x, hold(x.size), None)
 
@@ -222,11 +222,6 @@ def _search(mapping: OrbitMap, y: Array) -> tuple[Array, float]:
     return orbits.point[0], float(orbits.error[0])
 
 
-def _motion(mapping: OrbitMap, y: Array) -> float:
-    reduced = mapping.coordinates.reduce(mapping.record(y)[0])
-    return float(np.linalg.norm(reduced, axis=1).max()) or 1.0
-
-
 def _aside(function: FamilyMap, start: SpecialPoint) -> BranchPoint:
     """First point of the branch of twice the period, near the point where it begins."""
     if not 0.0 <= (start.parameter - function.origin) / function.range <= 1.0:
@@ -235,7 +230,7 @@ def _aside(function: FamilyMap, start: SpecialPoint) -> BranchPoint:
         raise InputError(what, "argument start", why, "Start within the range, or widen it")
     mapping = function.at(start.parameter)
     y = mapping.start(np.concatenate((start.position, start.velocity)))
-    function.size = _motion(mapping, y)
+    function.size = motion_size(mapping, mapping.follow(y)[1])
     x = np.append(y / function.size, (start.parameter - function.origin) / function.range)
     # Over twice the period the multiplier is +1: the direction is that in which nothing changes.
     values, vectors = np.linalg.eig(function.jet(x).matrix)

@@ -173,9 +173,7 @@ class StalledError(Exception):
 
 def tangent_at(jet: Jet, along: Array) -> Array:
     """Direction of the branch at a point."""
-    last = np.zeros(along.size)
-    last[-1] = 1.0
-    direction = np.linalg.lstsq(jet.border(along), last, rcond=None)[0]
+    direction = np.linalg.lstsq(jet.border(along), hold(along.size), rcond=None)[0]
     return np.asarray(direction / np.linalg.norm(direction))
 
 

@@ -12,6 +12,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from tribodyn.dynamics.equations.motion import quadratic_weights
 from tribodyn.dynamics.equations.nodes import carried_load, friction_tangent
 from tribodyn.dynamics.modal.modal_march import ModalMotion
 from tribodyn.types import Array, ComplexArray, Mask
@@ -215,9 +216,7 @@ class ModalTangent:
 
 def _parabola(tau: Array) -> Array:
     """Weights of three nodes at fractions of a step (..., 3)."""
-    return np.stack(
-        ((1.0 - tau) * (1.0 - 2.0 * tau), 4.0 * tau * (1.0 - tau), tau * (2.0 * tau - 1.0)), axis=-1
-    )
+    return np.stack(quadratic_weights(tau), axis=-1)
 
 
 def _advance(z: ComplexArray, weights: _Weights, tangent: Array) -> Array:

@@ -265,7 +265,7 @@ def take_drift_out(c: OrbitCoordinates, time: Array, states: Array) -> Array:
     ``time`` (..., rows, 1) begins at zero.
     """
     size, end = states.shape[-1] // 2, time[..., -1:, :]
-    for basis in (c.free, _complement(c.elastic, c.free)):
+    for basis in (c.free, c.moving @ c.braked):
         if basis.shape[1] == 0:
             continue
         along = c.lower @ basis
@@ -284,16 +284,6 @@ def take_drift_out(c: OrbitCoordinates, time: Array, states: Array) -> Array:
             for i in np.flatnonzero(back.any(axis=0)):
                 states[..., size + i] -= drift @ back[:, i]
     return states
-
-
-def _complement(elastic: Array, free: Array) -> Array:
-    """Motions whose velocity is part of the orbit but whose position is not."""
-    basis = np.hstack((elastic, free))
-    size = basis.shape[0]
-    if basis.shape[1] == size:
-        return np.zeros((size, 0))
-    _, _, rows = np.linalg.svd(basis.T)
-    return np.asarray(rows[basis.shape[1] :].T)
 
 
 class Orbits(NamedTuple):
