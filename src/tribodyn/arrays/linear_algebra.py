@@ -46,6 +46,11 @@ def fast_length(least: int) -> int:
     return next(length for length in count(least) if not 30 ** length.bit_length() % length)
 
 
+def periodic(at: Array, place: Array, values: Array, period: float = 1.0) -> Array:
+    """Values (p, c) at places (p,), linear between samples (s, c) that repeat after a period."""
+    return np.stack([np.interp(at, place, column, period=period) for column in values.T], axis=1)
+
+
 def modes_of(stiffness: Array, mass: Array) -> tuple[Array, Array]:
     """Ascending squared frequencies and columns of shapes of unit mass, of symmetric matrices."""
     lower = np.linalg.cholesky(mass)

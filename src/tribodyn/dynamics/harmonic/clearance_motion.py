@@ -7,6 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from tribodyn.arrays.linear_algebra import periodic
 from tribodyn.dynamics.equations.system import System
 from tribodyn.dynamics.harmonic.harmonic_balance import TOLERANCE, harmonic_balance
 from tribodyn.dynamics.harmonic.phase_balance import phase_balance
@@ -147,9 +148,4 @@ def _on_grid(grid: Array, path: Array) -> Callable[[Array], Array]:
     order = np.argsort(grid % 1.0, kind="stable")
     at, values = (grid % 1.0)[order], path[order]
 
-    def function(phase: Array) -> Array:
-        """Linear between the samples."""
-        columns = [np.interp(phase, at, column, period=1.0) for column in values.T]
-        return np.stack(columns, axis=-1)
-
-    return function
+    return lambda phase: periodic(phase, at, values)

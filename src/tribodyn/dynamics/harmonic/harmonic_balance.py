@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from tribodyn.arrays.linear_algebra import fast_length
+from tribodyn.arrays.linear_algebra import fast_length, periodic
 from tribodyn.dynamics.equations.compiled import Compiled, sample_system
 from tribodyn.dynamics.equations.grid import system_events
 from tribodyn.dynamics.equations.orbit_coordinates import (
@@ -33,6 +33,7 @@ from tribodyn.dynamics.modal.closed_structure import ClosedStructure
 from tribodyn.dynamics.modal.contact_equations import (
     ContactEquations,
     close_contacts,
+    components,
     contact_equations,
 )
 from tribodyn.dynamics.modal.modal_march import ModalMotion
@@ -238,7 +239,7 @@ def _on_clock(
         what = "no coordinate is moved by a contact"
         remedy = "Add a contact, or use forced_response for a structure alone"
         raise InputError(what, "System.contacts", "Harmonic balance acts at contacts", remedy)
-    samples = _fft_length(count * system.cycles)
+    samples = 2 * fast_length(-(-count * system.cycles // 2))  # an even number
     finer = prepared.residual(2 * samples, frequency)
     residual = prepared.residual(samples, frequency)  # every other row of the finer one
     solution = _solve(prepared, residual, _start(prepared, residual, start), tolerance)
@@ -290,19 +291,13 @@ def _assessed(
         linear = TangentMarch.of(residual, solution.state, _PER_CYCLE * prepared.system.cycles)
         warn_of_growth(what, linear.leading_multiplier(), 1.0 + _NEUTRAL)
         return np.zeros(0, dtype=complex)
-    grid = _marching_grid(prepared, residual)
     state, torque = starting_state(residual, solution.state)
-    motion = ModalMotion(grid, prepared.structure)
+    motion = _marching(prepared, residual)
     multipliers = motion.multipliers(state, residual.frequency, torque)
     # A body that floats between its flanks keeps a disturbance, two multipliers of 1.
     limit = 1.0 if solution.state.mean_stiffness is None else 1.0 + _NEUTRAL
     warn_of_growth(what, float(np.abs(multipliers[:1]).max(initial=0.0)), limit)
     return multipliers
-
-
-def _fft_length(steps: int) -> int:
-    """An even number of samples whose transform is fast."""
-    return 2 * fast_length(-(-steps // 2))
 
 
 def _start(
@@ -315,12 +310,8 @@ def _start(
     into = prepared.structure.coordinates.lower @ residual.structure.along
     if isinstance(start, Response):
         at = np.arange(contacts.steps) / contacts.steps
-        columns = (start.position @ into).T
-        phase = start.time * start.mesh_frequency
-        return np.stack(
-            [np.interp(at, phase - phase[0], part, period=start.periods) for part in columns],
-            axis=1,
-        )
+        phase = (start.time - start.time[0]) * start.mesh_frequency
+        return periodic(at, phase, start.position @ into, start.periods)
     position = (
         prepared.equilibrium.position
         if start is None
@@ -374,8 +365,7 @@ def _from_march(
     best = Solution(residual.at(y), np.inf, 0, 0)
     if prepared.structure.modes is None:
         return best
-    grid = _marching_grid(prepared, residual)
-    motion = ModalMotion(grid, prepared.structure)
+    motion = _marching(prepared, residual)
     state, torque = starting_state(residual, best.state)
     for periods in _LONG if _settles(prepared, residual) else _MARCHED:
         try:
@@ -383,7 +373,7 @@ def _from_march(
         except ComputationError:  # it grows without bounds
             break
         state = states[-1]
-        start = _resampled(grid, trace, residual.contacts.steps)
+        start = _resampled(motion.compiled, trace, residual.contacts.steps)
         trial = newton(residual, start, 0.01 * tolerance, _TRIES)
         best = min(best, trial, key=lambda solution: solution.error)
         if best.error <= tolerance:
@@ -391,18 +381,18 @@ def _from_march(
     return best
 
 
-def _marching_grid(prepared: Prepared, residual: ClockResidual) -> Compiled:
-    """Grid with at least as many steps as the period has samples."""
+def _marching(prepared: Prepared, residual: ClockResidual) -> ModalMotion:
+    """Motion on a grid with at least as many steps as the period has samples."""
     steps = -(-residual.contacts.steps // prepared.system.cycles)
-    return prepared.grid(max(steps, min(prepared.grids)))
+    return ModalMotion(prepared.grid(max(steps, min(prepared.grids))), prepared.structure)
 
 
 def _marched(
     prepared: Prepared, residual: ClockResidual, response: Response, **facts: Any
 ) -> Response:
     """The last of some periods that are integrated from a motion that does not repeat."""
-    grid = _marching_grid(prepared, residual)
-    motion = ModalMotion(grid, prepared.structure)
+    motion = _marching(prepared, residual)
+    grid = motion.compiled
     start = response.position[0], response.velocity[0]
     frequency, extra = residual.frequency, response.extra_force
     try:
@@ -419,8 +409,7 @@ def _marched(
 def _resampled(grid: Compiled, trace: Trace, steps: int) -> Array:
     """Motion at the contacts (steps, r) over the last period of a march."""
     phase, at = grid.nodes.phase[:, 1:].reshape(-1), np.arange(steps) / steps
-    paths = np.split(trace.contacts, 2, axis=2)[0].reshape(phase.size, -1).T
-    return np.stack([np.interp(at, phase, path, period=1.0) for path in paths], axis=1)
+    return periodic(at, phase, np.split(trace.contacts, 2, axis=2)[0].reshape(phase.size, -1))
 
 
 def _step_message(residual: ClockResidual, step_error: float) -> str:
@@ -434,8 +423,7 @@ def _step_message(residual: ClockResidual, step_error: float) -> str:
 def _not_converged(residual: ClockResidual, solution: Solution, tolerance: float) -> str:
     """Message that names the contact with the largest residual."""
     state, contacts = solution.state, residual.contacts
-    along = np.broadcast_to(contacts.rows.along, (len(state.y), *contacts.rows.along.shape[1:]))
-    distance = np.abs(np.einsum("pjr,pr->pj", along, state.residual)).max(axis=0)
+    distance = np.abs(components(contacts.rows.along, state.residual)).max(axis=0)
     worst = int(np.argmax(distance))
     open_share = float(np.mean(state.law.open[:, worst]))
     reason = (

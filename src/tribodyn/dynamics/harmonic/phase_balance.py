@@ -46,7 +46,7 @@ from tribodyn.dynamics.harmonic.phase_response import (
 from tribodyn.dynamics.harmonic.phase_rows import PhaseRows, sampled_forces
 from tribodyn.dynamics.harmonic.radial_clearance import REMEDY, RadialClearance, about_load
 from tribodyn.dynamics.modal.closed_structure import ClosedStructure
-from tribodyn.dynamics.modal.contact_equations import close_contacts
+from tribodyn.dynamics.modal.contact_equations import close_contacts, components
 from tribodyn.errors import ComputationError, InputError, warn
 from tribodyn.nomenclature import require_whole
 from tribodyn.types import Array, Index, Mask
@@ -471,9 +471,7 @@ def _not_converged(
     """Message that names the contact with the largest residual, and its number."""
     worst: tuple[float, int, str] = (-1.0, 0, "")
     for part, state in zip(residual.parts, solution.state.each, strict=True):
-        along = part.contacts.rows.along
-        along = np.broadcast_to(along, (len(state.y), *along.shape[1:]))
-        distance = np.abs(np.einsum("pjr,pr->pj", along, state.residual)).max(axis=0)
+        distance = np.abs(components(part.contacts.rows.along, state.residual)).max(axis=0)
         number = int(np.argmax(distance))
         rows = part.structure.rows
         mesh = next(mesh for mesh in rows.meshes if number in mesh.contacts)

@@ -24,6 +24,7 @@ from tribodyn.dynamics.modal.contact_equations import (
     ContactLaw,
     Law,
     Rows,
+    of_contact,
     with_dead_zone,
 )
 from tribodyn.types import Array, Index
@@ -312,14 +313,8 @@ class PhaseContacts(ContactLaw):
         """Stiffness of the contacts (b, c) where a damper begins or ceases to act."""
         each, contact = np.arange(crossings.contact.size), crossings.contact
         y, rate = (part[len(part) - each.size :] for part in moved)
-
-        def of_contact(values: Array) -> Array:
-            return np.asarray(values[each if len(values) > 1 else 0 * each, contact])
-
-        along = of_contact(rows.along)
-        speed = np.einsum("br,br->b", along, rate) - of_contact(rows.nodes.error_slope)
-        speed += np.einsum("br,br->b", of_contact(rows.along_slope), y)
-        force = speed * ~self.damped_in_gap[contact] * of_contact(rows.nodes.damping)
+        _, speed = rows.speed_of(contact, 1.0, y, rate)
+        force = speed * ~self.damped_in_gap[contact] * of_contact(rows.nodes.damping, contact)
         stiffness = np.zeros((each.size, len(self.dead)))
         stiffness[each, contact] = crossings.edge * force / np.abs(crossings.slope)
         return stiffness

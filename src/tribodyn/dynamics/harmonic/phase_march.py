@@ -91,14 +91,10 @@ class PhaseMarch:
         fields = self.rows.nodes(points)._asdict() | {"phase": phase.reshape(-1, 1)}
         for name in ("error_slope", "direction_slope"):
             fields[name] = fields[name] * self.duration
-        shaped = {
-            name: np.broadcast_to(values[:, 0], (phase.size, *values.shape[2:])).reshape(
-                *phase.shape, *values.shape[2:]
-            )
-            if len(values) > 1
-            else np.broadcast_to(values[0, 0], (*phase.shape, *values.shape[2:]))
-            for name, values in fields.items()
-        }
+        shaped = {}
+        for name, values in fields.items():
+            wide = np.broadcast_to(values[:, 0], (phase.size, *values.shape[2:]))
+            shaped[name] = wide.reshape(*phase.shape, *values.shape[2:])
         nodes = Nodes(**shaped)._replace(weight=step_weights(grid))
         return replace(self.rows.means, system=self.rows.system, grid=grid, nodes=nodes)
 

@@ -118,20 +118,15 @@ class PhaseResponse(Response):
         """Positions, forces and so on at points, from positions and velocities (p, 2 n)."""
         q, v = np.split(motion, 2, axis=1)
         count = len(self._rows.system.contacts)
-        moved = [np.zeros((0, width)) for width in (q.shape[1], count, count)]
         step = max(1, _TOGETHER // max(1, q.shape[1] * count))
-        parts = [
-            self._rows.forces(points[at], q[at], v[at], self.extra_force)
-            for at in (slice(begin, begin + step) for begin in range(0, len(points), step))
-        ]
-        names = {"acceleration": "acceleration", "deflection": "deflection",
-                 "contact_force": "contact"}  # fmt: skip
-        return {"position": q, "velocity": v} | {
-            name: np.concatenate([getattr(part, of_part)[:, 0] for part in parts])
-            if parts
-            else empty
-            for (name, of_part), empty in zip(names.items(), moved, strict=True)
-        }
+        widths = {"acceleration": q.shape[1], "deflection": count, "contact": count}
+        moved = {name: np.empty((len(q), width)) for name, width in widths.items()}
+        for begin in range(0, len(q), step):
+            at = slice(begin, begin + step)
+            part = self._rows.forces(points[at], q[at], v[at], self.extra_force)
+            for name, values in moved.items():
+                values[at] = getattr(part, name)[:, 0]
+        return dict(zip(_QUANTITIES, (q, v, *moved.values()), strict=True))
 
     def lines(self, quantity: str = "contact_force") -> Lines:
         """Spectral lines of a quantity.
@@ -350,9 +345,8 @@ def phase_response(
     others += _beyond_grids(rows, residual, numbers, q, v)
     lines = np.concatenate((q, v, 1j * omega[:, None] * v, others), axis=1)
     facts |= {"extra_force": torque, "period": 0, "engine": "harmonic-balance"}
-    size, count, empty = system.size, len(system.contacts), np.zeros(0)
-    widths = zip(_QUANTITIES, (size, size, size, count, count), strict=True)
-    none: dict[str, Any] = {name: np.zeros((0, width)) for name, width in widths}
+    empty = np.zeros(0)
+    none: dict[str, Any] = dict.fromkeys(_QUANTITIES, np.zeros((0, 0)))
     fastest = max(float((part.grid.frequency * part.grid.shape).max()) for part in residual.parts)
     response = PhaseResponse(
         time=empty, phase=empty, names=tuple(system.names), mesh_frequency=float(frequency[0]),

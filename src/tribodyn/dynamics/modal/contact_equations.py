@@ -57,6 +57,15 @@ class Rows(NamedTuple):
         nodes = Nodes(*(some(part) for part in self.nodes))
         return Rows(nodes, *(some(part) for part in self[1:]))
 
+    def speed_of(
+        self, contact: Index, frequency: float, y: Array, rate: Array
+    ) -> tuple[Array, Array]:
+        """Direction and rate of compression of a contact at each row, of motions (b, r)."""
+        entries = self.along, self.along_slope, self.nodes.error_slope
+        along, turning, slope = (of_contact(part, contact) for part in entries)
+        turned = np.einsum("br,br->b", turning, y) - slope
+        return along, np.einsum("br,br->b", along, rate) + frequency * turned
+
 
 class Tangent(NamedTuple):
     """Change of the forces of contacts with their motion, by factors of each contact."""
@@ -253,23 +262,13 @@ class ContactEquations(ContactLaw):
         fraction = begin / (begin - end)
         touch = _touch_factor((step, contact, spring), (before, after), fraction, inside.shape)
         rows = self.rows.at(step)
-        each = np.arange(step.size)
-
-        def of_contact(values: Array) -> Array:
-            wide = np.broadcast_to(values, (step.size, *values.shape[1:]))
-            return np.asarray(wide[each, contact])
-
-        along = of_contact(rows.along)
         at_y, at_rate = (_between(values, step, after, fraction) for values in (y, rate))
-        speed = np.einsum("br,br->b", along, at_rate) + frequency * (
-            np.einsum("br,br->b", of_contact(rows.along_slope), at_y)
-            - of_contact(rows.nodes.error_slope)
-        )
+        along, speed = rows.speed_of(contact, frequency, at_y, at_rate)
         opening = np.where(end > begin, 1.0, -1.0)
         steady = self.damped_in_gap[contact] | (spring > 0)
-        damped = np.where(steady, 0.0, of_contact(rows.nodes.damping))
+        damped = np.where(steady, 0.0, of_contact(rows.nodes.damping, contact))
         jump = opening * damped * speed
-        bend = opening * edge * rows.stiffness[each, contact, spring] * (end - begin)
+        bend = opening * edge * of_contact(rows.stiffness, contact, spring) * (end - begin)
         bernoulli = fraction * (fraction - 1.0) + touch / 6.0
         total = (0.5 - fraction) * jump + 0.5 * bernoulli * bend
         slope = edge * (jump - (fraction - 0.5) * bend) / (end - begin)
@@ -378,6 +377,12 @@ def jumping_events(before: Nodes, after: Nodes) -> Index:
             jump = np.abs(right - left).reshape(len(left), -1).max(axis=1, initial=0.0)
             jumps |= jump > _JUMP * scale
     return np.flatnonzero(jumps)
+
+
+def of_contact(values: Array, *columns: Index) -> Array:
+    """Values (b, ...) of a contact, or a spring of it, at each of rows (b or 1, contacts, ...)."""
+    each = np.arange(columns[0].size)
+    return np.asarray(values[(each if len(values) > 1 else 0 * each, *columns)])
 
 
 def components(direction: Array, motion: Array) -> Array:

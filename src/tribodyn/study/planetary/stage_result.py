@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from tribodyn.arrays.linear_algebra import periodic
 from tribodyn.machine import LoadShares, RingSensorSignal, ring_sensor_signal
 from tribodyn.machine.planetary.modes import plane_rows
 from tribodyn.machine.planetary.positions import read_angles
@@ -178,9 +179,8 @@ class StageResult:
         speeds = {n: load.speed for n, load in machine.kinematics.shafts.items()}
         relative = speeds[self.stage.carrier] - speeds[ring.shaft]
         at = np.arange(steps) / steps
-        columns = [np.interp(at, motion.phase, f, period=1.0) for f in motion.ring_mesh_force.T]
         return ring_sensor_signal(
-            ring_mesh_force=np.stack(columns, axis=1),
+            ring_mesh_force=periodic(at, motion.phase, motion.ring_mesh_force),
             ring_teeth=abs(ring.teeth),
             angles=planetary_angles(self.stage),
             sensor_angle=sensor_angle,
