@@ -79,9 +79,8 @@ def leading_eigenvalues(
         values, vectors = np.linalg.eig(upper[:k, :k])
         first = np.argsort(-np.abs(values), kind="stable")[:count]
         left = length * np.abs(vectors[-1, first])
-        if k == size or (
-            k > count and np.all(left <= np.maximum(accuracy * np.abs(values[first]), none))
-        ):
+        settled = np.all(left <= np.maximum(accuracy * np.abs(values[first]), none))
+        if k == size or (k > count and settled):
             break
         basis[k] = vector / (length or 1.0)
     return np.asarray(values[first], dtype=complex)

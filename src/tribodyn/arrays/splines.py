@@ -116,9 +116,8 @@ def _slopes(step: Array, secant: Array) -> Array:
     before, after = secant[:-1], secant[1:]
     first, second = 2.0 * step[1:] + step[:-1], step[1:] + 2.0 * step[:-1]
     level = np.sign(before) * np.sign(after) <= 0.0
-    mean = (first / np.where(level, 1.0, before) + second / np.where(level, 1.0, after)) / (
-        first + second
-    )
+    total = first / np.where(level, 1.0, before) + second / np.where(level, 1.0, after)
+    mean = total / (first + second)
     ends = [_end(step[0], step[1], secant[0], secant[1])]
     ends += [_end(step[-1], step[-2], secant[-1], secant[-2])]
     return np.concatenate([ends[:1], np.where(level, 0.0, 1.0 / mean), ends[1:]])

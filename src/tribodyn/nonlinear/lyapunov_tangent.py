@@ -50,8 +50,7 @@ class TangentTables:
         self.coordinates = orbit_coordinates(compiled, mesh_frequency)
         self.width = compiled.grid.width / mesh_frequency
         self.dead = has_gap(nodes)
-        free = [contact.damping_in_gap for contact in system.contacts]
-        self.in_gap = np.array(free, dtype=bool)
+        self.in_gap = system._damped_in_gap
         c = self.coordinates
         place, speed = c.inverse.T @ c.elastic / c.rate, c.inverse.T @ c.moving
         self.size = place.shape[1] + speed.shape[1]

@@ -136,9 +136,9 @@ def forces(
         contact = contact + scales.damping * unrepeated(rows.damping, 1) * rate
     else:
         side = sides(d, gap, has_gap(rows)) if side is None else side
-        in_gap = np.array([contact.damping_in_gap for contact in system.contacts], dtype=bool)
         contact = np.abs(side) * scales.stiffness * rows.stiffness * (d - side * gap)
-        contact = contact + ((side != 0.0) | in_gap) * scales.damping * rows.damping * rate
+        acting = (side != 0.0) | system._damped_in_gap
+        contact = contact + acting * scales.damping * rows.damping * rate
     if rows.ramp_gap.shape[-1]:
         contact = contact + ramp_force(rows, d)
     total = times(scales.force * unrepeated(rows.force, 1) + extra, inverse) - elastic

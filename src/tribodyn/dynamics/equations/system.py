@@ -33,7 +33,7 @@ from tribodyn.dynamics.equations.phases import (
 )
 from tribodyn.errors import InputError, real_numbers, require_between, require_positive
 from tribodyn.nomenclature import require_flag, require_number, require_whole
-from tribodyn.types import Array
+from tribodyn.types import Array, Mask
 
 
 @dataclass(frozen=True)
@@ -371,6 +371,11 @@ class System:
     def cycles(self) -> int:
         """Mesh cycles of the fastest contact in one period of the clock."""
         return max((each.cycles * each.period for each in on_one_clock(self)), default=1)
+
+    @cached_property
+    def _damped_in_gap(self) -> Mask:
+        """Contacts whose damping acts in the gap too."""
+        return np.array([contact.damping_in_gap for contact in self.contacts], dtype=bool)
 
     @cached_property
     def clocked_contacts(self) -> tuple[Contact, ...]:

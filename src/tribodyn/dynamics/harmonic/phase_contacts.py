@@ -194,10 +194,9 @@ class PhaseContacts(ContactLaw):
     @classmethod
     def of(cls, rows: PhaseRows, structure: Any, grid: PhaseGrid, axis: int) -> PhaseContacts:
         """Contacts of a system with the bases of a structure."""
-        inverse, contacts = structure.coordinates.inverse, rows.system.contacts
+        inverse = structure.coordinates.inverse
         return cls(
-            rows.system, with_dead_zone(rows.means.nodes),
-            np.array([contact.damping_in_gap for contact in contacts], dtype=bool), rows,
+            rows.system, with_dead_zone(rows.means.nodes), rows,
             (inverse.T @ structure.along, inverse.T @ structure.push), grid, axis,
             Cut.joined([_jumps(rows, grid, axis, mesh) for mesh in rows.meshes]),
         )  # fmt: skip
@@ -314,7 +313,8 @@ class PhaseContacts(ContactLaw):
         each, contact = np.arange(crossings.contact.size), crossings.contact
         y, rate = (part[len(part) - each.size :] for part in moved)
         _, speed = rows.speed_of(contact, 1.0, y, rate)
-        force = speed * ~self.damped_in_gap[contact] * of_contact(rows.nodes.damping, contact)
+        steady = self.system._damped_in_gap[contact]
+        force = speed * np.where(steady, 0.0, of_contact(rows.nodes.damping, contact))
         stiffness = np.zeros((each.size, len(self.dead)))
         stiffness[each, contact] = crossings.edge * force / np.abs(crossings.slope)
         return stiffness

@@ -66,8 +66,7 @@ def _linearised(system: System, phase: ModePhase) -> LinearSystem:
     closed, push = _at_rest(system, nodes)
     along, rub = nodes.direction, combined(np.subtract, push, nodes.direction)
     spring = weight[:, :, None] * np.where(closed, nodes.stiffness, 0.0)
-    free = np.array([contact.damping_in_gap for contact in system.contacts], dtype=bool)
-    damper = weight[:, :, None] * np.where(closed | free, nodes.damping, 0.0)
+    damper = weight[:, :, None] * np.where(closed | system._damped_in_gap, nodes.damping, 0.0)
     contact_stiffness = _over_cycle(spring, along, along)
     return LinearSystem(
         names=tuple(system.names),

@@ -160,7 +160,6 @@ class ContactLaw:
 
     system: System
     dead: Mask  #: springs with a dead zone (contacts, m)
-    damped_in_gap: Mask
 
     def law(
         self,
@@ -183,7 +182,7 @@ class ContactLaw:
         side = sides(every, rows.gap, self.dead) if closed is None else closed + 0.0 * every
         springs = np.where(side != 0.0, rows.stiffness, 0.0)
         stiffness = springs.sum(axis=-1)
-        touching = (side[..., 0] != 0.0) | self.damped_in_gap
+        touching = (side[..., 0] != 0.0) | self.system._damped_in_gap
         damping = np.where(touching, nodes.damping, 0.0) + excess
         contact = (springs * (every - side * rows.gap)).sum(axis=-1) + damping * speed
         push = rows.push
@@ -265,7 +264,7 @@ class ContactEquations(ContactLaw):
         at_y, at_rate = (_between(values, step, after, fraction) for values in (y, rate))
         along, speed = rows.speed_of(contact, frequency, at_y, at_rate)
         opening = np.where(end > begin, 1.0, -1.0)
-        steady = self.damped_in_gap[contact] | (spring > 0)
+        steady = self.system._damped_in_gap[contact] | (spring > 0)
         damped = np.where(steady, 0.0, of_contact(rows.nodes.damping, contact))
         jump = opening * damped * speed
         bend = opening * edge * of_contact(rows.stiffness, contact, spring) * (end - begin)
@@ -333,15 +332,12 @@ def contact_equations(
         evaluate_rows(system, PointEvaluator(points, every, before=side)) for side in (True, False)
     )
     jumping = jumping_events(before, after)
-    in_gap = np.array([contact.damping_in_gap for contact in system.contacts], dtype=bool)
     left, right = (
         project_rows(Nodes(*(values[jumping] for values in part)), *into)
         for part in (before, after)
     )
     at = project_rows(nodes, *into)
-    return ContactEquations(
-        system, with_dead_zone(nodes), in_gap, at, left, right, points[jumping], steps
-    )
+    return ContactEquations(system, with_dead_zone(nodes), at, left, right, points[jumping], steps)
 
 
 def project_rows(nodes: Nodes, along: Array, push: Array) -> Rows:

@@ -62,7 +62,7 @@ class ModalMotion:
             members[f, list(friction.contacts)] = 1.0
         self.contacts = Contacts(
             with_dead_zone(compiled.nodes).astype(np.int64),
-            np.array([float(contact.damping_in_gap) for contact in system.contacts]),
+            system._damped_in_gap.astype(float),
             members,
             np.array([friction.load for friction in frictions], dtype=float),
             np.array([friction.limit for friction in frictions], dtype=float),
