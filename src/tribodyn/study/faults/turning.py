@@ -151,8 +151,7 @@ class PeriodicMotion(ABC):
             numbers = tuple(lines.numbers[at].tolist())
             cause = line_cause(numbers[:phases], self.meshes, self.units)
             for turns in numbers[phases:]:
-                sign = "-" if turns < 0 else "+"
-                cause += f" {sign} {abs(turns)} x carrier" if turns else ""
+                cause += f" {'-' if turns < 0 else '+'} {abs(turns)} x carrier" if turns else ""
             amplitude = complex(lines.amplitude[at])
             listed.append(MotionLine(float(lines.frequency[at]), amplitude, numbers, cause))
         return listed
@@ -213,8 +212,9 @@ class PeriodicMotion(ABC):
 
     def harmonics(self, sensor: str) -> tuple[Array, ComplexArray]:
         """Frequencies (k,) [Hz] and complex peak amplitudes (k,) of a signal, from its mean on."""
-        lines = self.sensed(sensor)
-        return lines.frequency, lines.amplitude
+        lines = self.sensed(sensor)  # by rising frequency; phases in a ratio share lines
+        first = np.flatnonzero(np.diff(lines.frequency, prepend=-1.0) > 1e-9 * self.mesh_frequency)
+        return lines.frequency[first], np.add.reduceat(lines.amplitude, first)
 
     def __repr__(self) -> str:
         """One line."""
