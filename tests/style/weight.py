@@ -185,7 +185,7 @@ LINES: dict[str, int] = {
     "scope": 38,
     "signals": 1727,
     "stiffness": 5185,
-    "study": 20104,
+    "study": 20102,
     "surrogate": 765,
     "types": 13,
     "uncertainty": 288,

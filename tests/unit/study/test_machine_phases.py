@@ -287,6 +287,17 @@ def test_planets_on_loose_pins_beside_hunting_teeth_are_one_clock() -> None:
         assert apart[name] == pytest.approx(clock[name], rel=1e-6)
 
 
+def test_a_run_refuses_faults_whose_motion_takes_too_much_before_it_computes(monkeypatch) -> None:
+    base = case({"z1": 29, "z2": 71, "z3": 23, "z4": 67})
+    faults = {
+        f"e{n}": {"kind": "eccentricity", "gear": gear, "amplitude": "20 um"}
+        for n, gear in enumerate(("z1", "z2", "z3", "z4"))
+    }
+    monkeypatch.setattr("tribodyn.study.machine.run.run_load", lambda *_: pytest.fail("computed"))
+    with pytest.raises(td.ComputationError, match="memory"):
+        td.run(base.replace({"faults": faults, "solver.memory": 0.5e9}))
+
+
 def test_the_stated_time_follows_from_what_the_forces_do() -> None:
     from tribodyn.study.faults.machine_motion import _work, rehearse_faults
     from tribodyn.study.machine.run import rehearse_machine

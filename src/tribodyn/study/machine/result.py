@@ -13,6 +13,7 @@ from tribodyn.aliases import warn_of_old_name
 from tribodyn.drawing import draw
 from tribodyn.errors import Argument, InputError, collected, no_such
 from tribodyn.gear import Misalignment, MisalignmentStudy, misalignment_study
+from tribodyn.interrupt import single_blas_thread
 from tribodyn.machine.static.supports import clearance_supports, without_clearance_supports
 from tribodyn.record import Parts
 from tribodyn.study.faults.sensors import sensors_of
@@ -183,7 +184,8 @@ class LoadResult:
         """Natural modes at this load."""
         from tribodyn.machine import machine_modes
 
-        return machine_modes(self.structure)
+        with single_blas_thread():
+            return machine_modes(self.structure)
 
     def stage(self, name: str | None = None) -> StageResult:
         """Load sharing, motion, modes and ring sensor of a planetary stage.

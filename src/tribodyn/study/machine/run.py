@@ -32,12 +32,7 @@ from tribodyn.progress import SILENT, Progress
 from tribodyn.study.coupling import load_of_torque, mesh_under_load
 from tribodyn.study.heat_balance import HeatBalance, Temperatures
 from tribodyn.study.machine.case import MachineCase
-from tribodyn.study.machine.first_look import (
-    over_phases,
-    shape_figures,
-    warn_of_gears,
-    warn_of_motion,
-)
+from tribodyn.study.machine.first_look import over_phases, shape_figures, warn_of_gears
 from tribodyn.study.machine.motion import MachineMotion, machine_motion, motion_from
 from tribodyn.study.machine.pair_cases import inputs_under, read_teeth, teeth_under
 from tribodyn.study.machine.read_parts import LoadCase
@@ -107,9 +102,11 @@ class Balanced(NamedTuple):
 
 def run_machine(case: MachineCase, progress: Progress = SILENT) -> MachineResult:
     """Compute a machine under all its loads without raising the warnings, which the result has."""
+    from tribodyn.study.faults.clock import check_motion
+
     # The matrices of a machine are small: threads of the linear algebra only wait for each other.
     with collected() as caught, single_blas_thread():
-        warn_of_motion(case.solver, case.machine())
+        check_motion(case)
         warn_of_gears(case)
         of_meshes: list[MeshWarning] = []
         results: list[LoadResult] = []
