@@ -95,17 +95,17 @@ def work_of(system: System, frequency: Any, supports: Sequence[RadialClearance] 
     """What the motion of a system over phases takes, from a trial on its first grids."""
     search = _Search.of(system, read_frequencies(frequency, system.phases), supports)
     points = _first_points(search)
-    few = np.where(search.followed(), points, np.minimum(points, _FEW)).tolist()
-    points = tuple(map(tuple, few))
+    sizes = np.where(search.followed(), points, np.minimum(points, _FEW)).tolist()
+    points = tuple(map(tuple, sizes))
     residual = search.residual(points)
     if residual.ends[-1] > _TRIAL:
         return Work("broken", system.size)
     solution = solved(residual, search.linear(residual), 1e-4)
     state = solution.state
-    own = np.zeros(np.shape(points), dtype=bool)
+    followed = np.zeros(np.shape(points), dtype=bool)
     for number, part in enumerate(search.parts):
-        own[number, part.axis] = bool(part.axes)
-    errors, times = search.changes(points, residual, state, own, np.zeros(own.shape))
+        followed[number, part.axis] = bool(part.axes)
+    errors, times = search.changes(points, residual, state, followed, np.zeros(followed.shape))
     cells = [each.pieces is not None for each in state.each]
     forces = [each.law.contact for each in state.each]
     low = [(each.min(axis=0) < _OPENS * each.mean(axis=0)).any() for each in forces]
@@ -217,9 +217,9 @@ class _Search:
         left = min(_RELEASE, _SPENT // self.size(points))
         while level <= _GAINS * before and left > 0:
             before = level
-            found, level, y, left = released(residual, y, self.damping, tolerance, level, left)
-            if found is not None:
-                return points, residual, found
+            solution, level, y, left = released(residual, y, self.damping, tolerance, level, left)
+            if solution is not None:
+                return points, residual, solution
             more = doubled(points, np.ones_like(followed))
             more = more if self.size(more) <= _MOST else doubled(points, followed)
             if not free or np.max(points) >= _LAST or self.size(more) > _MOST:

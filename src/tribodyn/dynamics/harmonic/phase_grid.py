@@ -109,9 +109,9 @@ class PhaseGrid:
 
     def refined(self, values: Array, finer: PhaseGrid) -> Array:
         """Values (p, c) on another grid: with the lines that both have."""
-        here, there = self.common(finer)
+        places, finer_places = self.common(finer)
         padded = np.zeros((math.prod(finer.half), values.shape[1]), dtype=complex)
-        padded[there] = self.spectrum(values)[here]
+        padded[finer_places] = self.spectrum(values)[places]
         return finer.values(padded)
 
     def lines(self, axis: int) -> Index:
@@ -217,11 +217,11 @@ def time_of_grids(
         widths[key] = widths.get(key, 0) + each.contacts
     cycles = np.array([each for each, *_ in widths])
     felt = np.array([np.any(each, axis=0) for each in widths])
-    own = np.where(cycles == 0, np.inf, np.abs(cycles)).argmin(axis=1)
+    axes = np.where(cycles == 0, np.inf, np.abs(cycles)).argmin(axis=1)
     points: Points = tuple(map(tuple, np.where(felt, fine, others).tolist()))
     errors, times = np.zeros(felt.shape), np.full(felt.shape, 2)
     for place, rate in enumerate(np.abs(cycles @ frequency)):
-        at = place, own[place]
+        at = place, axes[place]
         errors[at], times[at] = work.change(rate)
 
     def size(grids: Points) -> int:
@@ -231,11 +231,11 @@ def time_of_grids(
     seconds, teeth = _ONCE, np.where(cycles != 0, fine[None] // _MESH, 1).max(axis=1)
     while True:
         for place, (grid, width) in enumerate(zip(points, widths.values(), strict=True)):
-            axis = int(own[place])
+            axis = int(axes[place])
             ahead = AHEAD * first[place][axis] // grid[axis]
-            looked = 2 * int(again[place].sum())
-            looked += ahead if ahead > 2 and work.kind not in _WHOLE else 0
-            seconds += _time(grid, width, axis, looked, work, int(teeth[place]))
+            multiples = 2 * int(again[place].sum())
+            multiples += ahead if ahead > 2 and work.kind not in _WHOLE else 0
+            seconds += _time(grid, width, axis, multiples, work, int(teeth[place]))
         chosen = poor(size, points, errors, times, smooth)
         if not chosen.any():
             return seconds, 0.0 if work.kind == "steady" else 0.4 * sum(map(math.prod, points))
@@ -246,7 +246,7 @@ def time_of_grids(
 
 
 def _time(
-    grid: tuple[int, ...], width: int, axis: int, looked: int, work: Work, teeth: int
+    grid: tuple[int, ...], width: int, axis: int, multiples: int, work: Work, teeth: int
 ) -> float:
     """Time of one part on a grid [s]; it is looked at with so many times its points."""
     points, broken = math.prod(grid), work.kind not in _WHOLE
@@ -256,7 +256,7 @@ def _time(
     seconds += work.products * (_PRODUCT[0] + _PRODUCT[1] * points * width)
     each = _LOOK[0] + points * width * (_LOOK[1] + _LOOK[2] * width)
     each += broken * points * (_LOOK[3] + _LOOK[4] * width * work.springs)
-    seconds += looked * each
+    seconds += multiples * each
     if work.kind == "steady":
         return seconds
     others = teeth * (points // grid[axis] // 2)

@@ -86,12 +86,12 @@ def _combinations(motion: MachineMotion, quantity: str, signal: Array) -> list[T
         x, y, "several phases", MUTED, 6, symbol="diamond", text=chosen, showlegend=False,
         textposition="top center", hovertemplate=f"{hover}, %{{text}}<extra></extra>",
     )  # fmt: skip
-    apart, named = _APART * motion.mesh_frequency.max(), list[int]()
+    distance, labelled = _APART * motion.mesh_frequency.max(), list[int]()
     for place, at in enumerate(frequencies):
-        if all(abs(at - frequencies[other]) > apart for other in named):
-            named.append(place)
-    words = {"x": x[named], "y": y[named], "text": [chosen[place] for place in named]}
-    texts = {**points, **words, "mode": "text", "cliponaxis": False, "hoverinfo": "skip"}
+        if all(abs(at - frequencies[other]) > distance for other in labelled):
+            labelled.append(place)
+    labels = {"x": x[labelled], "y": y[labelled], "text": [chosen[n] for n in labelled]}
+    texts = {**points, **labels, "mode": "text", "cliponaxis": False, "hoverinfo": "skip"}
     return [strokes(*stems(x, y), MUTED, 1, showlegend=False), points, texts]
 
 

@@ -297,8 +297,8 @@ class MachineMotion(PeriodicSamples):
             why = "An earlier version stored this motion"
             raise InputError("the lines have no whole numbers", "", why, "Compute the case again")
         orders = (self.line_numbers @ self.phase_turns).astype(int).tolist()
-        found = dict(zip(orders, map(tuple, self.line_numbers.astype(int).tolist()), strict=True))
-        return lambda order: found.get(order, ())
+        numbers = dict(zip(orders, map(tuple, self.line_numbers.astype(int).tolist()), strict=True))
+        return lambda order: numbers.get(order, ())
 
     def mesh_orders(self, count: int) -> dict[int, list[tuple[str, int]]]:
         """Orders of the clock that meshes excite.
