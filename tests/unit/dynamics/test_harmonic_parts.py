@@ -5,7 +5,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from known_machines import CLOCK, two_mesh_system
+from known_machines import two_mesh_system
 from known_random_machines import random_machine
 from tribodyn.dynamics import Contact, System, harmonic_balance
 from tribodyn.dynamics.equations.grid import PointEvaluator, system_events
@@ -60,7 +60,7 @@ def test_rounding_of_a_derivative_is_no_direction():
 def test_plain_products_solve_as_those_of_a_time_integration(gap, depth, enough):
     machine = random_machine(18, gap=gap, depth=depth)
     frequency = 2.0 / machine.cycles
-    residual = prepare(machine, frequency).residual(128 * machine.cycles, frequency)
+    residual = prepare(machine).residual(128 * machine.cycles, frequency)
     state = residual.at(0.5 * random_response(residual, np.random.default_rng(0), 0.5, 0.2))
     steps = {}
     for plain in (False, True):
@@ -86,7 +86,7 @@ def test_receptances_are_those_of_the_matrices(direct, monkeypatch):
     if direct:
         monkeypatch.setattr(ClosedStructure, "modes", None)
     machine = random_machine(3, gyroscopic=True, friction=True)
-    residual = prepare(machine, 0.1).residual(64, 0.1)
+    residual = prepare(machine).residual(64, 0.1)
     structure, contacts = residual.structure, residual.contacts
     along = np.array([c.direction for c in machine.contacts])
     push = along + np.array([c.friction for c in machine.contacts])
@@ -115,7 +115,7 @@ def test_derivative_of_the_residual_is_that_by_differences(gap):
     parts = dict.fromkeys(("friction", "turning", "load_friction", "gyroscopic"), True)
     machine = random_machine(18, gap=gap, depth=0.3, **parts)
     frequency = 0.4 / machine.cycles
-    residual = prepare(machine, frequency).residual(64 * machine.cycles, frequency)
+    residual = prepare(machine).residual(64 * machine.cycles, frequency)
     generator = np.random.default_rng(0)
     point = 0.5 * random_response(residual, generator, 0.5, 0.2)
     state = residual.at(point)
@@ -134,7 +134,7 @@ def test_few_products_solve_the_linear_equations_of_a_long_period(gap):
     parts = dict.fromkeys(("friction", "turning", "load_friction", "gyroscopic"), True)
     machine = random_machine(18, gap=gap, depth=0.3, **parts)
     frequency = 0.1 / machine.cycles
-    residual = prepare(machine, frequency).residual(128 * machine.cycles, frequency)
+    residual = prepare(machine).residual(128 * machine.cycles, frequency)
     state = residual.at(0.5 * random_response(residual, np.random.default_rng(0), 0.5, 0.2))
     step, count = residual.correction(state, 1e-9)
     size = np.abs(state.residual).max()
@@ -145,7 +145,7 @@ def test_few_products_solve_the_linear_equations_of_a_long_period(gap):
 def test_a_spring_begins_to_touch_without_a_jump():
     contact = Contact([1.0], 9.0, gap=0.1, error=lambda x: 0.2 * np.cos(2.0 * np.pi * x))
     system = System([[1.0]], [[0.1]], [[1.0]], [0.0], [contact])
-    residual = prepare(system, 0.2).residual(64, 0.2)
+    residual = prepare(system).residual(64, 0.2)
 
     def corrections(highest: float) -> float:
         # compression -error + y, whose single crest is at the sample in the middle
@@ -204,8 +204,8 @@ def test_tables_of_several_contacts_are_looked_up_at_once(monkeypatch):
 def test_every_other_row_of_finer_steps_is_that_of_the_steps():
     machine = random_machine(18, gap=0.2, depth=0.3, friction=True, turning=True)
     steps = 64 * machine.cycles
-    alone = prepare(machine, 0.1).residual(steps, 0.1).contacts
-    again = prepare(random_machine(18, gap=0.2, depth=0.3, friction=True, turning=True), 0.1)
+    alone = prepare(machine).residual(steps, 0.1).contacts
+    again = prepare(random_machine(18, gap=0.2, depth=0.3, friction=True, turning=True))
     finer = again.residual(2 * steps, 0.1).contacts
     halved = again.residual(steps, 0.1).contacts
     assert finer.steps == 2 * halved.steps == 2 * alone.steps
@@ -237,16 +237,16 @@ def test_order_is_second_where_the_contact_opens():
 
 def test_a_system_is_evaluated_once():
     machine = two_mesh_system()
-    assert prepare(machine, CLOCK) is prepare(machine, 2.0 * CLOCK)
-    assert prepare(two_mesh_system(), CLOCK) is not prepare(machine, CLOCK)
+    assert prepare(machine) is prepare(machine)
+    assert prepare(two_mesh_system()) is not prepare(machine)
 
 
 @pytest.mark.parametrize("seed", [18, 3, 5])
 def test_leading_multiplier_is_that_of_all(seed):
     machine = random_machine(seed, depth=0.3)
     frequency = 0.7 / machine.cycles
-    residual = prepare(machine, frequency).residual(64 * machine.cycles, frequency)
-    start = prepare(machine, frequency).equilibrium.position @ (
+    residual = prepare(machine).residual(64 * machine.cycles, frequency)
+    start = prepare(machine).equilibrium.position @ (
         residual.structure.coordinates.lower @ residual.structure.along
     )
     march = TangentMarch.of(residual, residual.at(np.tile(start, (64 * machine.cycles, 1))))

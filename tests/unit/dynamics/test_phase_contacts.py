@@ -92,6 +92,13 @@ def jumping(**changes):
     )  # fmt: skip
 
 
+def swaying():
+    """The same with a direction that changes along the mesh cycle."""
+    return replace(jumping(), direction=lambda x: np.stack(
+        (1.0 + 0.1 * np.cos(2 * np.pi * x), -1.0 + 0.05 * np.sin(2 * np.pi * x)), axis=-1
+    ))  # fmt: skip
+
+
 def test_forces_do_not_depend_on_the_blocks_in_which_they_are_evaluated(monkeypatch):
     residual, y = searched(jumping())
     y = 1.2 * y - 0.2 * y.mean(axis=0) - 0.3 * np.abs(y).max() * np.cos(np.arange(len(y)))[:, None]
@@ -106,12 +113,9 @@ def test_forces_do_not_depend_on_the_blocks_in_which_they_are_evaluated(monkeypa
         np.testing.assert_allclose(mine, other, rtol=1e-13)
 
 
-@pytest.mark.parametrize("turns", [False, True])
-def test_derivative_is_the_limit_of_differences(turns):
-    direction = {"direction": lambda x: np.stack(
-        (1.0 + 0.1 * np.cos(2 * np.pi * x), -1.0 + 0.05 * np.sin(2 * np.pi * x)), axis=-1
-    )} if turns else {}  # fmt: skip
-    residual, y = searched(replace(jumping(), **direction))
+@pytest.mark.parametrize("contact", [jumping(), swaying()], ids=["fixed", "turning"])
+def test_derivative_is_the_limit_of_differences(contact):
+    residual, y = searched(contact)
     grid = residual.parts[0].grid
     phase = 2 * np.pi * grid.points
     move = np.cos(phase @ [1, 2])[:, None] + np.sin(phase @ [3, -1])[:, None] * np.ones(y.shape[1])
@@ -122,13 +126,10 @@ def test_derivative_is_the_limit_of_differences(turns):
     np.testing.assert_allclose(product, expected, rtol=0, atol=1e-6 * np.abs(expected).max())
 
 
-@pytest.mark.parametrize("turns", [False, True])
-def test_tangents_on_the_grid_are_those_of_the_forces(turns):
+@pytest.mark.parametrize("contact", [jumping(), swaying()], ids=["fixed", "turning"])
+def test_tangents_on_the_grid_are_those_of_the_forces(contact):
     """A motion that is the same everywhere is felt with the tangent on the grid."""
-    direction = {"direction": lambda x: np.stack(
-        (1.0 + 0.1 * np.cos(2 * np.pi * x), -1.0 + 0.05 * np.sin(2 * np.pi * x)), axis=-1
-    )} if turns else {}  # fmt: skip
-    residual, y = searched(replace(jumping(), **direction))
+    residual, y = searched(contact)
     (part,) = residual.parts
     state = residual.at(y)
     move = np.tile(np.arange(1.0, 1.0 + y.shape[1]), (len(y), 1))

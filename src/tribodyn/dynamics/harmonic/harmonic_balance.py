@@ -101,7 +101,7 @@ class Prepared:
         return self.grids[steps]
 
 
-def prepare(system: System, frequency: float, steps: int = 0) -> Prepared:
+def prepare(system: System, steps: int = 0) -> Prepared:
     """Evaluate a system once for all frequencies, with at least these steps per mesh cycle."""
     for reference, prepared in _cache:
         if reference() is system:
@@ -234,7 +234,7 @@ def _on_clock(
     count = _FIRST if steps is None else require_whole("steps", steps, 8)
     progress.start("Steady motion", None)
     fewest = 0 if steps is None else count
-    prepared = prepare(system, frequency, fewest) if system.contacts else None
+    prepared = prepare(system, fewest) if system.contacts else None
     if prepared is None or prepared.structure.coordinates.moving.shape[1] == 0:
         what = "no coordinate is moved by a contact"
         remedy = "Add a contact, or use forced_response for a structure alone"

@@ -188,7 +188,7 @@ def _finish(
             stacklevel=3,
         )
     states, extra = mapping.without_drift(orbit.states.copy()), mapping.split(orbit.point)[1][0]
-    cost = step_error(mapping, orbit, frequency) if converged else float("nan")
+    cost = step_error(mapping, orbit) if converged else float("nan")
     if cost > STEP_LIMIT:
         warn("step-size", _step_message(mapping, cost), stacklevel=3)
     return build_response(
@@ -212,7 +212,7 @@ ROUNDS, CLOSE = 6, 0.02
 OTHER = 0.5
 
 
-def step_error(mapping: OrbitMap, orbit: OrbitPoint, mesh_frequency: float) -> float:
+def step_error(mapping: OrbitMap, orbit: OrbitPoint) -> float:
     """Largest distance of an orbit to that at half the step, over its size; infinite if none."""
     # The scheme is of fourth order: the orbit at half the step is sixteen times as near to that of
     # the equations, and so near to this one that few periods lead to it.
