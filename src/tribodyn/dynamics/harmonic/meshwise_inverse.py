@@ -30,11 +30,12 @@ class MeshwiseInverse:
 
     def __init__(self, residual: OnGrid, state: State) -> None:
         self.shape = residual.grid.shape
-        parts = [
-            part.reshape(*self.shape, *part.shape[1:])
-            for part in tangents(residual.structure, state)
-        ]
-        axes = range(len(self.shape))
+        # Lines of a motion along the phase of pieces differ by more than there are on the grid.
+        axes, shape = range(len(self.shape)), np.array(self.shape)
+        if state.pieces is not None:
+            shape[state.pieces.axis] *= 2
+        both = tangents(residual.structure, state, 2)
+        parts = [part.reshape(*shape, *part.shape[1:]) for part in both]
         self.mean = [part.mean(axis=tuple(axes)) for part in parts]
         self.phases = []
         for axis in axes:
@@ -65,8 +66,9 @@ class _Block(NamedTuple):
 
     @classmethod
     def of(
-        cls, rows: Index, most: float, gain: ComplexArray, rate: ComplexArray, waves: list[Array]
-    ) -> _Block:
+        cls, rows: Index, most: float, gain: ComplexArray, rate: ComplexArray,
+        number: Index, waves: list[Array],
+    ) -> _Block:  # fmt: skip
         """Factorize the equations of some rows, each of at most so many bytes."""
         from scipy.linalg.lapack import cgetrf
 
@@ -79,7 +81,7 @@ class _Block(NamedTuple):
         for first in range(0, len(rows), some):
             lines = chosen[first : first + some]
             place = rows[first : first + some, None], lines
-            spring, damper = (_between_lines(wave, lines) for wave in waves)
+            spring, damper = (_between_lines(wave, number[place]) for wave in waves)
             damper *= np.repeat(rate[place], felt, axis=1)[:, None, None]
             change = gain[place] @ (spring + damper)  # of lines with their motion (m, l, r, l w)
             others.append(change[:, :, felt:].reshape(len(lines), -1, size))
@@ -129,11 +131,13 @@ class _OnePhase:
         gain = self.basis @ self.base @ receptances @ push  # (m, n, r, a)
         gain = self._by_tooth(gain.astype(np.complex64))
         rate = self._by_tooth((rate / np.abs(omega).max()).astype(np.complex64))
+        number = np.rint(np.fft.fftfreq(count, 1.0 / count)).astype(int) // self.teeth
+        number = self._by_tooth(np.tile(number, (len(omega), 1)))
         others = grid.numbers[: len(omega), 1:].any(axis=1).repeat(self.teeth)
         # Most of a motion has this phase alone: its lines are all coupled, of others the softest.
         self.blocks = []
         for rows, most in ((np.flatnonzero(~others), CENTRAL), (np.flatnonzero(others), OTHERS)):
-            self.blocks.append(_Block.of(rows, most / len(rows), gain, rate, waves))
+            self.blocks.append(_Block.of(rows, most / len(rows), gain, rate, number, waves))
 
     def solved(self, y: Array, *, first: bool) -> Array:
         """Solution (p, r) for the right-hand side, or for one that the mean has solved already."""
@@ -168,11 +172,11 @@ def _bases(varying: list[Array]) -> tuple[Array, Array, int]:
     return left[:, size > _SMALL * size[0]], right, int(np.sum(length > _SMALL * length[0]))
 
 
-def _between_lines(part: Array, chosen: Index) -> ComplexArray:
+def _between_lines(part: Array, number: Index) -> ComplexArray:
     """Force of lines of each row per motion of others (m, l, a, l w), of a stiffness (n, a, w)."""
-    between = (chosen[:, :, None] - chosen[:, None]) % len(part)
+    between = (number[:, :, None] - number[:, None]) % len(part)
     waves = (np.fft.fft(part, axis=0) / len(part)).astype(np.complex64)[between]  # (m, l, l, a, w)
-    return np.asarray(np.moveaxis(waves, 3, 2).reshape(*chosen.shape, part.shape[1], -1))
+    return np.asarray(np.moveaxis(waves, 3, 2).reshape(*number.shape, part.shape[1], -1))
 
 
 def _softest(gain: ComplexArray, most: int) -> Index:

@@ -7,6 +7,7 @@ few products with the derivative suffice.
 from __future__ import annotations
 
 from collections.abc import Callable
+from functools import partial
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
@@ -72,10 +73,12 @@ class Solution(NamedTuple):
     krylov: int  #: products with the derivative
 
 
-def tangents(closed: Any, state: State) -> tuple[Array, Array]:
+def tangents(closed: Any, state: State, times: int = 1) -> tuple[Array, Array]:
     """Changes of the force with the motion and its rate on the grid (p, s, r)."""
+    # times: as of Pieces.gather
     law, pieces = state.law.tangent, state.pieces
-    stiffness, damping = law.dense() if pieces is None else law.mapped(pieces.gather)
+    gather = None if pieces is None else partial(pieces.gather, times=times)
+    stiffness, damping = law.mapped(gather) if gather else law.dense()
     return closed.contact_stiffness - stiffness, closed.contact_damping - damping
 
 

@@ -145,15 +145,17 @@ class Pieces:
         fine = fft.irfft(lines, _REFINED * count, axis=-2) * _REFINED
         return np.asarray(fine.reshape(-1, values.shape[1]))
 
-    def gather(self, values: Array) -> Array:
+    def gather(self, values: Array, times: int = 1) -> Array:
         """Motion on the grid (p, c) with the lines of values with their weights (q, c)."""
+        # times: those of so many times the points along the phase
         from scipy import fft
 
         count, others = self.grid.shape[self.axis], np.delete(self.grid.shape, self.axis)
         table = (self.between.T @ values).reshape(*others, _REFINED * count, -1)
+        count *= times
         lines = fft.rfft(table, axis=-2)[..., : (count + 1) // 2, :]
         coarse = np.moveaxis(fft.irfft(lines, count, axis=-2) * count, -2, self.axis)
-        return np.asarray(coarse.reshape(self.grid.size, -1))
+        return np.asarray(coarse.reshape(times * self.grid.size, -1))
 
 
 def _gauss(begin: Cut, width: Array) -> tuple[Cut, Array]:
