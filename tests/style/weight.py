@@ -159,7 +159,7 @@ LINES: dict[str, int] = {
     "contact": 398,
     "cookbook": 102,
     "drawing": 204,
-    "dynamics": 15855,
+    "dynamics": 15857,
     "ehl": 9327,
     "errors": 222,
     "exchange": 2162,

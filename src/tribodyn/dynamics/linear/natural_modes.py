@@ -16,6 +16,8 @@ from tribodyn.types import Array, ComplexArray
 
 #: Squared frequencies below this share of the largest are rounding: the mode is rigid.
 _RIGID = 1e-12
+#: Share of the strain energy below which a negative one is rounding.
+_ROUNDED = 1e-9
 
 
 @record
@@ -271,7 +273,9 @@ def _shares(matrices: Array, frequency: Array, shape: Array | ComplexArray) -> A
         else np.zeros((len(frequency), 0))
     )
     total = np.where(frequency > 0.0, energy.sum(axis=1), np.inf)
-    return np.asarray(energy / total[:, None])
+    share = energy / total[:, None]
+    # An element that a mode does not strain has none, not one of a sign that rounding gives.
+    return np.asarray(np.where((share < 0.0) & (share > -_ROUNDED), 0.0, share))
 
 
 def _damped(
