@@ -20,7 +20,9 @@ from tribodyn.nomenclature import GEARS
 from tribodyn.study.faults.machine_section import faults_of_mesh, shaft_excitation
 from tribodyn.study.faults.turning import refuse_long_period
 from tribodyn.study.machine.first_look import (
+    ClockCost,
     PhaseCost,
+    clock_cost,
     cost_over_phases,
     over_phases,
     periods_of_turns,
@@ -28,7 +30,6 @@ from tribodyn.study.machine.first_look import (
     refuse_memory,
     repeats_late,
     warn_of_motion,
-    warn_of_period,
 )
 from tribodyn.study.machine.motion import Unit, unit_of
 
@@ -50,6 +51,9 @@ _SHORT = 100
 MESH_POINTS = 128
 #: Memory that the motion of a pair may take [byte].
 _MEMORY = 4e9
+_SHORTER = (
+    'Set solver.phases = "auto", which needs no period, or give faults of one gear of the mesh only'
+)
 
 
 class TurningClock(NamedTuple):
@@ -223,22 +227,8 @@ class PairTurns:
         else:
             refuse_memory(phases, _MEMORY, "faults", "Give fewer faults, or a shorter random load")
             cost = phases.time
-        cost += self._cost_of_teeth()
+        cost += time_of_teeth(self.case, self.faults)
         return TurningClock(self.cycles, self.seconds, pinion, wheel, cost, phases)
-
-    def _cost_of_teeth(self) -> float:
-        """Seconds of the contacts of teeth that differ."""
-        from tribodyn.faults import Crack
-
-        case, pair = self.case, self.case.spur_pair
-        if pair is None:
-            return 0.0
-        over_face = pair.has_lead_modification
-        over_face |= any(fault._varies_over_face for fault in self.faults)
-        in_space = case.stiffness.model == "fe3d"
-        kind = 2 if pair.helix_angle or in_space else 1 if over_face else 0
-        cracks = sum(isinstance(each, Crack) and each.depth > 0.0 for each in self.faults)
-        return self.period * _TEETH[kind] + cracks * _CRACK[in_space]
 
     def _phase_cost(self) -> PhaseCost:
         """What a motion over phases takes."""
@@ -282,6 +272,21 @@ class PairTurns:
         for unit, cycles in zip(self.units(), phases.cycles["mesh"], strict=True):
             names.append(f"mesh over {unit.part}" if cycles and unit.name else unit.part or "mesh")
         return names
+
+
+def time_of_teeth(case: PairCase, faults: Sequence[Fault]) -> float:
+    """Seconds of the contacts of teeth that differ."""
+    from tribodyn.faults import Crack
+
+    pair = case.spur_pair
+    if pair is None or not (faults or pair.teeth_differ):
+        return 0.0
+    over_face = pair.has_lead_modification
+    over_face |= any(fault._varies_over_face for fault in faults)
+    in_space = case.stiffness.model == "fe3d"
+    kind = 2 if pair.helix_angle or in_space else 1 if over_face else 0
+    cracks = sum(isinstance(each, Crack) and each.depth > 0.0 for each in faults)
+    return turns_of(pair, faults) * _TEETH[kind] + cracks * _CRACK[in_space]
 
 
 class FaultyTeeth(NamedTuple):
@@ -384,40 +389,52 @@ def faults_over_phases(case: MachineCase, machine: Machine) -> bool:
     several = len(phases.frequency) > 1
     if not several or case.solver.phases == "on":
         return several
+    cycles, highest = _cycles(turned, excited), highest_orders(turned.clock, excited, phases)
+    return repeats_late(turned, phases, cycles, highest)
+
+
+def _cycles(turned: Machine, excited: Sequence[ShaftExcitation]) -> int:
+    """Cycles of the fastest mesh after which a machine and what drives it repeat."""
     longer, clock = periods_of_turns(turned), turned.clock
-    fastest = longer * max(clock.cycles.values())
-    teeth = {n: Fraction(fastest) / (longer * turns) for n, turns in clock.turns.items() if turns}
-    frequency = max(clock.cycles.values()) * clock.frequency
-    cycles = clock_cycles(fastest, excited, teeth, frequency)
-    return repeats_late(turned, phases, cycles, highest_orders(clock, excited, phases))
+    fastest = max(clock.cycles.values())
+    teeth = {n: Fraction(fastest) / turns for n, turns in clock.turns.items() if turns}
+    return clock_cycles(longer * fastest, excited, teeth, fastest * clock.frequency)
 
 
-def fault_cost(case: MachineCase, machine: Machine, work: Work | None = None) -> PhaseCost | None:
-    """Cost of the motion with faults over phases; None over whole turns. Refuse too much."""
+def fault_cost(
+    case: MachineCase, machine: Machine, work: Work | None = None
+) -> PhaseCost | ClockCost | None:
+    """Cost of the motion with faults; None where it is that without them. Refuse too much."""
     return _cost_within(case.solver.memory, case, machine, work)
 
 
 def _cost_within(
     memory: float, case: MachineCase, machine: Machine, work: Work | None = None
-) -> PhaseCost | None:
+) -> PhaseCost | ClockCost | None:
     """Cost as of :func:`fault_cost` with so much memory [byte]."""
     turned, excited = _with_turns(case, machine), excitations_of(case)
     if not faults_over_phases(case, machine):
-        warn_of_period(turned, memory)
-        return None
+        loose = any(fault.kind == "looseness" for fault in case.faults.values())
+        differ = any(mesh.turning or mesh.period > 1 for mesh in turned.meshes.values())
+        if not (loose or differ or excited):
+            return None
+        cycles = _cycles(turned, excited)
+        cost = clock_cost(turned, memory, cycles, work.size if work else 0)
+        refuse_long_period(cycles, cost.period, MOST_CYCLES, _SHORTER)
+        return cost
     phases = phases_with_faults(turned, excited)
     highest = highest_orders(turned.clock, excited, phases)
     shafts = [each.gear for each in excited]
-    fewer = partial(_fewer_faults, case, machine)
+    fewer = partial(_fewer_faults, case, machine, work)
     return phase_cost_of(memory, turned, (phases, shafts), highest, work, fewer)
 
 
-def _fewer_faults(case: MachineCase, machine: Machine) -> str:
+def _fewer_faults(case: MachineCase, machine: Machine, work: Work | None) -> str:
     """Faults without which the motion takes little enough memory; empty if there are none."""
     remaining, removed, memory = case, [], math.inf
     while remaining.faults and memory > case.solver.memory:
         tried = {name: remaining.replace({f"faults.{name}": None}) for name in remaining.faults}
-        costs = {name: _cost_within(math.inf, each, machine) for name, each in tried.items()}
+        costs = {name: _cost_within(math.inf, each, machine, work) for name, each in tried.items()}
         sizes = {name: 0.0 if cost is None else cost.memory for name, cost in costs.items()}
         removed.append(min(sizes, key=lambda each: sizes[each]))
         remaining, memory = tried[removed[-1]], sizes[removed[-1]]
@@ -427,10 +444,13 @@ def _fewer_faults(case: MachineCase, machine: Machine) -> str:
     return f"without {' and '.join(removed)} {takes}"
 
 
-def check_motion(case: MachineCase, work: Work | None = None) -> list[str]:
-    """What the motions of a machine over phases cost; refuse what takes too much."""
+def check_motion(case: MachineCase, work: Work | None = None, teeth: float = 0.0) -> list[str]:
+    """What the motions of a machine cost, and its faulty teeth [s]; refuse what takes too much."""
     machine = case.machine()
     sound = warn_of_motion(case.solver, machine, work)
     faulty = fault_cost(case, machine, work) if case.faults else None
-    texts = [] if sound is None else [f"{sound}."]
-    return texts if faulty is None else [*texts, f"With its faults: {faulty}."]
+    texts = [] if sound is None else [f"Under each load: {sound}."]
+    if faulty is None:
+        return texts
+    of_teeth = f"; its teeth take about {teeth:.2g} s" if teeth > 0.0 else ""
+    return [*texts, f"With its faults, at the operating point alone: {faulty}{of_teeth}."]

@@ -11,13 +11,13 @@ from tribodyn.interrupt import single_blas_thread
 from tribodyn.machine.static.supports import clearance_supports, without_clearance_supports
 from tribodyn.progress import SILENT, Progress
 from tribodyn.study.faults.clock import (
-    MOST_CYCLES,
     FaultyTeeth,
     check_motion,
     excitations_of,
     fault_cost,
     phases_with_faults,
     rate_of,
+    time_of_teeth,
 )
 from tribodyn.study.faults.driven_shafts import (
     LooseSeat,
@@ -33,11 +33,9 @@ from tribodyn.study.faults.sensors import MachineSensors, seat_accelerance
 from tribodyn.study.faults.turning import (
     Accuracy,
     lead_on_clock,
-    refuse_long_period,
-    repeated,
     steady_over_turns,
 )
-from tribodyn.study.machine.first_look import warn_of_orders
+from tribodyn.study.machine.first_look import PhaseCost
 from tribodyn.study.machine.motion import (
     MachineMotion,
     machine_motion,
@@ -59,16 +57,13 @@ if TYPE_CHECKING:
     from tribodyn.study.machine.run import Balanced
 
 _ACCURACY = Accuracy((128, 256), 1e-4)
-_SHORTER = (
-    'Set solver.phases = "auto", which needs no period, or give faults of one gear of the mesh only'
-)
 
 
 def rehearse_faults(case: MachineCase, state: Balanced) -> list[str]:
     """Costs of the motions over phases; refuse faulty teeth that cannot run, and too much."""
     costs = check_motion(case)  # refuses what takes too much
     if costs:
-        costs = check_motion(case, _work(case, state))
+        costs = check_motion(case, _work(case, state), _time_of_teeth(case, state))
     teeth = {n: f for n, f in case.faults.items() if f.gear and f.kind != "crack"}  # elements
     if teeth:
         cracked = [f"faults.{name}" for name in case.faults if name not in teeth]
@@ -90,6 +85,17 @@ def _work(case: MachineCase, state: Balanced) -> Work:
     if supports:
         system = without_clearance_supports(structure, system)
     return work_of(system, structure.machine.phases.frequency, [*supports.values()])
+
+
+def _time_of_teeth(case: MachineCase, state: Balanced) -> float:
+    """Seconds of the force laws of teeth that differ."""
+    return sum(
+        time_of_teeth(
+            case.pair(name, state.load, state.misalignment[name]),
+            FaultyTeeth.of(case, state.machine, name).others,
+        )
+        for name in state.tables
+    )
 
 
 def turning_machine(case: MachineCase, sound: LoadResult | Balanced) -> Machine:
@@ -143,7 +149,7 @@ def machine_turning_motion(
     """Compute the steady motion with faults; with equal teeth it is that of the result."""
     with single_blas_thread():
         progress.start("Teeth over whole turns")
-        over_phases = fault_cost(case, sound.machine) is not None
+        over_phases = isinstance(fault_cost(case, sound.machine), PhaseCost)
         structure = replace(sound.structure, machine=turning_machine(case, sound))
         machine, excited = structure.machine, excitations_of(case)
         seats = loose_seats(case, structure, sound.motion)
@@ -215,7 +221,6 @@ def _on_clock(
     clock, phases = machine.clock, machine.phases_with(together=True)
     system = with_loose_seats(system_of(structure, phases=phases), seats)
     cycles, period = system.cycles, 1.0 / phases.frequency[0]
-    refuse_long_period(cycles, period, MOST_CYCLES, _SHORTER)
     torques, rotation = driven_rotation(structure, system, excited)
     longer = round(clock.frequency * period)
     driven = drive(
@@ -224,11 +229,7 @@ def _on_clock(
         coordinates=torques, rotation=rotation * (period / cycles),
     )  # fmt: skip
     frequency = cycles / period / driven.cycles
-    refuse_long_period(driven.cycles, 1.0 / frequency, MOST_CYCLES, _SHORTER)
-    if driven.cycles > cycles:
-        warn_of_orders(driven.cycles, 1.0 / frequency)
-    start = repeated(sound.response, sound.motion.frequency, frequency)
-    response = steady_over_turns(driven, frequency, _ACCURACY, start, progress)
+    response = steady_over_turns(driven, frequency, _ACCURACY, progress)
     motion = with_lifted_forces(machine_motion(structure, response), response, seats)
     longer = round(clock.frequency / frequency)
     motion = replace(motion, cycles=longer * motion.cycles, frequency=frequency)

@@ -340,7 +340,7 @@ def _on_clock(
     """Motion on the clock of all that repeats."""
     frequency = result.mesh.mesh_frequency
     driven = driven_system(result.case, result.mesh, result.damping, turns, mesh)
-    response = steady_over_turns(driven, frequency / driven.cycles, _ACCURACY, progress=progress)
+    response = steady_over_turns(driven, frequency / driven.cycles, _ACCURACY, progress)
     contact = driven.system.clocked_contacts[0]
     errors = _errors_of(result.case, contact, [(contact.error, (1,), driven.cycles)])
     ahead = lead_on_clock(driven, frequency)

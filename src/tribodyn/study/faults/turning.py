@@ -289,16 +289,6 @@ def refuse_long_period(cycles: int, seconds: float, limit: int, remedy: str) -> 
         raise InputError(what, "faults", f"At most {limit} mesh cycles are computed", remedy)
 
 
-def repeated(response: Response, frequency: float, slower: float) -> Response:
-    """A periodic motion over the longer period of a slower clock."""
-    count, last = round(frequency / slower), -1
-    start = response.time - response.time[0]
-    times = [start[:last] + turn / frequency for turn in range(count)]
-    position = np.concatenate([*count * [response.position[:last]], response.position[last:]])
-    time = np.concatenate([*times, [count / frequency]])
-    return replace(response, time=time, position=position, mesh_frequency=slower)
-
-
 def lead_on_clock(driven: DrivenSystem, mesh_frequency: float) -> Lead | None:
     """Time by which the rotation of a driven system is ahead, over its clock."""
     from tribodyn.faults.driven import Lead, Series
@@ -312,13 +302,12 @@ def steady_over_turns(
     driven: DrivenSystem,
     frequency: float,
     accuracy: Accuracy,
-    start: Response | None = None,
     progress: Progress = SILENT,
 ) -> Response:
     """Find the periodic motion of a driven system, with as many steps as it needs."""
     from tribodyn.dynamics import harmonic_balance
 
-    response = start
+    response = None
     for steps in accuracy.steps:
         with collected() as model_warnings:
             response = harmonic_balance(

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 from tribodyn.arrays.memory import machine_memory
 from tribodyn.errors import ComputationError, ModelWarning, Problem, warn
-from tribodyn.machine import machine_structure
+from tribodyn.machine import MachineStructure
 from tribodyn.study.case.section import flat_keys
 from tribodyn.study.machine.motion import phase_names
 from tribodyn.study.machine.pair_cases import TeethUnder, inputs_under, read_teeth, teeth_under
@@ -34,8 +34,11 @@ if TYPE_CHECKING:
     from tribodyn.study.machine.tables import SolverTable
 
 #: Mesh cycles of a period above which a warning says what they cost, steps per cycle, and bytes of
-#: a step for each coordinate: three samples of position, velocity and acceleration.
-_LONG_PERIOD, _STEPS, _BYTES = 400, 128, 72
+#: a step: of each, for each coordinate, contact of teeth that vary, and pair of these contacts.
+_LONG_PERIOD, _STEPS, _BYTES = 400, 128, (1e3, 280.0, 3e3, 250.0)
+#: Time of a motion on one clock at least, and of a step: of each, for each contact, pair of
+#: contacts, and coordinate of a contact and of all [s]; times as much with twice the steps too.
+_ONCE, _STEP, _TWICE = 0.05, (1e-5, 7e-6, 7.5e-6, 2.5e-7), 3.0
 #: Seconds of a motion for each mesh cycle on one clock and each pair of meshes, which may need
 #: finer steps or a second search; over phases at least, and for each point and pair.
 _ON_CLOCK, _OVER_PHASES = 1.28e-3, (1.2, 2.5e-4)
@@ -90,7 +93,42 @@ class PhaseCost(NamedTuple):
         return (
             f"The motion is found over {len(self.phases)} phases without a common period "
             f"({listed}): about {self.unknowns} unknowns, {1e-9 * self.memory:.2g} GB and "
-            f"{self.time:.2g} s for each load once all is compiled"
+            f"{self.time:.2g} s once all is compiled"
+        )
+
+
+class ClockCost(NamedTuple):
+    """What a motion over the common period takes, before it is computed."""
+
+    cycles: int  #: mesh cycles of the fastest mesh
+    period: float  #: [s]
+    contacts: int  #: of teeth that vary
+    coordinates: int
+
+    @property
+    def steps(self) -> int:
+        """Steps of the period."""
+        return _STEPS * self.cycles
+
+    @property
+    def memory(self) -> float:
+        """With half the steps too [byte]."""
+        r, (each, wide, linear, square) = self.contacts, _BYTES
+        return self.steps * (each + wide * self.coordinates + r * (linear + square * r))
+
+    @property
+    def time(self) -> float:
+        """Of this computer's processor, once all is compiled [s]."""
+        r, (each, linear, square, wide) = self.contacts, _STEP
+        each += r * (linear + square * r) + (1 + r) * wide * self.coordinates
+        return _ONCE + self.steps * each
+
+    def __str__(self) -> str:
+        """One line."""
+        return (
+            f"The motion repeats after {self.cycles} mesh cycles ({self.period:.4g} s): "
+            f"about {self.steps} steps, {1e-9 * self.memory:.2g} GB and {self.time:.2g} s once all "
+            f"is compiled; {_TWICE * self.time:.2g} s where it needs twice the steps"
         )
 
 
@@ -169,58 +207,55 @@ def periods_of_turns(machine: Machine) -> int:
 
 def warn_of_period(machine: Machine, memory: float = math.inf) -> None:
     """Warn of a period with so many mesh cycles that it takes much time and memory [byte]."""
+    if periods_of_turns(machine) * max(machine.clock.cycles.values()) > _LONG_PERIOD:
+        clock_cost(machine, memory)
+
+
+def clock_cost(machine: Machine, memory: float, cycles: int = 0, coordinates: int = 0) -> ClockCost:
+    """Cost of a motion on one clock; ``cycles`` are those with orders of torques and speeds."""
     clock, longer = machine.clock, periods_of_turns(machine)
     fastest = max(clock.cycles, key=lambda name: clock.cycles[name])
-    cycles = longer * clock.cycles[fastest]
-    if cycles <= _LONG_PERIOD:
-        return
+    of_meshes = longer * clock.cycles[fastest]
+    cycles = cycles or of_meshes
+    seconds = cycles / (clock.cycles[fastest] * clock.frequency)
+    meshes = [m for m in machine.meshes.values() if m.stiffness is None or callable(m.stiffness)]
+    contacts = sum(max(len(mesh.contacts), 1) for mesh in meshes)
+    coordinates = coordinates or min(MachineStructure(machine).size, _FEWEST)
+    cost = ClockCost(cycles, seconds, contacts, coordinates)
+    reason = "the teeth have few common factors"
+    remedy = 'Set solver.phases = "auto", which finds the motion without a common period'
+    if longer > 1 or any(mesh.period > 1 for mesh in machine.meshes.values()):
+        reason = "unequal teeth repeat with whole turns of their gears"
+        remedy = 'Set solver.phases = "auto", or compute a case of its stage alone'
     pairs = (
         f"{name} {' : '.join(str(abs(machine.gears[gear].teeth)) for gear in mesh.gears)}"
         for name, mesh in machine.meshes.items()
     )
-    turning = longer > 1 or any(mesh.period > 1 for mesh in machine.meshes.values())
-    reason = "the teeth have few common factors"
-    remedy = 'Set solver.phases = "auto", which finds the motion without a common period'
-    if turning:
-        reason = "unequal teeth repeat with whole turns of their gears"
-        remedy = 'Set solver.phases = "auto", or compute a case of its stage alone'
-    warn_of_steps(
-        cycles,
-        f"the meshes repeat together only after {cycles} cycles of mesh {fastest} "
-        f"({longer / clock.frequency:.4g} s), because {reason} ({', '.join(pairs)})",
-        remedy,
-        machine_structure(machine).size,
-        memory,
-    )
-
-
-def warn_of_orders(cycles: int, seconds: float) -> None:
-    """Warn of orders of torques and speeds that repeat with the meshes after many cycles."""
-    if cycles > _LONG_PERIOD:
-        warn_of_steps(
-            cycles,
-            f"meshes, torques and speeds repeat together only after {cycles} mesh cycles "
-            f"({seconds:.4g} s), because shafts with varying torques or speeds make whole turns",
+    reason += f" ({', '.join(pairs)})"
+    if cycles > of_meshes:
+        reason = "shafts with varying torques or speeds make whole turns"
+        remedy = (
             "Excitations of one shaft only, or orders that repeat after a part of a turn, shorten "
-            "the period",
+            "the period"
         )
+    period = (
+        f"all repeats only after {cycles} cycles of mesh {fastest} ({seconds:.4g} s), because "
+        f"{reason}"
+    )
+    _warn_of_steps(cost, period, remedy, memory)
+    return cost
 
 
-def warn_of_steps(
-    cycles: int, period: str, remedy: str, coordinates: int = 100, memory: float = math.inf
-) -> None:
+def _warn_of_steps(cost: ClockCost, period: str, remedy: str, memory: float) -> None:
     """Warn of what a long period costs; refuse what there is no memory [byte] for."""
-    steps, least = _STEPS * cycles, min(coordinates, _FEWEST)
-    gigabytes = 1e-9 * _BYTES * steps
-    cost = f"{steps} steps and about {gigabytes * coordinates:.2g} GB for {coordinates} coordinates"
-    if gigabytes * least > 1e-9 * min(machine_memory(), memory):
-        what = f"the motion takes {steps} steps and at least {gigabytes * least:.2g} GB"
-        allowed = f"solver.memory allows {1e-9 * memory:.3g} GB"
+    takes = f"takes {cost.steps} steps and at least {1e-9 * cost.memory:.2g} GB"
+    if cost.memory > min(machine_memory(), memory):
         where = f"This computer has {1e-9 * machine_memory():.3g} GB, and {period}"
         if memory < machine_memory():
-            where = f"{allowed}, and {period}"
-        raise ComputationError(Problem(what, "meshes", where, remedy))
-    warn("long-period", f"{period}. Each motion takes {cost}. {remedy}")
+            where = f"solver.memory allows {1e-9 * memory:.3g} GB, and {period}"
+        raise ComputationError(Problem(f"the motion {takes}", "meshes", where, remedy))
+    if cost.cycles > _LONG_PERIOD:
+        warn("long-period", f"{period}. Each motion {takes}. {remedy}")
 
 
 #: Geometry of cylindrical meshes that is among the figures of every load.
