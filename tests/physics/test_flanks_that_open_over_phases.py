@@ -10,6 +10,8 @@ from scipy.integrate import solve_ivp
 
 from tribodyn.dynamics import Contact, System, harmonic_balance
 from tribodyn.dynamics.harmonic import residual
+from tribodyn.dynamics.harmonic.phase_balance import _products_in_vain
+from tribodyn.dynamics.harmonic.phase_grid import Follower, first_sizes
 
 MASS = np.array([1.0124, 1.4138, 1.4208, 2.8117, 0.21168, 0.52338, 5.8178, 8.1268])
 FREQUENCIES = np.array([2244.0, 770.31])
@@ -128,3 +130,5 @@ def test_a_search_without_a_motion_ends_after_a_bounded_number_of_products(monke
     assert not motion.converged
     assert np.all(np.mean(motion.fine.contact_force == 0.0, axis=0) > 0.3)
     assert 200 < sum(spent) < 800
+    followers = [Follower(1, each.cycles) for each in motion._rows.system.contacts]
+    assert sum(spent) <= _products_in_vain(sum(first_sizes(followers, 0)))

@@ -9,6 +9,8 @@ import pytest
 from scipy.integrate import solve_ivp
 
 from tribodyn.dynamics import Contact, System, harmonic_balance
+from tribodyn.dynamics.harmonic.phase_grid import Follower
+from tribodyn.dynamics.harmonic.phase_response import cycles_of_march
 from tribodyn.errors import InputError
 
 pytestmark = pytest.mark.slow
@@ -47,6 +49,17 @@ def test_the_message_names_mesh_frequency_and_cycles(rattle):
     assert not motion.converged
     assert motion.engine == "modal"
     assert cycles > 100
+
+
+def test_the_cycles_that_are_integrated_are_known_before(rattle):
+    motion, _ = rattle
+    followers = [Follower(1, each.cycles) for each in motion._rows.system.contacts]
+    decay = motion._march.structure.decay
+    cycles = cycles_of_march(followers, FREQUENCIES, decay)
+    assert motion.fine.time[-1] * FREQUENCIES[0] == pytest.approx(cycles, rel=1e-2)
+    assert len(motion._march.begins) - 1 == pytest.approx(cycles / 16, abs=1.0)
+    twice = [follower._replace(period=2) for follower in followers]
+    assert cycles_of_march(twice, FREQUENCIES, decay) == 2.0 * cycles
 
 
 def test_statistics_are_those_of_the_march(rattle):

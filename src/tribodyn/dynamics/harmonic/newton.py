@@ -34,7 +34,7 @@ _ROUGH, _TRIES, _QUICK, _BRIEF = 1e-3, 10, 4, 120
 LINEAR, VECTORS, _HALFWAY = 1e-4, 120, 60
 #: Products with the derivative that may be spent if nothing else is said, and from a motion that
 #: may be near; steps in which the error halves there.
-_FREELY, _DIRECT, _PATIENCE = 10**6, 300, 8
+_FREELY, DIRECT, _PATIENCE = 10**6, 300, 8
 #: Unknowns of a linear solution above which its vectors have single precision.
 _SINGLE = 2**16
 
@@ -170,9 +170,9 @@ def newton(
     return Solution(state, best[0], count, krylov)
 
 
-def solved(residual: Residual, y: Array, tolerance: float, most: int = _DIRECT) -> Solution:
+def solved(residual: Residual, y: Array, tolerance: float, most: int = DIRECT) -> Solution:
     """Newton's method from a motion that may be near; it gives up where it is not."""
-    return newton(residual, y, 0.01 * tolerance, _LIMIT, _PATIENCE, min(most, _DIRECT))
+    return newton(residual, y, 0.01 * tolerance, _LIMIT, _PATIENCE, min(most, DIRECT))
 
 
 def released(

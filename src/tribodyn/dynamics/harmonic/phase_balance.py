@@ -19,7 +19,7 @@ from tribodyn.dynamics.equations.orbit_coordinates import (
 )
 from tribodyn.dynamics.equations.phases import read_frequencies
 from tribodyn.dynamics.equations.system import System, contact_label
-from tribodyn.dynamics.harmonic.newton import Solution, State, released, solved
+from tribodyn.dynamics.harmonic.newton import DIRECT, Solution, State, released, solved
 from tribodyn.dynamics.harmonic.phase_grid import (
     AHEAD,
     Fields,
@@ -42,6 +42,7 @@ from tribodyn.dynamics.harmonic.phase_response import (
     phase_response,
     recorded,
     sum_lines,
+    time_of_march,
 )
 from tribodyn.dynamics.harmonic.phase_rows import PhaseRows, sampled_forces
 from tribodyn.dynamics.harmonic.radial_clearance import REMEDY, RadialClearance, about_load
@@ -124,14 +125,14 @@ def work_of(system: System, frequency: Any, supports: Sequence[RadialClearance] 
     # One step more has the accuracy of a motion.
     steps, products = solution.newton + 1, solution.krylov * (solution.newton + 1)
     products //= max(solution.newton, 1)
-    return Work(kind, system.size, steps, products, springs, changes)
+    return Work(kind, system.size, steps, products, springs, search.structure.decay, changes)
 
 
 def phase_cost(
     fields: Sequence[Fields], frequency: Sequence[float], orders: Any = 0,
     mesh: int | None = None, work: Work | None = None,
-) -> tuple[int, float, float]:  # fmt: skip
-    """Unknowns, memory [byte] and time [s] of the fields of followers, or points of a mesh."""
+) -> tuple[int, float, float, float]:  # fmt: skip
+    """Unknowns, memory [byte], and times [s] if the motion is found, and at most if it is not."""
     followers = [Follower(*each) for each in fields]
     grids = first_sizes(followers, orders, mesh)
     parts = [each.contacts * size for each, size in zip(followers, grids, strict=True)]
@@ -143,15 +144,24 @@ def phase_cost(
     # The largest part is looked at with twice its points, and with more where its forces jump.
     part = unknowns * max(parts) / first
     ahead = min(AHEAD * part, _LARGE) if work.kind not in ("steady", "smooth") else 0.0
-    memory = 1e8 + 1.2e8 * phases
+    memory, rates = 1e8 + 1.2e8 * phases, np.asarray(frequency, dtype=float)
+    marched, products = time_of_march(followers, rates, work), _products_in_vain(first)
     if mesh is not None:
-        return unknowns, memory + _PLAIN * unknowns, 0.1 + _STATED * unknowns
+        seconds = 0.1 + _STATED * unknowns
+        return unknowns, memory + _PLAIN * unknowns, seconds, seconds * products / 30 + marched
     memory += _BYTES * unknowns + _LOOKED * max(2.0 * part, ahead)
-    rates = np.asarray(frequency, dtype=float)
     seconds, lines = time_of_grids(followers, orders, rates, work, _poor)
+    tried = work._replace(newton=products // 4, products=products)
+    marched += time_of_grids(followers, orders, rates, tried, lambda *a: np.zeros_like(a[2]))[0]
     columns = 3 * work.size + 2 * sum(each.contacts for each in followers)
     seconds += _SUMMED * lines * recorded(rates) + _ALONG * columns * along_line(rates)
-    return unknowns, memory, seconds
+    return unknowns, memory, seconds, marched
+
+
+def _products_in_vain(first: int) -> int:
+    """Most products with the derivative, as on first grids of so many unknowns, of a search."""
+    finer = first * 2.0 ** np.arange(1 + max(0, int(np.log2(_MOST / first))))
+    return DIRECT + int(sum(min(_RELEASE * size, _SPENT) for size in finer) / first)
 
 
 @dataclass

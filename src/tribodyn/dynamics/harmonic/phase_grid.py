@@ -195,6 +195,7 @@ class Work(NamedTuple):
     newton: int = 4  #: steps of Newton's method on a grid
     products: int = 30  #: with the derivative in them
     springs: int = 1  #: of a contact
+    decay: float = 0.0  #: of a disturbance of the structure, at least [1/s]
     #: Frequency of each mesh [Hz], the change with more points over its own phase, and how many.
     changes: tuple[tuple[float, float, int], ...] = ()
 

@@ -22,7 +22,7 @@ from tribodyn.types import Array
 
 #: Steps in a cycle of the fastest phase, cycles in a block, and how often steps that are too long
 #: are halved.
-_STEPS, _BLOCK, _HALVINGS = 128, 16, 4
+STEPS, _BLOCK, _HALVINGS = 128, 16, 4
 #: Jumps nearer than this part of a block are one; repetitions for those of an unsteady rotation.
 _NEAR, _REPEATS = 1e-9, 40
 
@@ -55,7 +55,7 @@ class PhaseMarch:
     def _block(self, number: int, times: Array) -> Array:
         """States at times within a block; keeps that at its end."""
         for halving in range(_HALVINGS + 1):
-            compiled = self._compiled(number * self.duration, _BLOCK * _STEPS * 2**halving)
+            compiled = self._compiled(number * self.duration, _BLOCK * STEPS * 2**halving)
             motion = ModalMotion(compiled, self.structure)
             q, v = np.split(self.begins[number], 2)
             try:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import field, replace
 from typing import Any, NamedTuple
 
@@ -10,7 +11,8 @@ import numpy as np
 from tribodyn.arrays.linear_algebra import fast_length
 from tribodyn.dynamics.equations.nodes import springs
 from tribodyn.dynamics.harmonic.newton import State, tangents
-from tribodyn.dynamics.harmonic.phase_march import PhaseMarch
+from tribodyn.dynamics.harmonic.phase_grid import Follower, Work
+from tribodyn.dynamics.harmonic.phase_march import STEPS, PhaseMarch
 from tribodyn.dynamics.harmonic.phase_residual import PhaseResidual
 from tribodyn.dynamics.harmonic.phase_rows import PhaseRows
 from tribodyn.dynamics.harmonic.residual import OnGrid
@@ -26,6 +28,9 @@ _ROUNDING = 1e-14
 _RECORDED, _MOST = 64, 4096
 #: Logarithm of the decay after which a time integration has settled.
 _SETTLED = 5.0
+#: Time of a step of a time integration, and of it for each pair of contacts, and for each contact
+#: and coordinate [s].
+_EACH, _PAIR, _WIDE = 5e-6, 1.5e-6, 2.5e-7
 #: Numbers that are held at once in samples, and while lines are summed up.
 _TOGETHER, _WAVES = 2**22, 2**19
 #: Samples per cycle of the fastest phase along the closed line, most cycles of it for each further
@@ -303,11 +308,10 @@ def marched_response(motion: PhaseResponse, structure: ClosedStructure) -> Phase
     start, line = motion.at([0.0]), np.array(motion.turns)
     state = np.concatenate((start.position[0], start.velocity[0]))
     march = PhaseMarch(motion._rows, structure, motion.extra_force, [state])
-    fastest = int(np.argmax(line))
-    span = line[fastest] / motion.frequencies[fastest]
+    settling, span = _marched_times(motion.frequencies, structure.decay)
     count = motion.fine.phase.size
     phase = np.arange(count) / count
-    time = min(span, _SETTLED / max(structure.decay, 1e-300)) + span * phase
+    time = settling + span * phase
     samples = motion._samples(time[:, None] * motion.frequencies % 1.0, march.states(time))
     fine = FineSamples(phase, time, motion.fine.weight, **samples)
     numbers = motion._all_lines[0]
@@ -325,6 +329,27 @@ def marched_response(motion: PhaseResponse, structure: ClosedStructure) -> Phase
     values[~numbers.any(axis=1)] /= 2.0
     motion = replace(motion, fine=fine, engine="modal", _all_lines=(numbers, values), _march=march)
     return _recorded(motion)
+
+
+def _marched_times(frequency: Array, decay: float) -> tuple[float, float]:
+    """Time in which an integration settles, and that of the closed line after it [s]."""
+    line, fastest = closed_line(frequency), int(np.argmax(frequency))
+    span = line[fastest] / float(frequency[fastest])
+    return min(span, _SETTLED / max(decay, 1e-300)), span
+
+
+def cycles_of_march(followers: Sequence[Follower], frequency: Array, decay: float) -> float:
+    """Cycles of the fastest phase or mesh in an integration over time in place of a motion."""
+    meshes = [abs(float(each.cycles @ frequency)) * each.period for each in followers]
+    fastest: float = max(*frequency.tolist(), *meshes)
+    return sum(_marched_times(frequency, decay)) * fastest
+
+
+def time_of_march(followers: Sequence[Follower], frequency: Array, work: Work) -> float:
+    """Time of this integration [s]."""
+    contacts = sum(each.contacts for each in followers)
+    step = _EACH + contacts * (_PAIR * contacts + _WIDE * work.size)
+    return STEPS * cycles_of_march(followers, frequency, work.decay) * step
 
 
 def phase_response(

@@ -35,7 +35,7 @@ from tribodyn.study.faults.turning import (
     lead_on_clock,
     steady_over_turns,
 )
-from tribodyn.study.machine.first_look import PhaseCost
+from tribodyn.study.machine.first_look import PhaseCost, over_phases
 from tribodyn.study.machine.motion import (
     MachineMotion,
     machine_motion,
@@ -61,9 +61,9 @@ _ACCURACY = Accuracy((128, 256), 1e-4)
 
 def rehearse_faults(case: MachineCase, state: Balanced) -> list[str]:
     """Costs of the motions over phases; refuse faulty teeth that cannot run, and too much."""
-    costs = check_motion(case)  # refuses what takes too much
-    if costs:
-        costs = check_motion(case, _work(case, state), _time_of_teeth(case, state))
+    moves = case.faults or over_phases(case.solver, state.machine)
+    work = _work(case, state) if moves else None
+    costs = check_motion(case, work, _time_of_teeth(case, state))
     teeth = {n: f for n, f in case.faults.items() if f.gear and f.kind != "crack"}  # elements
     if teeth:
         cracked = [f"faults.{name}" for name in case.faults if name not in teeth]

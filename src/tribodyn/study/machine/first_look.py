@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 from tribodyn.arrays.memory import machine_memory
 from tribodyn.errors import ComputationError, ModelWarning, Problem, warn
-from tribodyn.machine import MachineStructure
+from tribodyn.machine import Bearing, MachineStructure
 from tribodyn.study.case.section import flat_keys
 from tribodyn.study.machine.motion import phase_names
 from tribodyn.study.machine.pair_cases import TeethUnder, inputs_under, read_teeth, teeth_under
@@ -86,6 +86,7 @@ class PhaseCost(NamedTuple):
     unknowns: int
     memory: float  #: [byte]
     time: float  #: of this computer's processor, once all is compiled [s]
+    marched: float  #: the same at most, where the motion is not found and is integrated [s]
 
     def __str__(self) -> str:
         """One line."""
@@ -94,6 +95,9 @@ class PhaseCost(NamedTuple):
             f"The motion is found over {len(self.phases)} phases without a common period "
             f"({listed}): about {self.unknowns} unknowns, {1e-9 * self.memory:.2g} GB and "
             f"{self.time:.2g} s once all is compiled"
+        ) + (self.marched > 0.0) * (
+            f"; at most {float(f'{self.marched:.2g}'):g} s where it is not found and is integrated "
+            "over time"
         )
 
 
@@ -149,6 +153,8 @@ def phase_cost_of(
     if loose:
         followers.append((2 * loose, (0,) * len(phases.frequency), 1, ()))
     cost = cost_over_phases(phases, names, followers, orders, work=work)
+    if loose:  # refused where it is not found
+        cost = cost._replace(marched=0.0)
     remedy = "Raise solver.memory, or compute a part of the machine"
     if fewer is not None and cost.memory > memory and (without := fewer()):
         remedy = f"Raise solver.memory, or give fewer faults: {without}"
@@ -220,7 +226,12 @@ def clock_cost(machine: Machine, memory: float, cycles: int = 0, coordinates: in
     seconds = cycles / (clock.cycles[fastest] * clock.frequency)
     meshes = [m for m in machine.meshes.values() if m.stiffness is None or callable(m.stiffness)]
     contacts = sum(max(len(mesh.contacts), 1) for mesh in meshes)
-    coordinates = coordinates or min(MachineStructure(machine).size, _FEWEST)
+    if not coordinates:
+        linear = {
+            name: Bearing(each.shaft, each.position)
+            for name, each in machine.bearings.items() if each.nonlinear
+        }  # fmt: skip
+        coordinates = min(MachineStructure(machine._with(bearings=linear)).size, _FEWEST)
     cost = ClockCost(cycles, seconds, contacts, coordinates)
     reason = "the teeth have few common factors"
     remedy = 'Set solver.phases = "auto", which finds the motion without a common period'
