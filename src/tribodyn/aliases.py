@@ -1,4 +1,4 @@
-"""Public names: those of a stub, a table of what replaces deprecated ones, and their aliases.
+"""Names: those of a stub, of messages, a table of what replaces deprecated ones, and aliases.
 
 An alias works like the new name and issues a ``DeprecationWarning``, which Python displays once for
 each line of a script that uses it. Functions and classes that are decorated with
@@ -11,7 +11,8 @@ import functools
 import re
 import sys
 import warnings
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping
+from difflib import get_close_matches
 from importlib import import_module
 from pathlib import Path
 from typing import Any, TypeVar, cast
@@ -69,6 +70,14 @@ class Alias:
         """Warn, and return the value of the new name."""
         warn_of_old_name(f"{self.owner}.{self.old}", f"{self.owner}.{self.new}")
         return getattr(owner if instance is None else instance, self.new)
+
+
+def closest(name: object, names: Iterable[str]) -> str:
+    """Names for a message; of more than a dozen the ten closest to an unknown one."""
+    listed = list(dict.fromkeys(names))
+    if len(listed) <= 12:
+        return ", ".join(listed) or "none"
+    return f"{', '.join(get_close_matches(str(name), listed, 10, 0.0))} and {len(listed) - 10} more"
 
 
 def with_old_names(named: _Named) -> _Named:

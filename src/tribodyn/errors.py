@@ -13,13 +13,14 @@ from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager
 from contextvars import ContextVar
 from dataclasses import dataclass
+from difflib import get_close_matches
 from types import FrameType
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from tribodyn.aliases import with_old_names
+from tribodyn.aliases import closest, with_old_names
 
 __all__ = [
     "Argument",
@@ -488,13 +489,10 @@ def no_such(
     """Problem of an unknown name, with the closest one of the list."""
     listed = list(names)
     remedy = did_you_mean(name, listed, remedy or "Choose one of these")
-    why = f"Known: {', '.join(listed) or 'none'}"
-    return Problem(f'there is no {kind} "{name}"', where, why, remedy)
+    return Problem(f'there is no {kind} "{name}"', where, f"Known: {closest(name, listed)}", remedy)
 
 
 def did_you_mean(name: object, names: Iterable[str], otherwise: str = "") -> str:
     """Remedy for an unknown name: the closest known name, or another text."""
-    from difflib import get_close_matches
-
     matches = get_close_matches(str(name), list(names), n=1)
     return f'Did you mean "{matches[0]}"?' if matches else otherwise

@@ -195,7 +195,7 @@ def test_wrong_input_names_the_option_and_the_remedy(
 
 def test_a_file_that_is_none_is_refused(capsys: pytest.CaptureFixture[str]) -> None:
     assert call(["signal", "nowhere.csv"]) == 2
-    assert "there is no such file" in capsys.readouterr().err
+    assert "There is no such file" in capsys.readouterr().err
 
 
 def test_teeth_and_speed_of_a_gear_of_a_machine_are_taken(

@@ -9,6 +9,7 @@ from dataclasses import dataclass, field, replace
 from fractions import Fraction
 from functools import cached_property
 from types import MappingProxyType
+from typing import ClassVar
 
 import numpy as np
 
@@ -20,7 +21,7 @@ from tribodyn.machine.graph.bodies import GearBody, body_problems, gear_body
 from tribodyn.machine.graph.clock import Clock, Phases, clock_of, phases_of
 from tribodyn.machine.graph.directions import MeshDirection, mesh_direction
 from tribodyn.machine.graph.kinematics import PowerFlow, kinematics, ratio_problems
-from tribodyn.machine.graph.mobility import Drive, Mobility, ShaftGraph
+from tribodyn.machine.graph.mobility import NOTHING, Drive, Mobility, ShaftGraph
 from tribodyn.machine.graph.part_checks import (
     drive_problems,
     mesh_problems,
@@ -131,6 +132,9 @@ class Machine:
     planets: Mapping[str, PlanetaryStage] = field(default_factory=dict, kw_only=True)
     operation: Operation = field(kw_only=True)
 
+    #: Torques of the first gears of meshes in loops over that of the input, where they are known.
+    _sharing: ClassVar[Mapping[str, float]] = NOTHING
+
     def __post_init__(self) -> None:
         object.__setattr__(self, "planets", _parts("planets", self.planets, PlanetaryStage))
         if problems := [
@@ -168,15 +172,22 @@ class Machine:
         parts = [f"{n} {k if n == 1 else plural.get(k, k + 's')}" for k, n in counts.items()]
         return f"Machine({', '.join(parts)})"
 
-    def _with(self, operation: Operation | None = None, **groups: Mapping[str, object]) -> Machine:
+    def _with(
+        self,
+        operation: Operation | None = None,
+        sharing: Mapping[str, float] | None = None,
+        **groups: Mapping[str, object],
+    ) -> Machine:
         """Copy with other meshes or bearings in the same places, which need no check again.
 
-        Nor needs it another operation that presses the same flanks in the same sense.
+        Nor needs it another operation that presses the same flanks in the same sense, or torques
+        of the first gears of meshes in loops over that of the input.
         """
         other = copy(self)
         for name in _OF_LOADS:
             vars(other).pop(name, None)
         vars(other)["operation"] = operation or self.operation
+        vars(other)["_sharing"] = self._sharing if sharing is None else sharing
         for group, parts in groups.items():
             vars(other)[group] = MappingProxyType({**getattr(self, group), **parts})
         for name in groups.get("planets", ()):
@@ -292,7 +303,8 @@ class Machine:
         run = self.operation
         fixed = dict.fromkeys(b.shaft for b in self.bearings.values() if b.holds)
         springs = {name: c.torsional_stiffness for name, c in self.couplings.items()}
-        return Drive(run.input, run.output, run.speed, run.torque, tuple(fixed), springs)
+        ends = run.input, run.output
+        return Drive(*ends, run.speed, run.torque, tuple(fixed), springs, self._sharing)
 
     @property
     def _carriers(self) -> dict[str, tuple[str, str, float]]:

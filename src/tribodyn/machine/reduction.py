@@ -42,6 +42,11 @@ def default_limit(structure: MachineStructure) -> float:
     return float(np.clip(2.0 * _HARMONICS * fastest, *_LIMITS))
 
 
+def is_large(structure: MachineStructure) -> bool:
+    """Whether a machine is reduced where nothing is said of it."""
+    return structure.size > _LARGE
+
+
 def machine_structure(machine: Machine, *, damping_ratio: float = 0.02) -> MachineStructure:
     """Matrices of a machine as its motion needs them.
 
@@ -73,7 +78,7 @@ def machine_structure(machine: Machine, *, damping_ratio: float = 0.02) -> Machi
     if any(bearing.nonlinear for bearing in machine.bearings.values()):
         machine = static_balance(machine).linearized()
     structure = MachineStructure(machine, damping_ratio)
-    return reduce_structure(structure) if structure.size > _LARGE else structure
+    return reduce_structure(structure) if is_large(structure) else structure
 
 
 def reduce_structure(

@@ -1,5 +1,7 @@
 """Case files of machines: parts, defaults, load cases, and messages that name the part."""
 
+from pathlib import Path
+
 import numpy as np
 import pytest
 
@@ -92,7 +94,7 @@ def test_load_cases_have_names_and_shares(reducer):
     [
         ({"bearings.A.position": "500 mm"}, "bearings.A.position", "off the shaft"),
         ({"bearings.A.shaft": "inputt"}, "bearings.A.shaft", 'Did you mean "input"'),
-        ({"bearings.A.typ": "ball"}, "bearings.A.typ", "has: shaft, position"),
+        ({"bearings.A.typ": "ball"}, "bearings.A.typ", 'more. Did you mean "type"'),
         ({"bearings.A.type": "ball"}, "bearings.A.type", "deep-groove"),
         ({"bearings.A.bore_diameter": "30"}, "bearings.A.bore_diameter", "has no unit"),
         ({"bearings.C": None, "bearings.D": None}, "shafts.middle", "no bearing"),
@@ -184,3 +186,35 @@ def test_floating_bearings_of_a_case_file(reducer):
     assert read_case(floating.to_toml(), "again.toml").bearings["A"].floating
     stiff = Bearing("in", 0.0, floating=True)
     assert stiff.stiffness_matrix.diagonal().tolist() == [0.0, 1e9, 1e9, 0.0, 0.0, 0.0]
+
+
+def test_a_misspelt_table_beside_the_right_one_keeps_both_lines() -> None:
+    text = SMALL + "[shafts.in]\ndensity = 3\n[shaft.in]\n[shaft.out]\ndensity = 4\n"
+    with pytest.raises(InputError) as caught:
+        read_case(text, "small.toml")
+    lines = text.splitlines()
+    for key in ("shafts.in.density", "shaft.out.density"):
+        number = {"shafts.in.density": "density = 3", "shaft.out.density": "density = 4"}[key]
+        assert f"small.toml:{lines.index(number) + 1}: {key}" in str(caught.value)
+
+
+def test_of_many_keys_those_that_are_alike_are_named() -> None:
+    with pytest.raises(InputError) as caught:
+        read_case(SMALL + '[friction]\nlawe = "constant"\n', "small.toml")
+    assert "has: law, " in str(caught.value)
+    assert 'Did you mean "law"?' in str(caught.value)
+    assert " more. " in str(caught.value)
+    assert str(caught.value).count(", ") < 12
+
+
+def test_a_housing_that_cannot_be_read_says_why(tmp_path: Path) -> None:
+    nodes: dict[str, list[int]] = {"seat A": [0, 1, 2, 3, 4, 5]}
+    stiffness = np.eye(6) * 1e9
+    np.savez(tmp_path / "dict.npz", K=stiffness, M=np.eye(6), nodes=np.array(nodes, dtype=object))
+    for name, message in (
+        ("dict.npz", r"such as a dict of nodes.*nodes=numpy\.array"),
+        ("none.npz", r"none\.npz cannot be read: there is no such file\. .*Correct the path"),
+    ):
+        file = (tmp_path / name).as_posix()
+        with pytest.raises(InputError, match=message):
+            read_case(f'{SMALL}[housing]\nmatrices = "{file}"\n', "small.toml")

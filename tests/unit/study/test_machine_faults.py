@@ -171,6 +171,31 @@ def test_a_recording_has_the_frequency_of_the_bearing(tmp_path: Path) -> None:
     np.testing.assert_allclose(saved[names[0]], recording[names[0]], atol=1e-6)
 
 
+def test_a_wrong_name_hides_no_other_fault() -> None:
+    with pytest.raises(InputError) as caught:
+        case_with(
+            named={**AXIS, "gear": "z9"},
+            other={**DEFECT, "element_diameter": "50 mm"},
+            kind={"kind": "crack", "gear": "z1", "tooth": 1, "depth": "1 mm"},
+        )
+    keys = [str(problem.where) for problem in caught.value.problems]
+    assert all(any(key in each for each in keys) for key in ("named.gear", "kind.kind"))
+    assert any("other" in each for each in keys)
+
+
+def test_a_damaged_tooth_is_counted_on_the_gear_of_the_machine() -> None:
+    crack = {"kind": "crack", "gear": "z2", "tooth": 38, "depth": "1 mm"}
+    gears = {n: {"shaft": s, "teeth": z, "face_width": "20 mm"}
+             for n, s, z in (("z1", "in", 23), ("z2", "out", 37))}  # fmt: skip
+    with pytest.raises(InputError, match=r"tooth = 38\. z2 has 37 teeth, 1 to 37"):
+        td.Case(
+            gears=gears,
+            meshes={"one": {"gears": ["z1", "z2"], "normal_module": "3 mm"}},
+            operation={"input": "in", "output": "out", "speed": "900 rpm", "torque": "20 N*m"},
+            faults={"crack": crack},
+        )
+
+
 @pytest.mark.parametrize(
     ("faults", "expected"),
     [
@@ -208,7 +233,7 @@ def test_faults_are_written_and_read_back() -> None:
 def test_a_rigid_seat_does_not_accelerate() -> None:
     with pytest.raises(InputError, match="seat_mass and seat_frequency"):
         result().recording("bearings.A.acceleration_y", 0.1)
-    with pytest.raises(InputError, match=r"The sensors are bearings\.B"):
+    with pytest.raises(InputError, match=r"The sensors are .*bearings\.B\.acceleration_y"):
         result().recording("bearings.A.accel_y", 0.1)
     with pytest.raises(InputError, match="Known: input, output"):
         result().recording("bearings.A.force_y", 0.1, tacho="middle")

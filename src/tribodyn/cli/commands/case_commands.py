@@ -103,8 +103,9 @@ def _checked_machine(case: MachineCase) -> _Checked:
     from tribodyn.study.machine.run import rehearse_machine
 
     with collected() as warned:
-        costs = rehearse_faults(case, rehearse_machine(case))
-        values = kinematic_figures(case)
+        balanced = rehearse_machine(case)
+        costs = rehearse_faults(case, balanced)
+        values = kinematic_figures(case, balanced.load)
     return values, warned, idle_keys(case), costs
 
 

@@ -64,8 +64,8 @@ class MeshLoad:
     sense : int
         Sign of the torque of the first gear about x: which flank carries.
     shared : bool
-        Whether the mesh is in a loop, where torques are shared by stiffness: the value is that of
-        rigid shafts with the mean mesh stiffnesses.
+        Whether the mesh is in a loop, where torques are shared by stiffness: that of the mean
+        meshes on rigid shafts, or in a result that of everything in the loop.
     speeds : (float, float)
         Speeds of both gears, relative to the carrier of the mesh where it has one [rad/s].
     """
@@ -154,9 +154,15 @@ def kinematics(
     weight |= drive.couplings
     rows: Mapping[str, Mapping[str, float]] = mobility.rows
     loads = mobility.loads(sense * torque, weight, rows)
+    near: dict[str, float] = {}
+    if drive.sharing:
+        near = {name: load for name, (load, _) in loads.items()}
+        for name, share in drive.sharing.items():
+            near[name] = -share * sense * torque / next(iter(rows[name].values()))
+        loads = mobility.loads(sense * torque, weight, rows, near)
     if efficiency:
         rows = mobility.rows_with_losses(loads, sense, efficiency)
-        loads = mobility.loads(sense * torque, weight, rows)
+        loads = mobility.loads(sense * torque, weight, rows, near)
     mesh_loads = {}
     for name, mesh in meshes.items():
         load, shared = loads[name]

@@ -6,6 +6,7 @@ from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
 from fractions import Fraction
 from functools import cached_property
+from types import MappingProxyType
 from typing import TypeVar
 
 import numpy as np
@@ -71,6 +72,7 @@ def listed(names: Iterable[str]) -> str:
 
 
 Terms = dict[str, Fraction]
+NOTHING: Mapping[str, float] = MappingProxyType({})
 #: Share of the torque below which a mesh of a loop is unloaded.
 _ROUNDING = 1e-9
 
@@ -85,6 +87,9 @@ class Drive:
     torque: float
     fixed: tuple[str, ...] = ()
     couplings: Mapping[str, float] = field(default_factory=dict)  #: torsional stiffness [N*m/rad]
+    sharing: Mapping[str, float] = field(
+        default_factory=dict
+    )  #: torques of first gears over the input's
 
 
 @dataclass(frozen=True, eq=False)
@@ -199,9 +204,13 @@ class Mobility:
         return rows
 
     def loads(
-        self, torque: float, weight: Mapping[str, float], rows: Mapping[str, Mapping[str, float]]
+        self,
+        torque: float,
+        weight: Mapping[str, float],
+        rows: Mapping[str, Mapping[str, float]],
+        near: Mapping[str, float] = NOTHING,
     ) -> dict[str, tuple[float, bool]]:
-        """Load per tooth [N*m] of each mesh by factors of torques, and whether a loop shares it."""
+        """Load per tooth [N*m] of each mesh, shared by stiffness off loads ``near``; if shared."""
         free = [s for s in self.ratios if s not in (*self.drive.fixed, self.drive.output)]
         balance = np.array([[row.get(s, 0) for row in self.rows.values()] for s in free], float)
         balance = balance.reshape(len(free), len(self.rows))
@@ -210,8 +219,9 @@ class Mobility:
         source = np.array([-torque * (s == self.drive.input) for s in free])
         weights = np.array([weight[name] for name in self.rows])
         weights = weights / weights.max()
-        potential = np.linalg.solve((torques * weights) @ balance.T, source)
-        loads = weights * (potential @ balance)
+        start = np.array([near.get(name, 0.0) for name in self.rows])
+        potential = np.linalg.solve((torques * weights) @ balance.T, source - torques @ start)
+        loads = start + weights * (potential @ balance)
         # A load that another distribution with the same torques would change is one of a loop.
         loops = 1.0 - np.einsum("ij,ji->i", np.linalg.pinv(balance), balance)
         out = {}

@@ -7,6 +7,7 @@ output is held against rotation; the torque there is a result.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 
@@ -36,6 +37,8 @@ from tribodyn.types import Array
 _STEPS, _STRIDE, _TOLERANCE = 200, 2e-4, 1e-12
 #: Share of the greatest load, and force [N], below which a force is rounding.
 _ROUNDING = 1e-9
+#: Share of its load by stiffness that a mesh in a loop has at least, whose teeth are computed.
+_LEAST_SHARE = 0.01
 #: Displacements of the last balances, which a speed does not change.
 _solved: Memo[tuple[Array, float, int]] = Memo(8)
 #: Points at which the deflection of a shaft is sampled, besides its nodes.
@@ -190,6 +193,16 @@ class StaticBalance:
                         "its clearance, or preload it",
                     )
         return self.machine._with(bearings=bearings)
+
+    @property
+    def sharing(self) -> dict[str, float]:
+        """Torques of the first gears of meshes in loops, over that of the input [1]."""
+        # The planets of a stage have equal shares; its load factors say how they differ.
+        machine, meshes = self.machine, self.machine.kinematics.meshes.items()
+        looped = {n: m for n, m in meshes if m.shared and m.force and not machine.meshes[n].carrier}
+        torque = math.copysign(1.0, machine.operation.speed) * machine.operation.torque
+        over = {n: max(self.meshes[n].force / m.force, _LEAST_SHARE) for n, m in looped.items()}
+        return {n: m.torque[0] / torque * over[n] for n, m in looped.items()}
 
     def _stiffness(self, name: str) -> Array:
         """Stiffness of a bearing at its load, of a rolling one at least at that of a weight."""

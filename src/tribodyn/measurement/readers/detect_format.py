@@ -68,9 +68,9 @@ def _read_head(path: Path) -> bytes:
     """First kilobyte of a file; raise InputError if it is not regular, empty or too large."""
     kind = file_kind(path)
     if kind == "file" and path.stat().st_size > LARGEST["recording"]:
-        kind = f"it is larger than {LARGEST['recording'] / 1e9:.3g} GB"
+        kind = f"It is larger than {LARGEST['recording'] / 1e9:.3g} GB"
     if kind != "file":
-        reason = {"": "there is no such file", "directory": "it is a directory"}.get(kind, kind)
+        reason = {"": "There is no such file", "directory": "It is a directory"}.get(kind, kind)
         raise InputError("cannot be read", str(path), reason, "Give the path of a file")
     try:
         with open(path, "rb") as file:

@@ -19,6 +19,7 @@ from typing import Any, NamedTuple, TypeVar
 import numpy as np
 
 from tribodyn import units
+from tribodyn.aliases import closest
 from tribodyn.arguments.annotations import UnitRefusedError, magnitude, quantity_in, unit_text
 from tribodyn.errors import Problem, did_you_mean, shortened
 from tribodyn.model import REQUIRED, Option
@@ -428,10 +429,11 @@ def correct_keys(
         if (intended in data or intended in result) and not (table and isinstance(inner, Table)):
             intended = ""
         if intended:
-            problems.append(
-                (".".join((*path, name)), unknown_key((*path, name), value, section, [*keys]))
-            )
-            typed_keys[".".join((*path, intended))] = problems[-1][0]
+            typed, right = (".".join((*path, key)) for key in (name, intended))
+            problems.append((typed, unknown_key((*path, name), value, section, [*keys])))
+            both = data.get(intended) if table else None  # given, rightly and misspelt
+            inside = [f".{n}" for n in value if n not in both] if both else [""]
+            typed_keys |= {right + each: typed + each for each in inside}
         key = intended or name
         if table and isinstance(inner, Table):
             value, inner_problems, inner_typed = correct_keys(value, root, (*path, key))
@@ -465,8 +467,8 @@ def unknown_key(
     keys = list(dict.fromkeys(keys or (section.section_keys().keys if section else ())))
     keys += [] if table else ["assumed"]
     entry = f"{name} = {written(value)}" if not isinstance(value, Mapping) else f"table [{name}]"
-    location = f"[{'.'.join(table)}]" if table else "the top of the file"
-    why = f"{location} has: {', '.join(keys)}"
+    location = f"[{'.'.join(table)}]" if table else "The top of the file"
+    why = f"{location} has: {closest(name, keys)}"
     what = f"{entry}: unknown key"
     if term := find_term(name):
         return Problem(what, "", term.meaning, f"Write {term.key}" if term.key else "Remove it")

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterator
+from dataclasses import replace
 from functools import partial
 from typing import TYPE_CHECKING, Any
 
@@ -19,6 +20,7 @@ from tribodyn.study.faults.section import (
     part_of,
     read_fault,
 )
+from tribodyn.study.machine.pair_cases import PairSource
 from tribodyn.types import Tree
 
 if TYPE_CHECKING:
@@ -58,10 +60,12 @@ def _check_planet(case: MachineCase, fault: PartFaultTable) -> None:
         raise InputError(what, Argument("planet"), why, "Correct the number, or remove it")
 
 
-def impossible_faults(case: MachineCase) -> KeyedProblems:
-    """Report faults that a gear or a bearing cannot have."""
-    problems: KeyedProblems = []
+def impossible_faults(case: MachineCase, named: KeyedProblems) -> KeyedProblems:
+    """Report faults that a gear or a bearing cannot have, after those of keys and names."""
+    problems, wrong = [*named], {key.split(".")[1] for key, _ in named}
     for name, fault in case.faults.items():
+        if name in wrong:
+            continue
         checks: list[Callable[[], object]] = [
             partial(_check_gear_fault, case, fault, mesh)
             for mesh in case.meshes
@@ -115,7 +119,15 @@ def shaft_excitation(fault: Any) -> ShaftExcitation:
 
 def _check_gear_fault(case: MachineCase, fault: PartFaultTable, mesh: str) -> None:
     if mesh in case.meshes_with_teeth:
-        check_fault(case.pair(mesh, case.operating_point), fault, gear=_role(case, fault, mesh))
+        pair = case.pair(mesh, case.operating_point)
+        try:
+            check_fault(pair, fault, gear=_role(case, fault, mesh))
+        except InputError as error:
+            assert isinstance(pair.source, PairSource)
+            name = pair.source.named
+            texts = [{k: name(getattr(p, k)) for k in ("what", "why")} for p in error.problems]
+            pairs = zip(error.problems, texts, strict=True)
+            raise InputError([replace(p, **text) for p, text in pairs]) from None
     elif fault.kind not in WAVES or fault.lead_angle:
         what = f"mesh {mesh} has a constant stiffness, and the fault is of the kind {fault.kind}"
         why = "Of a constant stiffness the teeth are not computed one by one"

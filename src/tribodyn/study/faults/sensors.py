@@ -10,7 +10,8 @@ from typing import TYPE_CHECKING, Any, NamedTuple, Protocol
 
 import numpy as np
 
-from tribodyn.errors import InputError, no_such
+from tribodyn.aliases import closest
+from tribodyn.errors import InputError, did_you_mean, no_such
 from tribodyn.nomenclature import GEARS
 from tribodyn.study.planetary.common import only_stage
 from tribodyn.types import Array, ComplexArray
@@ -171,7 +172,8 @@ class MachineSensors:
 
 def unlisted_sensor(sensor: str, sensors: Sequence[str]) -> InputError:
     """Error of a sensor that a motion does not have."""
-    why, remedy = f"The sensors are {', '.join(sensors)}", "Name one of these"
+    why = f"The sensors are {closest(sensor, sensors)}"
+    remedy = did_you_mean(sensor, sensors, "Name one of these")
     return InputError(f'no sensor is named "{sensor}"', "argument sensor", why, remedy)
 
 

@@ -156,10 +156,9 @@ class MachineCase(Case):
         if problems:
             raise InputError(self._source.place(with_typed_keys(problems, typed_keys)))
         self.implied_shafts = add_shafts(self.shafts, self.gears, stages, tables.material)
-        if problems := machine_fault_problems(self):
-            raise InputError(self._source.place(problems))
+        named = machine_fault_problems(self)
         if problems := unknown_gears({n: self._gears_of(n) for n in self._mesh_tables}, self.gears):
-            raise InputError(self._source.place(problems))
+            raise InputError(self._source.place([*problems, *named]))
         try:
             self._add_stages(stages)
             self._checked_machine(self.operating_point)
@@ -167,8 +166,8 @@ class MachineCase(Case):
             self._machines.clear()
             check_loads(self)
         except InputError as error:
-            raise InputError(self._located(error)) from None
-        if problems := [*self._impossible(), *faults]:
+            raise InputError([*self._located(error), *self._source.place(named)]) from None
+        if problems := [*self._impossible(named), *faults]:
             raise InputError(self._source.place(problems))
         self._settle(stated)
 
@@ -176,9 +175,10 @@ class MachineCase(Case):
     def _completed(data: dict[str, Any]) -> dict[str, Any]:
         return for_each_planet(deepcopy(data))
 
-    def _impossible(self) -> KeyedProblems:
+    def _impossible(self, named: KeyedProblems | None = None) -> KeyedProblems:
         """Problems of faults, losses and spreads that the parts do not allow."""
-        return [*impossible_faults(self), *loss_problems(self), *self._spread_faults()]
+        faults = impossible_faults(self, named or [])
+        return [*faults, *loss_problems(self), *self._spread_faults()]
 
     _changed_tables = staticmethod(changed_machine)
     _take_numbers = take_loads
@@ -363,7 +363,8 @@ class MachineCase(Case):
             if (machine := next(same_sense, None)) is None:
                 machine = self._checked_machine(load)
             self._machines[key] = machine._with(Operation(*self.ends, *key))
-        return self._machines[key]
+        shared = load.sharing
+        return self._machines[key]._with(sharing=shared) if shared else self._machines[key]
 
     def _checked_machine(self, load: LoadCase) -> Machine:
         operation = Operation(*self.ends, load.speed, load.torque)

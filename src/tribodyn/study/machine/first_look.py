@@ -31,6 +31,7 @@ if TYPE_CHECKING:
     from tribodyn.machine.graph.clock import Phases
     from tribodyn.study.case.pair import PairCase
     from tribodyn.study.machine.case import MachineCase
+    from tribodyn.study.machine.read_parts import LoadCase
     from tribodyn.study.machine.tables import SolverTable
 
 #: Mesh cycles of a period above which a warning says what they cost, steps per cycle, and bytes of
@@ -323,9 +324,9 @@ def idle_keys(case: MachineCase) -> dict[str, str]:
     }
 
 
-def kinematic_figures(case: MachineCase) -> dict[str, float]:
+def kinematic_figures(case: MachineCase, load: LoadCase | None = None) -> dict[str, float]:
     """Speeds, torques and power of shafts and meshes, in SI by dotted key."""
-    machine = case.machine()
+    machine = case.machine(load)
     flow, run = machine.kinematics, machine.operation
     values: dict[str, float | None] = {
         **shape_figures(case),

@@ -122,9 +122,12 @@ def _read(key: str, path: str, kind: str, load: Callable[[io.BytesIO], Any]) -> 
         raise InputError(f"{Path(path).name} cannot be read", key, why, remedy)
     try:
         return load(io.BytesIO(read_bytes(path, "housing")))
+    except InputError:
+        raise
     except Exception as error:  # readers of damaged files raise errors of many types
-        what = f"{Path(path).name} cannot be read: {error}"
-        raise InputError(what, key, f"It is {kind}", "Write the file again") from None
+        what = f"{Path(path).name} cannot be read: {getattr(error, 'strerror', None) or error}"
+        remedy = "Correct the path" if isinstance(error, OSError) else "Write the file again"
+        raise InputError(what, key, f"It is {kind}", remedy) from None
 
 
 def _in_si(
@@ -321,7 +324,12 @@ def _archive(file: io.BytesIO) -> dict[str, Array] | Superelement:
         is_element = re.search(r"(?mi)^\*USER ELEMENT", text) is not None
         return _user_element(text) if is_element else PunchFile(text)
     with np.load(file, allow_pickle=False) as archive:
-        return {name: np.asarray(archive[name]) for name in archive.files}
+        try:
+            return {name: np.asarray(archive[name]) for name in archive.files}
+        except ValueError:
+            what = "an array has Python objects, such as a dict of nodes"
+            remedy = 'Save nodes as an array of names, nodes=numpy.array(["seat A", "seat B"])'
+            raise InputError(what, "matrices", "Six rows follow for each name", remedy) from None
 
 
 def _is_market(path: str) -> bool:

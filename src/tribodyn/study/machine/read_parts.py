@@ -6,7 +6,7 @@ import math
 import re
 from bisect import bisect
 from collections.abc import Callable, Iterator, Mapping
-from dataclasses import dataclass, fields, replace
+from dataclasses import dataclass, field, fields, replace
 from functools import partial
 from typing import Any, NamedTuple
 
@@ -351,6 +351,8 @@ class LoadCase:
         Share of the time [1].
     temperature, gear_temperature : float, optional
         Temperatures of oil and gears in place of those of the table ``lubricant`` [K].
+    sharing : mapping of str to float
+        Torques of the first gears of meshes in loops over that of the input at rest [1].
     """
 
     name: str
@@ -359,6 +361,7 @@ class LoadCase:
     share: float
     temperature: float | None = None
     gear_temperature: float | None = None
+    sharing: Mapping[str, float] = field(default_factory=dict)
 
 
 class Loads(NamedTuple):

@@ -257,7 +257,10 @@ class LoadResult:
         if self.heat is not None:
             its_variables, its_facts = of_passes("heat", self.heat)
             variables, facts = {**variables, **its_variables}, {**facts, **its_facts}
-        return Parts(variables, coordinates, {**facts, "misalignment": json.dumps(values)})
+        facts = {**facts, "misalignment": json.dumps(values)}
+        if self.load.sharing:
+            facts["sharing"] = json.dumps(dict(self.load.sharing))
+        return Parts(variables, coordinates, facts)
 
     def signals_along(self, response: Response) -> MachineMotion:
         """Forces, errors and accelerations of the parts along another motion.

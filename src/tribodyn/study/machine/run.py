@@ -74,6 +74,8 @@ if TYPE_CHECKING:
 #: Passes of teeth and balance at most, and change of the misalignment over the compression of the
 #: teeth that ends them.
 _PASSES, _SAME = 4, 0.1
+#: Weight of the change of the share of a mesh in a loop.
+_OF_SHARE = 20.0
 #: The same where a temperature follows from the teeth.
 _HEATED_PASSES, _SETTLED = 40, 1e-9
 #: Difference of misalignments of equal teeth that is rounding [m].
@@ -185,7 +187,9 @@ def balanced_machine(
     except ComputationError as error:
         raise ComputationError(case._located(error)) from None
     point, tables = settled.point, dict(settled.tables)
-    warm = load if settled.temperatures is None else warmed(load, settled.temperatures)
+    warm = point.load
+    if settled.temperatures is not None:
+        warm = warmed(warm, settled.temperatures)
     if rehearsal:  # the few phases of its teeth have their load alone
         inputs = point.inputs
         ratios = {n: teeth_contact_ratio(inputs[n]) for n in tables}
@@ -246,7 +250,7 @@ class MachineTeeth:
         # Deflected shafts misalign the flanks, which changes the stiffness of the teeth and so, a
         # little, the deflection: teeth and balance are repeated until they agree.
         if not self.case.meshes_with_teeth:
-            return self
+            return self._misaligned(self.static)
         heated = self.case.heat is not None and not self.rehearsal
         passes, same = (_HEATED_PASSES, _SETTLED) if heated else (_PASSES, _SAME)
         point = self if self.misalignment else self._misaligned(_static(self.case, self.load))
@@ -259,7 +263,9 @@ class MachineTeeth:
 
     def _misaligned(self, static: StaticBalance) -> MachineTeeth:
         names = self.case.meshes_with_teeth
-        return replace(self, misalignment={n: misalignment_of(static.meshes[n]) for n in names})
+        misalignment = {n: misalignment_of(static.meshes[n]) for n in names}
+        load = replace(self.load, sharing=static.sharing)
+        return replace(self, load=load, misalignment=misalignment)
 
     def at(self, to: Temperatures) -> MachineTeeth:
         """The same at other temperatures."""
@@ -365,6 +371,8 @@ def _moved(
     """Greatest change of a misalignment over the compression of the teeth, and all of them."""
     after = {name: misalignment_of(static.meshes[name]) for name in before}
     changes = [_change(before[n], after[n]) / static.meshes[n].compression for n in before]
+    sharing = static.machine._sharing
+    changes += [_OF_SHARE * abs(1.0 - sharing.get(n, 0.0) / s) for n, s in static.sharing.items()]
     return max(changes, default=0.0), after
 
 
@@ -412,6 +420,7 @@ def _restored_load(case: MachineCase, load: LoadCase, stored: StoredLoad) -> Loa
         name: Misalignment(**value) if isinstance(value, dict) else value
         for name, value in json.loads(data.attrs["misalignment"]).items()
     }
+    load = replace(load, sharing=json.loads(data.attrs.get("sharing", "{}")))
     heat = read_passes("heat", next(iter(tables.values()), None), data)
     if heat is not None:
         warm = (heat.temperature, heat.gear_temperature)

@@ -12,7 +12,9 @@ import numpy as np
 from tribodyn.checkpoints import Checkpoints
 from tribodyn.errors import Argument, ComputationError, InputError, collected
 from tribodyn.interrupt import STOPPED, refuse_stopped, single_blas_thread, stop_flag
+from tribodyn.machine import MachineStructure
 from tribodyn.machine import system as system_of
+from tribodyn.machine.reduction import default_limit, is_large
 from tribodyn.machine.static.supports import clearance_supports
 from tribodyn.mesh import MeshTable
 from tribodyn.progress import SILENT, Progress, StageProgress
@@ -175,11 +177,23 @@ def settling_periods(member: Moving) -> int:
     return int(np.ceil(min(periods, _LONGEST)))
 
 
+def of_one_size(case: AnyCase, over: str, values: Sequence[float]) -> AnyCase:
+    """Case whose structure has the same coordinates at all speeds: those of the greatest."""
+    fixed = case.lumped or case.lone_stage or case.motion.frequency_limit is not None
+    if fixed or over != "operation.speed":
+        return case
+    machine = case.replace({over: float(max(values, key=abs))}).machine()
+    structure = MachineStructure(machine)
+    if not is_large(structure):
+        return case
+    return case.replace({"dynamics.frequency_limit": default_limit(structure)})
+
+
 def moving_members(
     case: MachineCase, over: str, values: Sequence[float], mesh: str, progress: Progress
 ) -> list[Moving]:
     """Structure of a machine for each value of a key, in their order."""
-    at = partial(moving_at, case, over, mesh)
+    at = partial(moving_at, of_one_size(case, over, values), over, mesh)
     return run_each(at, values, task="Machines", progress=progress)
 
 

@@ -20,6 +20,7 @@ from tribodyn.study.studies.case_grid import (
     many_motions,
     moving,
     moving_at,
+    of_one_size,
     settling_periods,
 )
 from tribodyn.study.studies.needs import mesh_in_motion, require, require_short
@@ -335,7 +336,7 @@ def continuation(
     pair = case if case.lumped else None
     with many_motions(case):
         _require_short("continuation", case.replace({over: float(first)}), name, steps=steps)
-        every = partial(moving_at, case, over, name)
+        every = partial(moving_at, of_one_size(case, over, (first, last)), over, name)
         start = every(first)
         count = steps or max(start.steps, every(last).steps)
         same = over == "operation.speed" and pair is not None and contact_without_speed(pair)

@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from tribodyn.aliases import with_old_names
+from tribodyn.aliases import closest, with_old_names
 from tribodyn.drawing import draw, write_report_of
 from tribodyn.errors import InputError, TribodynError, did_you_mean
 from tribodyn.record import Parts, Record, html_table, record
@@ -124,7 +124,7 @@ class Sweep(Record):
     def __getitem__(self, name: str) -> Array:
         """Return one figure of the summary over the grid, in SI; NaN where ``failed`` says why."""
         if not any(name in point.figures for point in self.points):
-            remedy = did_you_mean(name, self.figures, f"It has: {', '.join(self.figures)}")
+            remedy = did_you_mean(name, self.figures, f"It has: {closest(name, self.figures)}")
             why = "A sweep shows the figures that its points have"
             raise InputError(f'there is no figure "{name}" in this sweep', why=why, remedy=remedy)
         values = np.full(prod(self.shape), np.nan)
