@@ -20,6 +20,7 @@ from tribodyn.dynamics import (
     simulate,
 )
 from tribodyn.dynamics.harmonic.phase_balance import _Search
+from tribodyn.dynamics.harmonic.phase_rows import PhaseRows
 from tribodyn.errors import InputError, ModelWarning
 
 
@@ -317,6 +318,45 @@ def test_wrong_input_over_phases_is_named():
     assert motion.at([]).position.shape == (0, 3)
     with pytest.raises(InputError, match="time = nan"):
         motion.at([0.0, np.nan])
+    with pytest.raises(InputError, match="has 2e\\+06 cycles in one of the slowest"):
+        harmonic_balance(system, (0.2, 1e-7))
+    with pytest.raises(InputError, match="start is no motion over these phases"):
+        harmonic_balance(three_meshes(), FREQUENCIES, start=motion)
+
+
+@pytest.mark.parametrize("numbers", [(20, 1), (7, 5)])
+def test_a_mesh_with_many_cycles_over_its_phase_moves_as_with_one(numbers):
+    """Meshes that do not follow this phase feel all of its cycles."""
+    system, cycles = two_meshes(((1, 0), (0, 1))), np.diag(numbers)
+    contacts = [
+        replace(contact, cycles=tuple(each))
+        for contact, each in zip(system.contacts, cycles.tolist(), strict=True)
+    ]
+    frequencies, at = np.array([0.25, 0.15]), np.linspace(0.0, 40.0, 60)
+    once = harmonic_balance(system, frequencies).at(at)
+    often = harmonic_balance(replace(system, contacts=contacts), frequencies / numbers).at(at)
+    assert np.abs(often.position - once.position).max() < 1e-6 * np.ptp(once.position)
+
+
+def test_a_mesh_whose_phase_runs_back_is_the_mirrored_one():
+    system = two_meshes((1, 2))
+    first = system.contacts[0]
+    back = replace(
+        first, cycles=(-1,), offset=1.0 - first.offset, stiffness=lambda x: first.stiffness(1 - x),
+        error=lambda x: first.error(1 - x),
+    )  # fmt: skip
+    clock = harmonic_balance(system, 0.2)
+    motion = harmonic_balance(replace(system, contacts=[back, system.contacts[1]]), 0.2)
+    moved = motion.at(clock.time).position
+    assert np.abs(moved - clock.position).max() < 1e-6 * np.ptp(clock.position)
+
+
+def test_an_entry_that_is_zero_where_a_cycle_begins_does_not_jump():
+    contact = replace(two_meshes((1, 1)).contacts[0], error=lambda x: np.sin(2 * pi * x))
+    system = two_meshes(((1, 0), (0, 1)))
+    system = replace(system, contacts=[replace(contact, cycles=(1, 0)), system.contacts[1]])
+    rows = PhaseRows.of(system, np.array([0.25, 0.15]))
+    assert not any(mesh.jumps.size for mesh in rows.meshes)
 
 
 def test_a_tuple_of_one_number_is_the_clock():

@@ -81,6 +81,20 @@ def test_of_closed_flanks(seed, meshes, shafts):
     assert motion.step_error < 3.0 * error + 1e-10
 
 
+@pytest.mark.parametrize(("seed", "scale"), [(1, 0.1), (3, 0.1), (11, 30.0)])
+def test_of_bodies_of_unlike_mass(seed, scale):
+    """It is that of the compressions, and of those that new lines of one mesh cause at another."""
+    system, frequencies = drawn(seed, 2)
+    first = np.where(np.arange(6) < 2, scale, 1.0)
+    scaled = {name: getattr(system, name) * first for name in ("mass", "damping", "stiffness")}
+    system = replace(system, **scaled)
+    motion = harmonic_balance(system, frequencies, steps=12)
+    assert motion.fine.contact_force.min() > 0.0
+    error = true_error(system, frequencies, motion, 24)
+    assert error < 1.2 * motion.step_error
+    assert motion.step_error < 1.5 * error
+
+
 def negative(function):
     """The same with the other sign."""
     return lambda x: -function(x)

@@ -22,6 +22,8 @@ if TYPE_CHECKING:
     from tribodyn.dynamics.equations.system import Contact, LoadFriction, System
 
 
+#: Largest ratio of two frequencies.
+_RATIO = 1e5
 #: Mesh cycles over one clock, or over each independent phase.
 Cycles = int | tuple[int, ...]
 
@@ -50,7 +52,8 @@ def read_turning(error: Any, cycles: Any) -> tuple[Turning, ...]:
     if not all(map(callable, functions)):
         what, why = f"turning_error = {error}", "It is a function of the phase of a shaft"
         raise InputError(what, "Contact.turning_error", why, "Give a function, or one a shaft")
-    counts = [cycles] if callable(error) and cycles else list(cycles)
+    nested = not isinstance(cycles, int) and any(map(np.ndim, cycles))
+    counts = [cycles] if callable(error) and cycles and not nested else list(cycles)
     if len(functions) != len(counts):
         what = f"{len(functions)} turning errors and {len(counts)} turning cycles"
         why = "Each is a function of the phase of one shaft, with the turns of it over each phase"
@@ -100,6 +103,13 @@ def read_frequencies(value: object, phases: int) -> Array:
         what = f"frequency = {value}"
         why = f"The contacts have {phases} independent phases, each with a positive frequency [Hz]"
         raise InputError(what, "frequency", why, f"Give {phases} numbers, one for each phase")
+    ratio = float(values.max() / values.min())
+    if ratio > _RATIO:
+        what = (
+            f"frequency = {value}: the fastest phase has {ratio:.3g} cycles in one of the slowest"
+        )
+        why = f"A motion is recorded over a cycle of the slowest phase, at most {_RATIO:g} cycles"
+        raise InputError(what, "frequency", why, "Take what turns so slowly as constant")
     return values
 
 

@@ -114,7 +114,10 @@ class _OnePhase:
         # This phase is the first one, which has no half spectrum.
         order = [axis, *np.delete(np.arange(len(self.shape)), axis)]
         shape = tuple(self.shape[each] for each in order)
-        self.grid = grid = PhaseGrid(shape, residual.grid.frequency[order])
+        frequency = residual.grid.frequency[order]
+        if len(shape) == 1:
+            shape, frequency = (*shape, 1), np.append(frequency, 0.0)
+        self.grid = grid = PhaseGrid(shape, frequency)
         omega, unpaired = (each.reshape(count, -1).T for each in (grid.omega, grid.unpaired))
         receptances = residual.structure.receptances(omega.reshape(-1))
         receptances = receptances.reshape(*omega.shape, *receptances.shape[1:])
@@ -137,7 +140,8 @@ class _OnePhase:
         # Most of a motion has this phase alone: its lines are all coupled, of others the softest.
         self.blocks = []
         for rows, most in ((np.flatnonzero(~others), CENTRAL), (np.flatnonzero(others), OTHERS)):
-            self.blocks.append(_Block.of(rows, most / len(rows), gain, rate, number, waves))
+            if rows.size:
+                self.blocks.append(_Block.of(rows, most / rows.size, gain, rate, number, waves))
 
     def solved(self, y: Array, *, first: bool) -> Array:
         """Solution (p, r) for the right-hand side, or for one that the mean has solved already."""

@@ -266,7 +266,7 @@ class _Search:
         """Change with more points of each part over each phase, or of before; times the points."""
         # Twice; more where the lines between excite a natural frequency.
         errors, times = before.copy(), np.full(before.shape, 2)
-        first = _first_points(self)
+        first, size = _first_points(self), residual.extent(state.y) or 1.0
 
         def change(place: Index, factor: int) -> float:
             which = np.zeros(errors.shape, dtype=bool)
@@ -274,8 +274,7 @@ class _Search:
             grids = doubled(points, which, factor)
             if factor > 2 and self.size(grids) > _LARGE:
                 return 0.0
-            change = self.residual(grids, residual).change(residual, state, place[0])
-            return float(np.abs(change).max()) / state.size
+            return self.residual(grids, residual).change(residual, state, place[0]) / size
 
         for place in np.argwhere(again):
             errors[*place] = change(place, 2)
@@ -331,7 +330,8 @@ def phase_balance(
 ) -> PhaseResponse:  # fmt: skip
     """Find the motion over several phases; arguments as of :func:`harmonic_balance`."""
     frequency = read_frequencies(frequency, system.phases)
-    if start is not None and not isinstance(start, PhaseResponse):
+    alike = isinstance(start, PhaseResponse) and start.frequencies.size == frequency.size
+    if start is not None and not (alike and len(start.names) == system.size):
         what, why = "start is no motion over these phases", "Grids of several phases are refined"
         remedy = "Give the Response of another frequency of the same system, or leave it out"
         raise InputError(what, "start", why, remedy)
@@ -341,7 +341,8 @@ def phase_balance(
     points, residual, solution = search.first(points, start, tolerance, steps is None)
     limit, errors = tolerance, np.full(np.shape(points), np.nan)
     converged_motion = points, residual, solution, errors
-    smooth = all(part.pieces is None for part in solution.state.each)
+    jumps = any(mesh.jumps.size for part in search.parts for mesh in part.rows.meshes)
+    smooth = not (jumps or any(each.law.open.any() for each in solution.state.each))
     poor, before = np.zeros(np.shape(points), dtype=bool), np.zeros(np.shape(points))
     while solution.error <= limit:
         again = poor | (before >= _AGAIN * before.max())
@@ -425,7 +426,7 @@ def _integrated(
 def _first_points(search: _Search) -> Points:
     """Points over each phase with which an automatic choice starts."""
     followers = [
-        Follower(1, each.cycles, each.period, tuple(term.cycles for term in each.turning))
+        Follower(1, np.atleast_1d(each.cycles), each.period, tuple(t.cycles for t in each.turning))
         for each in search.rows.system.contacts
     ]
     force, lead = (

@@ -20,8 +20,8 @@ from tribodyn.types import Array, ComplexArray, Index, Mask
 #: Points over a phase of meshes, and over one that only turns shafts, with which an automatic
 #: choice starts.
 _MESH, _SHAFT = 24, 8
-#: Points of the first grids over phases that a part does not follow, of meshes and of shafts alone,
-#: by the number of phases, and over each of their mesh cycles where teeth differ.
+#: Points of the first grids over each cycle of phases that a part does not follow, of meshes and of
+#: shafts alone, by the number of phases, and over each of their mesh cycles where teeth differ.
 _OTHERS, _TURNED, _TEETH = (12, 12, 12, 8, 4), (12, 12, 12, 4, 4), 4
 #: Times the points over its phase with which a mesh that jumps is looked at too, as far as with so
 #: many times the points of the first grids.
@@ -169,7 +169,8 @@ def points_of(
         np.where(meshes > 0, (mesh or _MESH) * meshes, _SHAFT * shafts), driven
     ).astype(int)
     place = min(len(fine), len(_OTHERS)) - 1
-    others = np.where(meshes > 0, _OTHERS[place], _TURNED[place])
+    cycled = np.maximum(cycles.max(axis=0), 1)
+    others = np.where(meshes > 0, _OTHERS[place] * cycled, _TURNED[place] * shafts)
     teeth = np.where(cycles > 0, periods, 1).max(axis=0)
     felt = np.maximum(np.maximum(others, _TEETH * np.where(teeth > 1, teeth, 0)), driven)
     return fine, np.minimum(fine, felt).astype(int)

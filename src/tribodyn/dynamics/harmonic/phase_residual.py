@@ -10,6 +10,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -51,6 +52,12 @@ class Part:
     def coordinates(self) -> Any:
         """Coordinates of the structure."""
         return self.structure.coordinates
+
+    @cached_property
+    def compressions(self) -> Array:
+        """Mean compressions of the contacts per motion (contacts, r)."""
+        nodes, along = self.rows.means.nodes, self.coordinates.inverse.T @ self.along
+        return np.asarray(np.einsum("rs,rscn->cn", nodes.weight, nodes.direction) @ along)
 
     def receptances(self, omega: Array, push: Array | None = None) -> ComplexArray:
         """Motions of the part per force, its own by default (k, r, s); the first line is zero."""
@@ -122,31 +129,40 @@ class PhaseResidual(Residual):
             for part, other, piece in zip(self.parts, finer.parts, self.split(y), strict=True)
         ])  # fmt: skip
 
+    def extent(self, y: Array) -> float:
+        """Size of the largest compressions in a motion, of all contacts together."""
+        pairs = zip(self.parts, self.split(y), strict=True)
+        compressions = [piece @ part.structure.compressions.T for part, piece in pairs]
+        largest = [np.linalg.norm(each, axis=1).max(initial=0.0) for each in compressions]
+        return float(np.linalg.norm(largest))
+
     def accuracy(self, norms: list[float]) -> float:
         """Accuracy of the linear solution after steps that left residuals of these norms."""
         # Source: Eisenstat and Walker (1996), SIAM J. Sci. Comput. 17, 16, choice 2.
         fell = norms[-1] / norms[-2] if len(norms) > 1 else 1.0
         return float(np.clip(0.9 * fell**2, LINEAR, _LOOSE))
 
-    def change(self, coarser: PhaseResidual, state: State, number: int) -> Array:
-        """Estimate the change of a solution with more points of one part."""
+    def change(self, coarser: PhaseResidual, state: State, number: int) -> float:
+        """Estimate the largest change of the compressions with more points of one part."""
         part, old, states = self.parts[number], coarser.parts[number], state.each
         forces: list[Array | None] = [each.force for each in states]
         before = forces[number] = old.grid.refined(states[number].force, part.grid)
         y = self.responses(forces, loaded=True, of=[number])[0]
-        none = np.zeros(part.members.size)
-        further: list[Array | None] = [None] * len(states)
-        further[number] = part.at(y, none, closed=False).force - before
-        right = self.responses(further)
-        # The new lines as they are, the lines of before by their approximate inverse.
-        inverses = coarser.inverses_at(state)
-        low = part.grid.refined(right[number], old.grid)
-        felt = inverses[number](low) - low
-        changes = [
-            each + old.grid.refined(felt, part.grid) if n == number else inverse(each)
-            for n, (inverse, each) in enumerate(zip(inverses, right, strict=True))
-        ]
-        return self.joined(changes)
+        further = part.at(y, np.zeros(part.members.size), closed=False).force - before
+        lines = part.grid.spectrum(further)
+        lines[part.grid.unpaired] = 0.0
+        moved = []
+        for n, other in enumerate(self.parts):
+            gains = part.receptances
+            if n != number:
+                gains = other.structure.receptances(part.grid.omega, part.structure.push)
+            motion = part.grid.values((gains @ lines[..., None])[..., 0])
+            if n == number:  # the new lines as they are, those of before by their inverse
+                low = part.grid.refined(motion, old.grid)
+                felt = coarser.inverses_at(state)[number](low) - low
+                motion += old.grid.refined(felt, part.grid)
+            moved.append(motion @ other.structure.compressions.T)
+        return float(np.linalg.norm(np.concatenate(moved, axis=1), axis=1).max())
 
     def inverses_at(self, state: State) -> list[MeshwiseInverse]:
         """Approximate inverse of the derivative for each part alone, as long as it serves."""

@@ -171,7 +171,8 @@ class PhaseResponse(Response):
         listed = ", ".join(f"{frequency:.6g}" for frequency in self.frequencies)
         counts = " x ".join(map(str, self.points))
         return (
-            f"Response(motion over {len(self.points)} phases at {listed} Hz, {counts} points, "
+            f"Response(motion over {len(self.points)} phase{'s' if len(self.points) > 1 else ''} "
+            f"at {listed} Hz, {counts} points, "
             f"{self.position.shape[1]} coordinates, error {self.error:.1e}, step error "
             f"{self.step_error:.1e})"
         )

@@ -38,7 +38,7 @@ _SAME, _CLOSED = 1e-12, 1e-6
 _CACHED = 512
 #: Steps of a mesh cycle on which entries are searched for jumps and averaged.
 _STEPS = 128
-#: Points over each phase at which the direction of the external force is sampled.
+#: Points over each phase at which external forces and the size of entries are sampled.
 _SAMPLED = 8
 #: Fields that have a column for each contact, or for each friction.
 _OF_CONTACTS = (
@@ -77,7 +77,8 @@ class Mesh:
         """Mesh phases at which an entry jumps."""
         at = np.array(self.events)
         before, after = (self.nodes(at, 0.0, before=side) for side in (True, False))
-        return np.asarray(at[jumping_events(before, after)])
+        within = self.nodes(np.arange(_SAMPLED) / _SAMPLED, 0.0)
+        return np.asarray(at[jumping_events(before, after, within)])
 
     def nodes(self, phase: Array, rate: Any, before: bool = False) -> Nodes:
         """Entries at mesh phases (p, 1, ...), slopes over time at mesh frequencies [Hz]."""

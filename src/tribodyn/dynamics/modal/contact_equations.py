@@ -331,7 +331,7 @@ def contact_equations(
     before, after = (
         evaluate_rows(system, PointEvaluator(points, every, before=side)) for side in (True, False)
     )
-    jumping = jumping_events(before, after)
+    jumping = jumping_events(before, after, nodes)
     left, right = (
         project_rows(Nodes(*(values[jumping] for values in part)), *into)
         for part in (before, after)
@@ -364,12 +364,12 @@ def _distinct(values: Array) -> Array:
     return unrepeated(values[:, 0], values.ndim - 2)
 
 
-def jumping_events(before: Nodes, after: Nodes) -> Index:
-    """Numbers of the events at which an entry jumps."""
+def jumping_events(before: Nodes, after: Nodes, within: Nodes) -> Index:
+    """Numbers of the events at which an entry jumps, compared with its values within a cycle."""
     jumps = np.zeros(len(before.phase), dtype=bool)
-    for name, left, right in zip(Nodes._fields, before, after, strict=True):
+    for name, left, right, every in zip(Nodes._fields, before, after, within, strict=True):
         if name not in ("phase", "weight", "error_slope", "direction_slope"):
-            scale = max(float(np.abs(left).max(initial=0.0)), 1e-300)
+            scale = max(float(np.abs(part).max(initial=1e-300)) for part in (left, every))
             jump = np.abs(right - left).reshape(len(left), -1).max(axis=1, initial=0.0)
             jumps |= jump > _JUMP * scale
     return np.flatnonzero(jumps)
