@@ -13,6 +13,7 @@ from typing import ClassVar
 
 import numpy as np
 
+from tribodyn.dynamics.harmonic.phase_grid import Follower, first_sizes
 from tribodyn.errors import InputError, Problem, no_such
 from tribodyn.machine.bearing import Bearing
 from tribodyn.machine.fields import check_name, check_number, quoted
@@ -274,7 +275,25 @@ class Machine:
             clock.cycles[name] * turn.waves for name, mesh in meshes for turn in mesh.turning
         ]
         periods = {name: mesh.period for name, mesh in meshes}
-        return phases_of(clock, periods, turning, driven, together=together)
+        size = self._unknowns if max(periods.values(), default=1) > 1 else None
+        return phases_of(clock, periods, turning, driven, together=together, size=size)
+
+    def _followers(self, phases: Phases) -> list[Follower]:
+        """Contacts of each mesh, and what they follow."""
+        cycles = self.clock.cycles
+        return [
+            Follower(
+                max(len(mesh.contacts), 1), phases.cycles[name], mesh.period,
+                tuple(phases.turns[cycles[name] * turn.waves] for turn in mesh.turning),
+            )
+            for name, mesh in self.meshes.items()
+        ]  # fmt: skip
+
+    def _unknowns(self, phases: Phases) -> float:
+        """Unknowns of the first grids over phases if these are not made coarser."""
+        followers = self._followers(phases)
+        sizes = first_sizes(followers, 0, coarser=False)
+        return sum(each.contacts * size for each, size in zip(followers, sizes, strict=True))
 
     @cached_property
     def directions(self) -> Mapping[str, MeshDirection]:

@@ -425,16 +425,20 @@ def _integrated(
 
 def _first_points(search: _Search) -> Points:
     """Points over each phase with which an automatic choice starts."""
+    still = Follower(1, (0,) * search.rows.frequency.size)
     followers = [
         Follower(1, np.atleast_1d(each.cycles), each.period, tuple(t.cycles for t in each.turning))
-        for each in search.rows.system.contacts
+        if part.axes
+        else still
+        for part in search.parts
+        for each in part.rows.system.contacts
     ]
     force, lead = (
         getattr(part, "orders", 0) for part in (search.rows.system.force, search.rows.system.lead)
     )
-    fine, others = points_of(followers, np.maximum(force, lead))
-    shapes = np.where(search.followed(), fine, others)
-    return tuple(tuple(shape) for shape in shapes.tolist())
+    points = points_of(followers, np.maximum(force, lead))
+    ends = np.cumsum([part.members.size for part in search.parts])[:-1]
+    return tuple(tuple(each.max(axis=0).tolist()) for each in np.split(points, ends))
 
 
 def _read_steps(steps: Any, search: _Search) -> Points:

@@ -23,6 +23,8 @@ _MESH, _SHAFT = 24, 8
 #: Points of the first grids over each cycle of phases that a part does not follow, of meshes and of
 #: shafts alone, by the number of phases, and over each of their mesh cycles where teeth differ.
 _OTHERS, _TURNED, _TEETH = (12, 12, 12, 8, 4), (12, 12, 12, 4, 4), 4
+#: Most of these points, tried in turn, and the unknowns of the first grids up to which all stay.
+_COARSER, _LARGE = (12, 8, 6, 4), 3 * 2**19
 #: Times the points over its phase with which a mesh that jumps is looked at too, as far as with so
 #: many times the points of the first grids.
 AHEAD = 8
@@ -156,31 +158,41 @@ class Follower(NamedTuple):
 
 
 def points_of(
-    followers: Sequence[Follower], orders: Any, mesh: int | None = None
-) -> tuple[Index, Index]:
-    """First points over each phase, of those that follow it and others; orders are of forces."""
-    # A mesh whose teeth differ has all cycles of its period.
+    followers: Sequence[Follower], orders: Any, mesh: int | None = None, *, coarser: bool = True
+) -> Index:
+    """First points of each follower over each phase (f, phases); orders are of forces."""
     cycles = np.abs([each.cycles for each in followers])
     periods = np.array([each.period for each in followers])[:, None]
-    turns = [np.abs(term) for each in followers for term in each.turns]
-    shafts = np.max([np.ones(cycles.shape[1]), *turns], axis=0)
+    still = np.zeros_like(cycles[0])
+    turns = np.array([np.abs([still, *each.turns]).max(axis=0) for each in followers])
+    # A mesh whose teeth differ has all cycles of its period.
     meshes, driven = (cycles * periods).max(axis=0), _SHAFT * np.asarray(orders)
-    fine = np.maximum(
-        np.where(meshes > 0, (mesh or _MESH) * meshes, _SHAFT * shafts), driven
-    ).astype(int)
+    shafts = np.maximum(turns.max(axis=0), 1)
+    fine = np.where(meshes > 0, (mesh or _MESH) * meshes, _SHAFT * shafts)
+    fine = np.maximum(fine, driven)
     place = min(len(fine), len(_OTHERS)) - 1
     cycled = np.maximum(cycles.max(axis=0), 1)
     others = np.where(meshes > 0, _OTHERS[place] * cycled, _TURNED[place] * shafts)
     teeth = np.where(cycles > 0, periods, 1).max(axis=0)
-    felt = np.maximum(np.maximum(others, _TEETH * np.where(teeth > 1, teeth, 0)), driven)
-    return fine, np.minimum(fine, felt).astype(int)
+    contacts = np.array([each.contacts for each in followers])
+    # What turns with a phase that meshes of others have needs fewer points than these.
+    turned = np.where(meshes > 0, np.minimum(fine, _MESH * turns), fine)
+    for most in _COARSER if coarser else _COARSER[:1]:
+        felt = np.maximum(np.minimum(others, most), _TEETH * np.where(teeth > 1, teeth, 0))
+        felt = np.minimum(fine, np.maximum(felt, driven))
+        points = np.where(turns > 0, np.maximum(turned, felt), felt)
+        points = np.where(cycles > 0, fine, points).astype(int)
+        if contacts @ points.astype(float).prod(axis=1) <= _LARGE:
+            break
+    return np.asarray(points)
 
 
-def first_sizes(followers: Sequence[Follower], orders: Any, mesh: int | None = None) -> list[int]:
+def first_sizes(
+    followers: Sequence[Follower], orders: Any, mesh: int | None = None, *, coarser: bool = True
+) -> list[int]:
     """Points of the first grid of each follower."""
-    fine, others = points_of(followers, orders, mesh)
-    followed = (np.any(np.array([each.cycles, *each.turns]) != 0, axis=0) for each in followers)
-    return [int(np.prod(np.where(axes, fine, others))) for axes in followed]
+    points = points_of(followers, orders, mesh, coarser=coarser)
+    return [math.prod(each) for each in points.tolist()]
 
 
 def given_points(follower: Follower, orders: Any, mesh: int) -> tuple[int, ...]:
@@ -212,15 +224,16 @@ def time_of_grids(
     poor: Callable[..., Mask],
 ) -> tuple[float, float]:  # fmt: skip
     """Time of a search [s], whose grids are refined as of a motion, and lines of its last grids."""
-    fine, others = points_of(followers, orders)
     widths: dict[tuple[tuple[int, ...], ...], int] = {}
-    for each in followers:
+    grids: dict[tuple[tuple[int, ...], ...], tuple[int, ...]] = {}
+    for each, row in zip(followers, points_of(followers, orders).tolist(), strict=True):
         key = tuple(each.cycles), *each.turns
         widths[key] = widths.get(key, 0) + each.contacts
+        grids[key] = tuple(row)
     cycles = np.array([each for each, *_ in widths])
     felt = np.array([np.any(each, axis=0) for each in widths])
     axes = np.where(cycles == 0, np.inf, np.abs(cycles)).argmin(axis=1)
-    points: Points = tuple(map(tuple, np.where(felt, fine, others).tolist()))
+    points: Points = tuple(grids.values())
     errors, times = np.zeros(felt.shape), np.full(felt.shape, 2)
     for place, rate in enumerate(np.abs(cycles @ frequency)):
         at = place, axes[place]
@@ -230,7 +243,7 @@ def time_of_grids(
         return sum(math.prod(grid) * w for grid, w in zip(grids, widths.values(), strict=True))
 
     first, again, smooth = points, np.ones(felt.shape, dtype=bool), work.kind in _WHOLE
-    seconds, teeth = _ONCE, np.where(cycles != 0, fine[None] // _MESH, 1).max(axis=1)
+    seconds, teeth = _ONCE, np.where(cycles != 0, np.array(points) // _MESH, 1).max(axis=1)
     while True:
         for place, (grid, width) in enumerate(zip(points, widths.values(), strict=True)):
             axis = int(axes[place])

@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from fractions import Fraction
+from itertools import combinations
 
 from tribodyn.errors import InputError, no_such
 
@@ -110,8 +111,10 @@ def phases_of(
     driven: Sequence[Fraction] = (),
     *,
     together: bool = False,
+    size: Callable[[Phases], float] | None = None,
 ) -> Phases:
     """Phases of meshes, of what turns with them and of what drives them; or one together."""
+    # size: what grids over phases take; where teeth differ, phases that make it less are one.
     rates = {mesh: Fraction(cycles, periods[mesh]) for mesh, cycles in clock.cycles.items()}
     # Meshes follow a rotation that is ahead, but not what drives it: that has phases of its own.
     all_rates = [*rates.values(), *turning]
@@ -119,20 +122,31 @@ def phases_of(
     # Meshes of one frequency follow one phase, also where the teeth of some differ.
     for cycles in dict.fromkeys(clock.cycles.values()):
         locked = _joined(locked, [rates[m] for m, each in clock.cycles.items() if each == cycles])
-    bases = [_common(group) for group in (*locked, *free)]
 
-    def over(rate: Fraction, groups: list[list[Fraction]], first: int) -> tuple[int, ...]:
-        counts = [0] * len(bases)
-        axis = next(first + at for at, group in enumerate(groups) if rate in group)
-        counts[axis] = int(rate / bases[axis])
-        return tuple(counts)
+    def over(locked: list[list[Fraction]]) -> Phases:
+        bases = [_common(group) for group in (*locked, *free)]
 
-    return Phases(
-        {mesh: over(rate, locked, 0) for mesh, rate in rates.items()},
-        tuple(clock.frequency * float(base) for base in bases),
-        {rate: over(rate, locked, 0) for rate in turning},
-        {rate: over(rate, free, len(locked)) for rate in driven},
-    )
+        def counts(rate: Fraction, groups: list[list[Fraction]], first: int) -> tuple[int, ...]:
+            axis = next(first + at for at, group in enumerate(groups) if rate in group)
+            return (*(0,) * axis, int(rate / bases[axis]), *(0,) * (len(bases) - axis - 1))
+
+        return Phases(
+            {mesh: counts(rate, locked, 0) for mesh, rate in rates.items()},
+            tuple(clock.frequency * float(base) for base in bases),
+            {rate: counts(rate, locked, 0) for rate in turning},
+            {rate: counts(rate, free, len(locked)) for rate in driven},
+        )
+
+    differing = {rates[mesh] for mesh, period in periods.items() if period > 1}
+    phases = over(locked)
+    while size is not None and len(phases.frequency) > 2:
+        pairs = [(a, b) for a, b in combinations(locked, 2) if not differing.isdisjoint(a + b)]
+        joined = [_joined(locked, [a[0], b[0]]) for a, b in pairs]
+        merged = min(joined, key=lambda each: size(over(each)), default=locked)
+        if size(over(merged)) >= size(phases):
+            break
+        locked, phases = merged, over(merged)
+    return phases
 
 
 def _groups(rates: Iterable[Fraction]) -> list[list[Fraction]]:

@@ -57,27 +57,15 @@ def over_phases(solver: SolverTable, machine: Machine) -> bool:
 
 def repeats_late(machine: Machine, phases: Phases, cycles: int, orders: Any = 0) -> bool:
     """Whether so many mesh cycles of a period take longer than these phases."""
-    from tribodyn.dynamics.harmonic.phase_grid import Follower, first_sizes
+    from tribodyn.dynamics.harmonic.phase_grid import first_sizes
 
     meshes = machine.meshes.values()
     if cycles > _LONG_PERIOD or not any(m.contacts or m.stiffness is None for m in meshes):
         return cycles > _LONG_PERIOD
-    followers = [Follower(1, *each[1:]) for each in _followers(machine, phases)]
+    followers = [each._replace(contacts=1) for each in machine._followers(phases)]
     least, each = _OVER_PHASES
     over_phases = least + each * len(meshes) * sum(first_sizes(followers, orders))
     return _ON_CLOCK * cycles * len(meshes) ** 2 > over_phases
-
-
-def _followers(machine: Machine, phases: Phases) -> list[Fields]:
-    """Contacts of each mesh, and what they follow."""
-    cycles = machine.clock.cycles
-    return [
-        (
-            max(len(mesh.contacts), 1), phases.cycles[name], mesh.period,
-            tuple(phases.turns[cycles[name] * turn.waves] for turn in mesh.turning),
-        )
-        for name, mesh in machine.meshes.items()
-    ]  # fmt: skip
 
 
 class PhaseCost(NamedTuple):
@@ -148,7 +136,7 @@ def phase_cost_of(
     """Cost of the motion of a machine over phases; refuse too much, with what makes it less."""
     phases, shafts = driven or (machine.phases, ())
     names = phase_names(machine, phases, shafts)
-    followers = _followers(machine, phases)
+    followers: list[Fields] = [*machine._followers(phases)]
     loose = sum(each.clearance > 0.0 or each.unloaded is not None
                 for each in machine.bearings.values())  # fmt: skip
     if loose:
