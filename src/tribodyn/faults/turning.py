@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import fields, replace
 from functools import cached_property
 from hashlib import sha256
@@ -35,6 +35,9 @@ from tribodyn.types import Array, ByName, Index
 _PHASES, _FEWEST = 256, 32
 #: Most phases of all turns: beyond it the table needs more memory than a notebook has.
 _MOST = 400_000
+#: Most phases of all turns where the teeth have slices, at which more are not tried, and bytes of
+#: the compliances that are set up at once.
+_MOST_OF_SLICES, _AT_ONCE = 105_000, 2**28
 #: Gaps that differ by less than half of its inverse are rounding [1/m].
 _SAME = 1e17
 #: Difference of force laws, over their size, that is rounding.
@@ -258,19 +261,21 @@ def turning_mesh(
         pair = fault._on(pair)
     cycles = turns_of(pair, faults)
     if phases is None:
-        phases = max(min(_PHASES, _MOST // cycles), _FEWEST)
+        most = _MOST_OF_SLICES if has_slices(pair, MODELS[provider]) else _MOST
+        phases = max(min(_PHASES, most // cycles), _FEWEST)
     if cycles * phases > _MOST:
         what = f"all repeats after {cycles} mesh cycles, {cycles * phases} phases"
         remedy = "Give faults of one gear only, or fewer phases of a mesh cycle"
         raise InputError(what, "argument faults", f"At most {_MOST} phases are solved", remedy)
     material = material or Material()
     force = torque / pair.pinion.base_radius
-    places, distinct, shift, rows = _turns(
+    places, problems, shift, rows = _turns(
         pair, faults, np.arange(cycles * phases) / phases, material,
         provider=provider, extended_contact=extended_contact, total_force=force, options=options,
     )  # fmt: skip
-    solved = distinct.at_loads(np.array([force]))
-    approach = solved.approach[0][rows] + shift
+    solved = [_solved(problem, force) for problem in problems]
+    approach, tangent, pair_force, place, stiffness = map(np.concatenate, zip(*solved, strict=True))
+    approach = approach[rows] + shift
     if approach.max() > 0.5 * FAR:
         cycle = places.phase[int(np.argmax(approach))]
         raise InputError(
@@ -279,17 +284,15 @@ def turning_mesh(
             "The neighbours of the damaged tooth do not come into contact",
             "Leave more of the tooth, or take extended contact",
         )
-    place, stiffness = ramps_about(distinct, solved.approach[0])
     place, stiffness = place[rows] + shift[:, None], stiffness[rows]
     law = MeshForceLaw(
         phase_grid((0.0,), cycles * phases), *(_closed(x) for x in (place, stiffness))
     )
-    pair_force = distinct.widths * solved.load[0]
     face_load = _face_load(places, pair_force, rows, cycles)
     return TurningMesh(
         phase=np.arange(cycles * phases + 1) / phases,
         transmission_error=_closed(approach),
-        mesh_stiffness_tangent=_closed(solved.tangent[0][rows]),
+        mesh_stiffness_tangent=_closed(tangent[rows]),
         load_share=_closed(_of_pairs(places, pair_force.sum(axis=1)[rows] / force)),
         face_position=face_positions(places.contact, face_load.shape[1]),
         face_load=face_load,
@@ -302,9 +305,18 @@ class _Turns(NamedTuple):
     """Contacts over all turns, and the problem of those mesh cycles that differ."""
 
     places: ContactPlaces
-    problem: ContactProblem  #: of the mesh cycles that differ by more than a shift of the approach
+    #: Of the mesh cycles that differ by more than a shift of the approach, some at a time.
+    problems: Iterator[ContactProblem]
     shift: Array  #: of the approach (p,) [m]
-    rows: Index  #: row of the problem of each phase (p,)
+    rows: Index  #: row of the problems of each phase (p,)
+
+
+def _solved(problem: ContactProblem, force: float) -> tuple[Array, ...]:
+    """Approach, stiffness, forces of the pairs, and ramps of a problem at a load."""
+    solved = problem.at_loads(np.array([force]))
+    approach = solved.approach[0]
+    ramps = ramps_about(problem, approach)
+    return approach, solved.tangent[0], problem.widths * solved.load[0], *ramps
 
 
 def _distinct(places: ContactPlaces, gaps: Array, faults: Sequence[Fault], cycles: int) -> Index:
@@ -373,17 +385,24 @@ def _turns(
     first = _distinct(places, gaps, faults, phase.size // len(cycle.gaps))
     chosen, group = np.unique(first, return_inverse=True)
     phases = np.arange(len(cycle.gaps))
-    rows = (chosen[:, None] * phases.size + phases).ravel()
     parts, widths = cycle.compliance, cycle.widths
-    problem = ContactProblem(
-        _at_phases(places, rows),
-        Compliance(parts.structure[within[rows]], parts.local[within[rows]], parts.logarithm),
-        gaps[rows],
-        widths if len(widths) == 1 else widths[within[rows]],
-    )
-    for fault in faults:
-        fault._soften(problem, material)
-    return _Turns(places, problem, shift[:, 0, 0], (group[:, None] * phases.size + phases).ravel())
+    at_once = max(1, _AT_ONCE // (phases.size * parts.structure[0].nbytes))
+
+    def problems() -> Iterator[ContactProblem]:
+        for begin in range(0, chosen.size, at_once):
+            some = chosen[begin : begin + at_once]
+            rows, same = (some[:, None] * phases.size + phases).ravel(), np.tile(phases, some.size)
+            compliance = parts.structure[same], parts.local[same], parts.logarithm
+            problem = ContactProblem(
+                _at_phases(places, rows), Compliance(*compliance), gaps[rows],
+                widths if len(widths) == 1 else widths[same],
+            )  # fmt: skip
+            for fault in faults:
+                fault._soften(problem, material)
+            yield problem
+
+    rows = (group[:, None] * phases.size + phases).ravel()
+    return _Turns(places, problems(), shift[:, 0, 0], rows)
 
 
 def _at_phases(places: ContactPlaces, rows: Index) -> ContactPlaces:

@@ -2,14 +2,18 @@
 
 from __future__ import annotations
 
+import math
+from dataclasses import replace
 from fractions import Fraction
 
 import numpy as np
 import pytest
 
 from tribodyn.dynamics import harmonic_balance
+from tribodyn.dynamics.harmonic.phase_grid import Follower, points_of
 from tribodyn.machine import Bearing, Gear, Machine, Mesh, Operation, Section, Shaft, system
 from tribodyn.machine.graph.clock import clock_of, phases_of
+from tribodyn.machine.mesh import Turn
 
 
 def waving(k, part):
@@ -102,3 +106,53 @@ def test_one_phase_is_the_clock() -> None:
     phased = harmonic_balance(system(train, phases=True), train.phases.frequency)
     clock = harmonic_balance(system(train), train.clock.frequency)
     assert np.array_equal(phased.contact_force, clock.contact_force)
+
+
+def deviating(*teeth: int, wave: bool = False) -> Machine:
+    """Gears 15:21 before another stage, with deviations of the teeth of the first, second or both.
+
+    A wave turns with the second gear.
+    """
+    train, period = machine(15, 21, 97, 31), math.lcm(*teeth)
+
+    def error(phase):
+        turned = 2 * np.pi * period * np.asarray(phase)
+        return 2e-6 * np.cos(turned) + sum(1e-7 * z * np.sin(26 * turned / z + z) for z in teeth)
+
+    turn = Turn(lambda phase: 3e-5 * np.cos(2 * np.pi * phase), Fraction(5, 21), "z2")
+    first = replace(
+        train.meshes["first"], period=period, error=error, turning=(turn,) if wave else (),
+        stiffness=lambda phase: 3e8 * (1.0 + 0.15 * np.cos(2 * np.pi * period * phase)),
+    )  # fmt: skip
+    operation = replace(train.operation, speed=1500.0)
+    return train._with(meshes={**train.meshes, "first": first}, operation=operation)
+
+
+def test_a_gear_that_turns_with_teeth_that_differ_on_both_gears_has_no_phase_of_its_own() -> None:
+    both = deviating(15, 21, wave=True).phases
+    assert (both.cycles["first"], *both.turns.values()) == ((1, 0), (25, 0))
+
+
+def test_grids_that_are_too_large_get_coarser_over_the_phases_of_others_alone() -> None:
+    def points(period: int) -> list[list[int]]:
+        stages = [Follower(6, (1, 0, 0), period), Follower(6, (0, 1, 0)), Follower(1, (0, 0, 1))]
+        return points_of(stages, 0).tolist()
+
+    assert points(22) == [[528, 12, 12], [88, 24, 12], [88, 12, 24]]
+    assert points(638) == [[15312, 4, 4], [2552, 24, 4], [2552, 4, 24]]
+
+
+@pytest.mark.slow
+def test_deviations_of_both_gears_and_a_wave_add_up() -> None:
+    """Flanks in contact are linear in their errors, whatever phases these are computed over."""
+    time = np.linspace(0.0, 0.04, 400)
+
+    def force(*teeth, wave=False):
+        train = deviating(*teeth, wave=wave)
+        motion = harmonic_balance(system(train, phases=True), train.phases.frequency)
+        return motion.at(time).contact_force
+
+    sound, all_errors = force(), force(15, 21, wave=True)
+    parts = [force(15), force(21), force(wave=True)]
+    assert all(np.abs(part - sound).max() > 0.01 * sound.mean() for part in parts)
+    assert all_errors == pytest.approx(sum(parts) - 2 * sound, abs=2e-6 * sound.max())
