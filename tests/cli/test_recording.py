@@ -54,6 +54,8 @@ def test_a_recording_and_a_set_have_their_truth(
         (("--repeats", "3"), "--repeats: repeats = 3"),
         (("--out", "axis.xyz"), "Recordings are written as .wav"),
         (("faults.axis.amplitude=0,1 um", "--force"), "--force"),
+        (("faults.axis.amplitude=0,1 um", "--tacho", "wheel"), "--tacho: tacho = wheel"),
+        (("--tacho", "whel"), 'Did you mean "wheel"'),
     ],
 )
 def test_what_cannot_be_recorded_names_its_option(
@@ -61,3 +63,38 @@ def test_what_cannot_be_recorded_names_its_option(
 ) -> None:
     assert call(["recording", *WAVE, *arguments]) == 2
     assert expected in capsys.readouterr().err
+
+
+MACHINE = """
+[gears]
+z1 = { shaft = "in", teeth = 20, face_width = "50 mm" }
+z2 = { shaft = "out", teeth = 41, face_width = "50 mm" }
+[meshes.first]
+gears = ["z1", "z2"]
+normal_module = "4 mm"
+stiffness = "5e8 N/m"
+transmission_error_amplitude = "2 um"
+[operation]
+input = "in"
+output = "out"
+speed = "1200 rpm"
+torque = "100 N*m"
+"""
+
+
+def test_the_tacho_of_a_machine_and_the_command_that_reads_it(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    Path("m.toml").write_text(MACHINE, "utf-8")
+    sensor = ("--sensor", "meshes.first.mesh_force", "--sample-rate", "5000 Hz")
+    assert call(["recording", "m.toml", *sensor, "--tacho", "out"]) == 0
+    command = capsys.readouterr().err.strip().splitlines()[-1]
+    assert command.endswith(
+        'm-recording.mat --channel "meshes.first.mesh_force" --tacho tacho --case m.toml --gear z2'
+    )
+    tacho = read("m-recording.mat")["tacho"]
+    pulses = np.count_nonzero(np.diff((tacho > 0.5 * tacho.max()).astype(int)) == 1)
+    assert abs(pulses - 20 * 20 / 41) <= 1  # in a second
+    arguments = command.partition("tribodyn ")[2].replace('"', "").split()
+    assert call([*arguments, "--json"]) == 0

@@ -260,7 +260,7 @@ def compare(
         if speed.located:
             warn_of_harmonics(name, harmonic)
             shares[name] = harmonic.share
-        at_harmonics = size[(order > 0.5) & (np.abs(order - np.rint(order)) < 1e-9)][:count]
+        at_harmonics = _at_harmonics(order, size, count)
         gains[name] = _gain(gain, name, at_harmonics, (harmonic, factors[name]), speed)
         size, at_harmonics = gains[name] * size, gains[name] * at_harmonics
         passed = _passed(order * frequency / measured.sample_rate)[order > 0.0]
@@ -279,6 +279,15 @@ def compare(
     columns = (channel, measure, units, values, test, errors)
     recorded = (noise, ratio, uncertainty, limits, speed.method, shares)
     return Comparison(*columns, base, computed_frequency, gains, fitted, lines, *recorded)
+
+
+def _at_harmonics(order: Array, size: Array, count: int) -> Array:
+    """Sizes of the lines at the orders 1, 2, ..., zero without a line."""
+    whole = np.rint(order)
+    lines = (np.abs(order - whole) < 1e-9) & (whole >= 1) & (whole <= count)
+    sizes = np.zeros(count)
+    sizes[whole[lines].astype(int) - 1] = size[lines]
+    return sizes
 
 
 def _harmonic_rows(

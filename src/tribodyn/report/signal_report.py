@@ -403,14 +403,18 @@ def _diagnosis(analysis: SignalAnalysis) -> list[Figure]:
 
 
 def recorded_motion(
-    case: Any, sensors: Sequence[str], progress: Progress = SILENT, **settings: Any
+    case: Any,
+    sensors: Sequence[str],
+    progress: Progress = SILENT,
+    tacho: str | None = None,
+    **settings: Any,
 ) -> tuple[Recording, Tree]:
     """Record the motion of a case; return the recording and its operation and faults in SI."""
     from tribodyn.cases.load import run
     from tribodyn.study.faults.sensors import check_sensors, sensors_of
 
-    check_sensors(sensors_of(case), sensors)
-    recording: Recording = run(case, progress).recording(sensors, **settings)
+    check_sensors(sensors_of(case), sensors, tacho)
+    recording: Recording = run(case, progress).recording(sensors, tacho=tacho, **settings)
     faults: Any = getattr(case, "faults", None) or {}
     truth = {
         name: {key: value for key, value in vars(fault).items() if value is not None}

@@ -236,3 +236,23 @@ def test_refusals(options: dict, message: str) -> None:
     with pytest.raises(InputError) as error:
         compare(**{**arguments, **options})
     assert message.lower() in str(error.value).lower()
+
+
+def test_a_harmonic_without_a_line_leaves_the_others_in_their_places() -> None:
+    """The computed motion has no line at order 2, the measured one has."""
+    orders, sizes = [1.0, 2.5, 3.0], [4.0, 1.0, 2.0]
+    computed = xarray.Dataset(
+        {"force_spectrum": ("order", sizes, {"units": "N"})},
+        {"order": orders},
+        {"mesh_frequency": 100.0},
+    )
+    time = np.arange(40000) / 1e4
+    wave = sum(
+        size * np.cos(2 * np.pi * 100 * order * time)
+        for order, size in ((1, 4.0), (2, 0.5), (3, 2.0))
+    )
+    recording = Recording({"cell": wave}, 1e4, {"cell": "N"})
+    rows = by_measure(compare(computed, recording, {"cell": "force"}, harmonics=3))
+    assert [rows[f"mesh harmonic {k}"][0] for k in (1, 2, 3)] == [4.0, 0.0, 2.0]
+    assert rows["mesh harmonic 2"][1] == pytest.approx(0.5, rel=1e-3)
+    assert rows["mesh harmonic 3"][1] == pytest.approx(2.0, rel=1e-3)

@@ -252,3 +252,22 @@ def test_of_a_very_long_period_the_beginning_is_drawn(result):
     assert max(len(trace.x) for trace in figure.data) == 30_000
     assert "its first" in figure.layout.xaxis.title.text
     assert "its first" not in plot.machine_forces(motion).layout.xaxis.title.text
+
+
+def test_without_a_friction_law_no_efficiency_is_stated() -> None:
+    gears = {
+        name: {"shaft": shaft, "teeth": teeth, "face_width": "30 mm"}
+        for name, shaft, teeth in (("z1", "in", 17), ("z2", "out", 23))
+    }
+    case = td.study.MachineCase(
+        gears=gears, meshes={"pair": {"gears": ["z1", "z2"], "normal_module": "3 mm"}},
+        stiffness={"model": "iso6336"},
+        operation={"input": "in", "output": "out", "speed": "1000 rpm", "torque": "100 N*m"},
+    )  # fmt: skip
+    names = {"machine.friction_power", "machine.efficiency", "meshes.pair.friction_power"}
+    assert not names & set(td.run(case).summary())
+    law = {"friction.law": "constant", "friction.coefficient": 0.05}
+    figures = td.run(case.replace(law)).summary()
+    lost = figures["machine.friction_power"]
+    assert lost == figures["meshes.pair.friction_power"] > 0.0
+    assert figures["machine.efficiency"] == pytest.approx(1.0 - lost / (100.0 * 1000 / 30 * np.pi))

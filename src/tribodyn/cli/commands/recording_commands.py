@@ -5,10 +5,12 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 from pathlib import Path
+from shlex import quote
 from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 from cyclopts import Parameter
 
+from tribodyn.cli.commands.signal_command import gear_on
 from tribodyn.cli.console import say, say_json, show_warnings, table, tell
 from tribodyn.cli.settings import (
     CaseName,
@@ -55,6 +57,9 @@ class Sampling:
         Length of a recording: "2 s".
     sample_rate : str
         Sampling rate: "25600 Hz".
+    tacho : str
+        Gear of a pair or shaft of a machine of whose turns the channel "tacho" has a pulse each:
+        the pinion or the input by default. The recordings of a set have none.
     noise : float
         Standard deviation of white noise, in the SI unit of the sensor.
     speed_fluctuation : float
@@ -70,6 +75,7 @@ class Sampling:
     sensor: str
     duration: str = "1 s"
     sample_rate: str = "25600 Hz"
+    tacho: str | None = None
     noise: float = 0.0
     speed_fluctuation: float = 0.0
     tacho_jitter: float = 0.0
@@ -117,6 +123,9 @@ def recording(
         if over and force:
             why = "The same command continues a set, and another one is not replaced"
             raise InputError("--force is given for a set", "--force", why, "Remove it")
+        if over and sampling.tacho is not None:
+            why, remedy = "The recordings of a set have no tacho", "Remove it"
+            raise InputError(f"tacho = {sampling.tacho}", "--tacho", why, remedy)
         if over:
             facts, lines = _record_set(case, over, out, sampling, set_)
         else:
@@ -148,14 +157,16 @@ def _record(
     ready = changed_any_case(case, set_ or [])
     names = [name.strip() for name in sampling.sensor.split(",")]
     with progress_bar() as progress:
-        recorded, truth = recorded_motion(ready, names, progress, **settings)
+        recorded, truth = recorded_motion(ready, names, progress, sampling.tacho, **settings)
     recorded.save(file, truth={"title": ready.title, **truth})
     rate, size = recorded.sample_rate, next(iter(recorded.channels.values())).size
     facts = {"file": str(file), "sample_rate": rate, "samples": size}
+    gear = None if set_ else gear_on(ready, sampling.tacho)
+    teeth = "" if gear is None else f" --case {quote(case)} --gear {gear}"
     return {**facts, "units": dict(recorded.units), **truth}, [
         f"{ready.title}\n{recorded}",
         f"Recording: {file}, truth: {file.with_suffix('.json')}",
-        f'Analyse it: tribodyn signal {file} --channel "{names[0]}" --tacho tacho',
+        f'Analyse it: tribodyn signal {file} --channel "{names[0]}" --tacho tacho{teeth}',
     ]
 
 

@@ -404,6 +404,19 @@ def _teeth_and_speed(turning: Shaft) -> tuple[int | None, int | None, float | No
     return teeth, mates.pop() if len(mates) == 1 else None, float(speed or of_case)
 
 
+def gear_on(case: Any, shaft: str | None) -> str | None:
+    """Gear on a shaft, the input by default, whose mesh repeats with whole parts of its turn."""
+    of_machine = None if case.lumped else case.machine()
+    shaft = shaft or (GEARS[0] if of_machine is None else of_machine.operation.input)
+    for mesh in _meshes_of(case):
+        for gear, teeth in mesh.teeth.items():
+            on = gear if of_machine is None else of_machine.gears[gear].shaft
+            lines = teeth * mesh.speeds[gear], 2.0 * math.pi * mesh.frequency
+            if on == shaft and math.isclose(*lines, rel_tol=1e-9):
+                return gear
+    return None
+
+
 class _CaseMesh(NamedTuple):
     """Teeth and speeds [rad/s] of both gears of a mesh by name, and its frequency [Hz]."""
 

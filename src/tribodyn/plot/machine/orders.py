@@ -189,7 +189,7 @@ def _force_caption(motion: MachineMotion) -> str:
 
 def _period(motion: MachineMotion) -> str:
     if motion.phase_turns is None:
-        return "The period is the shortest after which all meshes repeat."
+        return "The record is one period, after which the whole motion repeats."
     return (
         "The meshes have no common period: the record comes near all positions that they take to "
         "each other."

@@ -61,11 +61,12 @@ def _of_machine(result: LoadResult) -> Mapping[str, float | None]:
     efficiency = 1.0 - lost / entering if entering else 1.0
     ratio = float(flow[run.output].ratio)
     losses = efficiency if run.torque >= 0.0 else 1.0 / efficiency
+    rubbing = any(_rubs(table) for table in result.tables.values())
     return {
         "clock_frequency": result.motion.frequency,
         "input_power": entering,
-        "friction_power": lost if result.tables else None,
-        "efficiency": efficiency if result.tables and power else None,
+        "friction_power": lost if rubbing else None,
+        "efficiency": efficiency if rubbing and power else None,
         "output_torque": abs(run.torque / ratio) * losses,
         "oil_temperature": result.load.temperature,
         "gear_temperature": result.load.gear_temperature,
@@ -106,8 +107,13 @@ def _of_mesh(result: LoadResult, name: str) -> Mapping[str, float | None]:
         "face_load_factor": balance.face_load_factor,
         **geometry_figures(result.machine, name, mean, _contact_ratio(table)),
         **_of_table(result, name, table),
-        "friction_power": result.friction_power.get(name),
+        "friction_power": result.friction_power[name] if _rubs(table) else None,
     }
+
+
+def _rubs(table: MeshTable | None) -> bool:
+    """Whether a mesh has computed teeth with friction; without a law nothing is known of it."""
+    return table is not None and bool(table.friction_coefficient.any())
 
 
 def _dynamic_error(result: LoadResult, name: str) -> dict[str, float]:
