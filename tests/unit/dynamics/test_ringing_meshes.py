@@ -118,15 +118,16 @@ def test_the_cost_of_a_mesh_that_rings_is_known_before():
     assert 0.5 < (2 * rings / jumps) / (over_phases().points[0] / 24) < 2.0
 
 
-def test_a_trial_on_few_points_has_the_changes_of_the_first_grids():
+def test_a_trial_has_the_changes_of_the_first_grids():
     system, frequency = gears(phases=True), (SLOW, FAST)
     search = _Search.of(system, read_frequencies(frequency, system.phases))
     residual = search.residual(((24, 12), (12, 24)))
     state = solved(residual, search.linear(residual), 1e-6).state
-    every, none = np.eye(2, dtype=bool), np.zeros((2, 2))
+    every, none = np.ones((2, 2), dtype=bool), np.zeros((2, 2))
     errors, times = search.changes(((24, 12), (12, 24)), residual, state, every, none)
-    (slow, change, more), (fast, small, _) = work_of(system, frequency).changes
-    assert (slow, fast) == pytest.approx(frequency)
-    assert change == pytest.approx(errors[0, 0], rel=1e-3)
-    assert more == times[0, 0] == 8
+    found = work_of(system, frequency).changes
+    assert [each[:2] for each in found] == [(f, g) for f in frequency for g in frequency]
+    assert [each[2] for each in found] == pytest.approx(errors.reshape(-1), rel=1e-3, abs=1e-6)
+    assert [each[3] for each in found] == times.reshape(-1).tolist() == [8, 2, 2, 2]
+    change, small = found[0][2], found[3][2]
     assert small < 1e-6 * change

@@ -12,8 +12,12 @@ from tests.unit.study.test_machine_phases import case
 
 import tribodyn as td
 from tribodyn.dynamics import PhaseResponse
-from tribodyn.study.faults.clock import check_motion, fault_cost
-from tribodyn.study.faults.machine_motion import machine_turning_motion, rehearse_faults
+from tribodyn.study.faults.clock import check_motion, excitations_of, fault_cost
+from tribodyn.study.faults.machine_motion import (
+    _work,
+    machine_turning_motion,
+    rehearse_faults,
+)
 from tribodyn.study.machine.run import rehearse_machine
 
 SPEED = 1000.0 / 60.0
@@ -190,6 +194,19 @@ def test_costs_are_stated_and_refused_before_the_run() -> None:
     small = faulty.replace({"solver.memory": "100 MB"})
     with pytest.raises(td.ComputationError, match=r"allowed by solver.memory"):
         fault_cost(small, small.machine())
+
+
+def test_the_trial_has_the_phases_of_what_drives() -> None:
+    """More points over the phase of the ripple change the motion of both meshes."""
+    once = {**RIPPLE, "orders": [0.5], "torques": [0.3]}
+    faulty = with_faults(case(SHORT, phases="on"), ripple=once)
+    excited = excitations_of(faulty)
+    work = _work(rehearse_machine(faulty).structure(faulty), excited)
+    (ripple,) = {each[1] for each in work.changes} - {each[0] for each in work.changes}
+    assert ripple == pytest.approx(0.5 * SPEED)
+    changes = [change for _, over, change, _ in work.changes if over == ripple]
+    assert len(changes) == 2
+    assert all(change > 0.0 for change in changes)
 
 
 def needed(faulty: Any) -> float:

@@ -312,7 +312,7 @@ def test_the_stated_time_follows_from_what_the_forces_do() -> None:
     kinds, times = [], []
     for each in (steady, smooth, jumps, smooth.replace(large)):
         state = rehearse_machine(each)
-        kinds.append(_work(each, state).kind)
+        kinds.append(_work(state.structure(each)).kind)
         (text,) = rehearse_faults(each, state)
         times.append(float(text.partition(" GB and ")[2].partition(" s ")[0]))
     assert kinds == ["steady", "smooth", "ringing", "open"]

@@ -32,6 +32,7 @@ from tribodyn.dynamics.harmonic.phase_grid import (
     most_points,
     points_of,
     time_of_grids,
+    whose,
 )
 from tribodyn.dynamics.harmonic.phase_residual import Part, PhaseResidual, parts_of
 from tribodyn.dynamics.harmonic.phase_response import (
@@ -69,9 +70,9 @@ _RINGS = 2.0
 _PLAIN, _BYTES, _LOOKED = 1.5e3, 1.2e3, 6e2
 #: Least force of a contact on the first grids, over its mean, below which jumps may open it.
 _OPENS = 0.5
-#: Time per unknown of a motion on stated points [s], and unknowns of the first grids up to which a
-#: trial motion shows what forces do.
-_STATED, _TRIAL, _FEW = 6e-5, 2**16, 4
+#: Time per unknown of a motion on stated points [s], unknowns of grids up to which a trial motion
+#: shows what forces do, and of the first ones up to which it has all their points; or so few.
+_STATED, _TRIAL, _WHOLE, _FEW = 6e-5, 2**16, 2**14, 4
 #: Time per line and sample of the record, and per sample of the closed line and column [s].
 _SUMMED, _ALONG = 1.3e-8, 1e-7
 #: Step error that causes a warning; part of the largest change with which a phase is refined too.
@@ -96,17 +97,18 @@ def work_of(system: System, frequency: Any, supports: Sequence[RadialClearance] 
     """What the motion of a system over phases takes, from a trial on its first grids."""
     search = _Search.of(system, read_frequencies(frequency, system.phases), supports)
     points = _first_points(search)
-    sizes = np.where(search.followed(), points, np.minimum(points, _FEW)).tolist()
-    points = tuple(map(tuple, sizes))
+    if not (whole := search.size(points) <= _WHOLE):
+        sizes = np.where(search.followed(), points, np.minimum(points, _FEW)).tolist()
+        points = tuple(map(tuple, sizes))
     residual = search.residual(points)
     if residual.ends[-1] > _TRIAL:
         return Work("broken", system.size)
     solution = solved(residual, search.linear(residual), 1e-4)
     state = solution.state
-    followed = np.zeros(np.shape(points), dtype=bool)
+    again = np.full(np.shape(points), whole)  # few points tell nothing of those over other phases
     for number, part in enumerate(search.parts):
-        followed[number, part.axis] = bool(part.axes)
-    errors, times = search.changes(points, residual, state, followed, np.zeros(followed.shape))
+        again[number, part.axis] = bool(part.axes)
+    errors, times = search.changes(points, residual, state, again, np.zeros(again.shape))
     cells = [each.pieces is not None for each in state.each]
     forces = [each.law.contact for each in state.each]
     low = [(each.min(axis=0) < _OPENS * each.mean(axis=0)).any() for each in forces]
@@ -116,15 +118,17 @@ def work_of(system: System, frequency: Any, supports: Sequence[RadialClearance] 
         kind = "open"
     elif any(cells):
         kind = "ringing" if (times > 2).any() else "broken"
-    rows = search.rows
+    rows, firsts = search.rows, [part.rows.meshes[0] for part in search.parts]
+    rates = [abs(rows.rate(mesh.cycles)) * mesh.period for mesh in firsts]
+    over = whose(rows.frequency, [part.axis for part in search.parts], rates)
     changes = tuple(
-        (abs(rows.rate(part.rows.meshes[0].cycles)), errors[n, part.axis], times[n, part.axis])
-        for n, part in enumerate(search.parts)
+        (rates[n], float(over[axis]), float(errors[n, axis]), int(times[n, axis]))
+        for n, axis in np.ndindex(errors.shape)
+        if again[n, axis]
     )
     springs = 1 + rows.means.nodes.ramp_gap.shape[-1]
-    # One step more has the accuracy of a motion.
-    steps, products = solution.newton + 1, solution.krylov * (solution.newton + 1)
-    products //= max(solution.newton, 1)
+    steps = solution.newton + 1  # one more has the accuracy of a motion
+    products = solution.krylov * steps // max(solution.newton, 1)
     return Work(kind, system.size, steps, products, springs, search.structure.decay, changes)
 
 

@@ -8,7 +8,7 @@ The line of the whole numbers ``k`` has the frequency ``k.f``; a derivative over
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any, NamedTuple
@@ -209,14 +209,23 @@ class Work(NamedTuple):
     products: int = 30  #: with the derivative in them
     springs: int = 1  #: of a contact
     decay: float = 0.0  #: of a disturbance of the structure, at least [1/s]
-    #: Frequency of each mesh [Hz], the change with more points over its own phase, and how many.
-    changes: tuple[tuple[float, float, int], ...] = ()
+    #: Frequency of a mesh, that of the mesh or the shaft over whose phase there are more points
+    #: [Hz], change of the motion with them, and how many times as many they are.
+    changes: tuple[tuple[float, float, float, int], ...] = ()
 
-    def change(self, frequency: float) -> tuple[float, int]:
-        """Change of a mesh of this frequency with so many times the points."""
-        if not self.changes or frequency == 0.0:
-            return (0.02 if frequency else 0.0), 2
-        return min(self.changes, key=lambda each: abs(each[0] - frequency))[1:]
+    def change(self, mesh: float, over: float) -> tuple[float, int]:
+        """Change of a mesh with so many times the points over a phase."""
+        if not self.changes or 0.0 in (mesh, over):
+            return (0.02 if mesh and mesh == over else 0.0), 2
+        return min(self.changes, key=lambda each: abs(each[0] - mesh) + abs(each[1] - over))[2:]
+
+
+def whose(frequency: Array, axes: Iterable[int], rates: Iterable[float]) -> Array:
+    """Frequency of the mesh of each phase, from meshes with their axes, or of its shaft."""
+    over = np.abs(frequency)
+    for axis, rate in zip(axes, rates, strict=True):
+        over[axis] = rate or over[axis]
+    return over
 
 
 def time_of_grids(
@@ -235,9 +244,11 @@ def time_of_grids(
     axes = np.where(cycles == 0, np.inf, np.abs(cycles)).argmin(axis=1)
     points: Points = tuple(grids.values())
     errors, times = np.zeros(felt.shape), np.full(felt.shape, 2)
-    for place, rate in enumerate(np.abs(cycles @ frequency)):
-        at = place, axes[place]
-        errors[at], times[at] = work.change(rate)
+    periods = {tuple(each.cycles): each.period for each in followers}
+    rates = [abs(float(each @ frequency)) * periods[tuple(each.tolist())] for each in cycles]
+    over = whose(frequency, axes, rates)
+    for at in np.ndindex(felt.shape):
+        errors[at], times[at] = work.change(rates[at[0]], float(over[at[1]]))
 
     def size(grids: Points) -> int:
         return sum(math.prod(grid) * w for grid, w in zip(grids, widths.values(), strict=True))

@@ -444,11 +444,13 @@ def _fewer_faults(case: MachineCase, machine: Machine, work: Work | None) -> str
     return f"without {' and '.join(removed)} {takes}"
 
 
-def check_motion(case: MachineCase, work: Work | None = None, teeth: float = 0.0) -> list[str]:
+def check_motion(
+    case: MachineCase, work: Work | None = None, faulty_work: Work | None = None, teeth: float = 0.0
+) -> list[str]:
     """What the motions of a machine cost, and its faulty teeth [s]; refuse what takes too much."""
     machine = case.machine()
     sound = warn_of_motion(case.solver, machine, work)
-    faulty = fault_cost(case, machine, work) if case.faults else None
+    faulty = fault_cost(case, machine, faulty_work) if case.faults else None
     texts = [] if sound is None else [f"Under each load: {sound}."]
     if faulty is None:
         return texts

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import replace
 from fractions import Fraction
 from typing import TYPE_CHECKING
 
-from tribodyn.faults import Fault, drive
+from tribodyn.errors import collected
+from tribodyn.faults import Fault, ShaftExcitation, drive
 from tribodyn.interrupt import single_blas_thread
 from tribodyn.machine.static.supports import clearance_supports, without_clearance_supports
 from tribodyn.progress import SILENT, Progress
@@ -48,8 +50,9 @@ from tribodyn.study.pipeline.motion import by_engine
 from tribodyn.types import Tree
 
 if TYPE_CHECKING:
-    from tribodyn.dynamics import Response
+    from tribodyn.dynamics import Response, System
     from tribodyn.dynamics.harmonic.phase_grid import Work
+    from tribodyn.dynamics.harmonic.radial_clearance import RadialClearance
     from tribodyn.faults.driven import Lead
     from tribodyn.machine import Machine, MachineStructure
     from tribodyn.study.machine.case import MachineCase
@@ -60,31 +63,30 @@ _ACCURACY = Accuracy((128, 256), 1e-4)
 
 
 def rehearse_faults(case: MachineCase, state: Balanced) -> list[str]:
-    """Costs of the motions over phases; refuse faulty teeth that cannot run, and too much."""
-    moves = case.faults or over_phases(case.solver, state.machine)
-    work = _work(case, state) if moves else None
-    costs = check_motion(case, work, _time_of_teeth(case, state))
+    """Costs of the motions; refuse faulty teeth that cannot run, and what takes too much."""
+    with collected():
+        check_motion(case)  # refuses what takes too much, before teeth are computed
+    machine, structure = state.machine, state.structure(case)
     teeth = {n: f for n, f in case.faults.items() if f.gear and f.kind != "crack"}  # elements
     if teeth:
         cracked = [f"faults.{name}" for name in case.faults if name not in teeth]
         plain = case.replace(dict.fromkeys(cracked)) if cracked else case
-        turning_machine(plain, state)
-    return costs
+        machine = turning_machine(plain, state)
+    sound = faulty = None
+    if over_phases(case.solver, state.machine):
+        sound = _work(structure)
+    if case.faults:
+        faulty = _work(replace(structure, machine=machine), excitations_of(case))
+    return check_motion(case, sound, faulty, _time_of_teeth(case, state))
 
 
-def _work(case: MachineCase, state: Balanced) -> Work:
-    """What the motion over phases takes, from a trial with the sound teeth."""
+def _work(structure: MachineStructure, excited: Sequence[ShaftExcitation] = ()) -> Work:
+    """What the motion over phases takes, from a trial; cracks are left out."""
     from tribodyn.dynamics.harmonic.phase_balance import work_of
     from tribodyn.dynamics.harmonic.phase_grid import Work
-    from tribodyn.machine import system as system_of
 
-    structure = state.structure(case)
-    system, supports = system_of(structure, phases=True), clearance_supports(structure)
-    if not system.phases:
-        return Work(size=system.size)
-    if supports:
-        system = without_clearance_supports(structure, system)
-    return work_of(system, structure.machine.phases.frequency, [*supports.values()])
+    system, supports, frequency, _ = _system_over_phases(structure, {}, excited)
+    return work_of(system, frequency, supports) if system.phases else Work(size=system.size)
 
 
 def _time_of_teeth(case: MachineCase, state: Balanced) -> float:
@@ -190,24 +192,34 @@ def _over_phases(
 ) -> _Steady:  # fmt: skip
     """Motion over phases of the meshes and of what turns with shafts and drives them."""
     from tribodyn.dynamics import clearance_motion, harmonic_balance
-    from tribodyn.machine import system as system_of
 
     machine, excited = structure.machine, excitations_of(case)
+    system, supports, frequency, ahead = _system_over_phases(structure, seats, excited)
+    phases, shafts = phases_with_faults(machine, excited), [each.gear for each in excited]
+    system = replace(system, phase_names=phase_names(machine, phases, shafts))
+    if supports:
+        response = clearance_motion(system, supports, frequency)
+    else:
+        response = harmonic_balance(system, frequency, progress=progress)
+    motion = with_lifted_forces(machine_motion(structure, response, phases), response, seats)
+    units = phase_units(machine, phases, shafts)
+    return response, replace(motion, units=units), ahead
+
+
+def _system_over_phases(
+    structure: MachineStructure, seats: dict[str, LooseSeat], excited: Sequence[ShaftExcitation]
+) -> tuple[System, list[RadialClearance], tuple[float, ...], Lead | None]:
+    """A driven system over its phases, bearings with a clearance, frequencies, and its lead."""
+    from tribodyn.machine import system as system_of
+
+    machine = structure.machine
     phases, supports = phases_with_faults(machine, excited), clearance_supports(structure)
     system = with_loose_seats(system_of(structure, phases=phases), seats)
     if supports:
         system = without_clearance_supports(structure, system)
     driven = [(each, phases.driven[rate_of(machine.clock, each)]) for each in excited]
     system, ahead = drive_machine_over_phases(structure, system, driven)
-    shafts = [each.gear for each in excited]
-    system = replace(system, phase_names=phase_names(machine, phases, shafts))
-    if supports:
-        response = clearance_motion(system, [*supports.values()], phases.frequency)
-    else:
-        response = harmonic_balance(system, phases.frequency, progress=progress)
-    motion = with_lifted_forces(machine_motion(structure, response, phases), response, seats)
-    units = phase_units(machine, phases, shafts)
-    return response, replace(motion, units=units), ahead
+    return system, [*supports.values()], phases.frequency, ahead
 
 
 def _on_clock(
