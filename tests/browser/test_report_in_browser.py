@@ -198,3 +198,20 @@ def test_spectra_switch_to_a_logarithmic_scale(visit: Visit) -> None:
     figure.locator(".updatemenu-button", has_text="linear").click()
     visit.page.wait_for_function(f"{kind} === 'linear'")
     assert visit.messages == []
+
+
+def test_bodies_in_space_have_no_legend_on_a_narrow_screen(browser: Any, tmp_path: Path) -> None:
+    machine = tribodyn.Case(
+        gears={
+            "z1": {"shaft": "in", "teeth": 20, "face_width": "50 mm"},
+            "z2": {"shaft": "out", "teeth": 41, "face_width": "50 mm"},
+        },
+        meshes={"first": {"gears": ["z1", "z2"], "normal_module": "4 mm", "stiffness": 5e8}},
+        operation={"input": "in", "output": "out", "speed": "1200 rpm", "torque": "100 N*m"},
+    )
+    page = browser.new_page(viewport={"width": 420, "height": 900})
+    page.goto(write_report(tribodyn.run(machine), tmp_path / "report.html").as_uri())
+    page.wait_for_function("document.querySelector('#figure-machine_space .main-svg')")
+    assert page.evaluate("document.querySelectorAll('#figure-machine_space .legend').length") == 0
+    assert "trace 0" not in page.content()
+    page.close()

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 from pathlib import Path
+from shlex import split
 
 import numpy as np
 import pytest
@@ -91,10 +92,12 @@ def test_the_tacho_of_a_machine_and_the_command_that_reads_it(
     assert call(["recording", "m.toml", *sensor, "--tacho", "out"]) == 0
     command = capsys.readouterr().err.strip().splitlines()[-1]
     assert command.endswith(
-        'm-recording.mat --channel "meshes.first.mesh_force" --tacho tacho --case m.toml --gear z2'
+        '--channel "meshes.first.mesh_force" --tacho "tacho" --case m.toml --gear z2'
     )
     tacho = read("m-recording.mat")["tacho"]
     pulses = np.count_nonzero(np.diff((tacho > 0.5 * tacho.max()).astype(int)) == 1)
     assert abs(pulses - 20 * 20 / 41) <= 1  # in a second
-    arguments = command.partition("tribodyn ")[2].replace('"', "").split()
-    assert call([*arguments, "--json"]) == 0
+    assert call([*split(command.partition("tribodyn ")[2]), "--json"]) == 0
+    assert call(["recording", "m.toml", *sensor, "--out", "m.wav"]) == 0  # without names
+    command = capsys.readouterr().err.strip().splitlines()[-1]
+    assert call([*split(command.partition("tribodyn ")[2]), "--json"]) == 0

@@ -15,7 +15,7 @@ const below = (figure, place) => {
   const { layout, data } = figure;
   const beside = legends(layout).every((key) => (layout[key].x ?? 1.02) > 1);
   const several = data.filter(
-    (trace) => trace.showlegend ?? (data.length > 1 && trace.type !== "surface"),
+    (trace) => trace.showlegend ?? (data.length > 1 && !["surface", "mesh3d"].includes(trace.type)),
   );
   if (!beside || !several.length) return;
   const seen = new Set();

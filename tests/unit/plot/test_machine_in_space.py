@@ -54,6 +54,23 @@ def test_the_bodies_are_closed_and_where_the_parts_are(name: str) -> None:
             assert centre == pytest.approx([1e3 * at for at in middle], abs=0.35)
 
 
+def test_a_long_machine_is_seen_from_further_away() -> None:
+    def distance(length: str) -> float:
+        case = td.Case(
+            shafts={name: {"sections": [[length, "40 mm"]]} for name in ("in", "out")},
+            bearings={f"{n}{x}": {"shaft": n, "position": x, "radial_stiffness": 1e9}
+                      for n in ("in", "out") for x in (0.0, 0.1)},
+            gears={"z1": {"shaft": "in", "teeth": 20, "face_width": "50 mm", "position": "50 mm"},
+                   "z2": {"shaft": "out", "teeth": 41, "face_width": "50 mm", "position": "50 mm"}},
+            meshes={"first": {"gears": ["z1", "z2"], "normal_module": "4 mm", "stiffness": 5e8}},
+            operation={"input": "in", "output": "out", "speed": "9 rpm", "torque": "9 N*m"},
+        )  # fmt: skip
+        eye = _sketch(case.machine()).layout["scene"]["camera"]["eye"]
+        return float(np.linalg.norm([eye[axis] for axis in "xyz"]))
+
+    assert distance("3 m") > 1.5 * distance("1 m") > distance("0.2 m") > 2.0
+
+
 def test_a_gear_has_the_volume_of_its_reference_cylinder() -> None:
     machine = td.load_case("two-stage-spur").machine()
     sketch = _sketch(machine)

@@ -218,3 +218,13 @@ def test_a_housing_that_cannot_be_read_says_why(tmp_path: Path) -> None:
         file = (tmp_path / name).as_posix()
         with pytest.raises(InputError, match=message):
             read_case(f'{SMALL}[housing]\nmatrices = "{file}"\n', "small.toml")
+
+
+def test_a_mesh_without_two_gears_blames_no_key_of_a_gear() -> None:
+    text = SMALL.replace('["z3", "z4"]', '"z3"').replace('stiffness = "7e8 N/m"\n', "")
+    text = text.replace("teeth = 23,", 'teeth = 23, roughness_ra = "0.3 um",')
+    with pytest.raises(InputError) as caught:
+        read_case(text, "small.toml")
+    assert [str(problem.where) for problem in caught.value.problems] == [
+        "small.toml:12: meshes.second.gears"
+    ]

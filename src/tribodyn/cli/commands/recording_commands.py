@@ -162,11 +162,15 @@ def _record(
     rate, size = recorded.sample_rate, next(iter(recorded.channels.values())).size
     facts = {"file": str(file), "sample_rate": rate, "samples": size}
     gear = None if set_ else gear_on(ready, sampling.tacho)
+    stored = list(recorded.channels)  # sound files have no names
+    first, tacho = names[0], "tacho"
+    if file.suffix.lower() == ".wav":
+        first, tacho = (f"channel {stored.index(name) + 1}" for name in (first, tacho))
     teeth = "" if gear is None else f" --case {quote(case)} --gear {gear}"
     return {**facts, "units": dict(recorded.units), **truth}, [
         f"{ready.title}\n{recorded}",
         f"Recording: {file}, truth: {file.with_suffix('.json')}",
-        f'Analyse it: tribodyn signal {file} --channel "{names[0]}" --tacho tacho{teeth}',
+        f'Analyse it: tribodyn signal {file} --channel "{first}" --tacho "{tacho}"{teeth}',
     ]
 
 

@@ -274,7 +274,13 @@ def machine_space(machine: Machine | MachineModes) -> Sketch:
         traces += [{**each, "visible": False} for each in more]
     ends = {"showbackground": False, "gridcolor": GRID, "zeroline": False}
     scene: Trace = {f"{name}axis": {"title": {"text": f"{name} [mm]"}, **ends} for name in "xyz"}
-    scene |= {"aspectmode": "data", "camera": {"eye": {"x": -1.5, "y": -1.3, "z": 0.9}}}
+    # A long machine is as much longer than the mean of its sides, and is seen from further away.
+    sides = [
+        max(np.nanmax(p[n]) for p in parts) - min(np.nanmin(p[n]) for p in parts) for n in "xyz"
+    ]
+    away = max(1.0, 0.9 * max(sides) / float(np.prod(sides)) ** (1 / 3))
+    eye = {"x": -1.5 * away, "y": -1.3 * away, "z": 0.9 * away}
+    scene |= {"aspectmode": "data", "camera": {"eye": eye, "center": {"x": 0, "y": 0, "z": -0.25}}}
     menu = choice([label for label, *_ in choices], [title for _, title, _ in choices], visible, 0)
     layout: Trace = {"height": 560, "scene": scene, "hovermode": "closest", "updatemenus": [menu]}
     layout |= {"margin": {"l": 10, "r": 10, "t": 74, "b": 10}, "uirevision": "turned by the user"}

@@ -199,7 +199,7 @@ def _constant_meshes(data: Mapping[str, Any]) -> KeyedProblems:
     named |= computed
     for name, body in meshes.items():
         names = body.get("gears")
-        named |= {str(gear) for gear in (names if isinstance(names, list | tuple) else ())}
+        named |= {str(gear) for gear in (names if isinstance(names, list | tuple) else ("",))}
         if _is_set(body, "stiffness") and not isinstance(body["stiffness"], Mapping):
             yield from _refused(f"meshes.{name}", body, _OF_TEETH, why, remedy)
             continue
