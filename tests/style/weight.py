@@ -160,7 +160,7 @@ LINES: dict[str, int] = {
     "contact": 398,
     "cookbook": 102,
     "drawing": 204,
-    "dynamics": 15936,
+    "dynamics": 15938,
     "ehl": 9327,
     "errors": 221,
     "exchange": 2162,

@@ -349,7 +349,9 @@ def phase_balance(
     smooth = not (jumps or any(each.law.open.any() for each in solution.state.each))
     poor, before = np.zeros(np.shape(points), dtype=bool), np.zeros(np.shape(points))
     while solution.error <= limit:
-        again = poor | (before >= _AGAIN * before.max())
+        # Parts with few points over a phase feel new lines of those that have more.
+        coarse = np.array(points) < most_points(points)
+        again = poor | (before >= _AGAIN * before.max()) | poor.any(axis=0) & coarse
         if solution.error <= tolerance:  # the coarser one takes memory
             converged_motion = points, residual, solution, before
         errors, times = search.changes(points, residual, solution.state, again, before)

@@ -171,14 +171,15 @@ def points_of(
     fine = np.where(meshes > 0, (mesh or _MESH) * meshes, _SHAFT * shafts)
     fine = np.maximum(fine, driven)
     place = min(len(fine), len(_OTHERS)) - 1
-    cycled = np.maximum(cycles.max(axis=0), 1)
-    others = np.where(meshes > 0, _OTHERS[place] * cycled, _TURNED[place] * shafts)
+    each_cycle = np.where(meshes > 0, _OTHERS[place], _TURNED[place])
+    repeats = np.where(meshes > 0, cycles.max(axis=0), shafts)
     teeth = np.where(cycles > 0, periods, 1).max(axis=0)
     contacts = np.array([each.contacts for each in followers])
     # What turns with a phase that meshes of others have needs fewer points than these.
     turned = np.where(meshes > 0, np.minimum(fine, _MESH * turns), fine)
     for most in _COARSER if coarser else _COARSER[:1]:
-        felt = np.maximum(np.minimum(others, most), _TEETH * np.where(teeth > 1, teeth, 0))
+        felt = np.minimum(each_cycle, most) * repeats
+        felt = np.maximum(felt, _TEETH * np.where(teeth > 1, teeth, 0))
         felt = np.minimum(fine, np.maximum(felt, driven))
         points = np.where(turns > 0, np.maximum(turned, felt), felt)
         points = np.where(cycles > 0, fine, points).astype(int)

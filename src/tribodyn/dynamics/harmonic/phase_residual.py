@@ -132,9 +132,8 @@ class PhaseResidual(Residual):
     def extent(self, y: Array) -> float:
         """Size of the largest compressions in a motion, of all contacts together."""
         pairs = zip(self.parts, self.split(y), strict=True)
-        compressions = [piece @ part.structure.compressions.T for part, piece in pairs]
-        largest = [np.linalg.norm(each, axis=1).max(initial=0.0) for each in compressions]
-        return float(np.linalg.norm(largest))
+        each = (piece @ part.structure.compressions.T for part, piece in pairs)
+        return float(np.linalg.norm([np.linalg.norm(d, axis=1).max(initial=0.0) for d in each]))
 
     def accuracy(self, norms: list[float]) -> float:
         """Accuracy of the linear solution after steps that left residuals of these norms."""
@@ -151,16 +150,18 @@ class PhaseResidual(Residual):
         further = part.at(y, np.zeros(part.members.size), closed=False).force - before
         lines = part.grid.spectrum(further)
         lines[part.grid.unpaired] = 0.0
+        # The new lines as they are, those of before by their approximate inverse.
+        driven: list[Array | None] = [None] * len(states)
+        driven[number] = part.grid.refined(further, old.grid)
+        right = coarser.joined(coarser.responses(driven))
+        felt = coarser.split(coarser.nearly(state)(right) - right)
         moved = []
-        for n, other in enumerate(self.parts):
+        for n, other in enumerate(coarser.parts):
             gains = part.receptances
             if n != number:
                 gains = other.structure.receptances(part.grid.omega, part.structure.push)
             motion = part.grid.values((gains @ lines[..., None])[..., 0])
-            if n == number:  # the new lines as they are, those of before by their inverse
-                low = part.grid.refined(motion, old.grid)
-                felt = coarser.inverses_at(state)[number](low) - low
-                motion += old.grid.refined(felt, part.grid)
+            motion += other.grid.refined(felt[n], part.grid)
             moved.append(motion @ other.structure.compressions.T)
         return float(np.linalg.norm(np.concatenate(moved, axis=1), axis=1).max())
 
