@@ -185,7 +185,8 @@ class Machine:
         of the first gears of meshes in loops over that of the input.
         """
         other = copy(self)
-        for name in _OF_LOADS:
+        # Bearings that hold the same shafts carry the same power.
+        for name in _OF_LOADS if operation or groups.keys() - {"bearings"} else ():
             vars(other).pop(name, None)
         vars(other)["operation"] = operation or self.operation
         vars(other)["_sharing"] = self._sharing if sharing is None else sharing
@@ -298,8 +299,10 @@ class Machine:
     @cached_property
     def directions(self) -> Mapping[str, MeshDirection]:
         """Directions of each mesh in space."""
-        forward = replace(self._drive, speed=self.operation.speed or 1.0)
-        turning = kinematics(self._mobility, self.meshes, forward).meshes
+        turning = self.kinematics.meshes
+        if not self.operation.speed:
+            forward = replace(self._drive, speed=1.0)
+            turning = kinematics(self._mobility, self.meshes, forward).meshes
         directions = {}
         for name, mesh in self.meshes.items():
             first, second = (self.gears[gear] for gear in mesh.gears)

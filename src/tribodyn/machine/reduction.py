@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+from copy import copy
 from dataclasses import replace
+from functools import cached_property
 
 import numpy as np
 
@@ -26,8 +28,8 @@ _ALIKE = 1e-6
 _ROUNDING = 3e-8
 #: Range of the limit of a reduction by default [Hz], and mesh harmonics within half of it.
 _LIMITS, _HARMONICS = (5e3, 5e4), 3
-#: Coordinates beyond which a machine is reduced.
-_LARGE = 120
+#: Coordinates beyond which a machine is reduced, and error of the frequencies by default.
+_LARGE, _TOLERANCE = 120, 4e-4
 #: Modes of the shafts between bearings and meshes, which loads and speeds do not change.
 _modes_of_shafts: Memo[tuple[Array, Array]] = Memo(4)
 #: Bases and natural modes of the last machines, which a speed does not change.
@@ -35,9 +37,9 @@ _bases: Memo[tuple[Array, Array]] = Memo(4)
 _natural: Memo[tuple[Array, Array]] = Memo(4)
 
 
-def default_limit(structure: MachineStructure) -> float:
+def default_limit(machine: Machine) -> float:
     """Twice the third harmonic of the fastest mesh, between 5 and 50 kHz [Hz]."""
-    meshes = structure.machine.kinematics.meshes.values()
+    meshes = machine.kinematics.meshes.values()
     fastest = max((mesh.mesh_frequency for mesh in meshes), default=0.0)
     return float(np.clip(2.0 * _HARMONICS * fastest, *_LIMITS))
 
@@ -77,12 +79,11 @@ def machine_structure(machine: Machine, *, damping_ratio: float = 0.02) -> Machi
     """
     if any(bearing.nonlinear for bearing in machine.bearings.values()):
         machine = static_balance(machine).linearized()
-    structure = MachineStructure(machine, damping_ratio)
-    return reduce_structure(structure) if is_large(structure) else structure
+    return Parts(MachineStructure(machine, damping_ratio)).at(machine)
 
 
 def reduce_structure(
-    structure: MachineStructure, limit: float | None = None, *, tolerance: float = 4e-4
+    structure: MachineStructure, limit: float | None = None, *, tolerance: float = _TOLERANCE
 ) -> MachineStructure:
     """Reduce a machine to the coordinates that meshes and bearings touch, and modes of the rest.
 
@@ -132,30 +133,71 @@ def reduce_structure(
     if structure.reduction is not None:
         remedy = "Reduce the structure of the machine itself"
         raise InputError("the structure is reduced already", "argument structure", "", remedy)
-    limit = default_limit(structure) if limit is None else limit
-    require_positive("limit", limit, "Hz")
+    require_positive("limit", limit or 1.0, "Hz")
     require_between("tolerance", tolerance, 1e-9, 1.0, "")
-    interface = _interface(structure)
-    content = structure.mass, structure.stiffness, interface
-    basis, squares = _bases.get(content, lambda: _craig_bampton(structure, interface))
-    names = [structure.names[i] for i in np.flatnonzero(interface)]
-    names += [f"mode {j + 1}_q" for j in range(structure.size - len(names))]
-    squares, (full, amplitudes) = squares.copy(), _natural_modes(structure, limit, basis)
-    least = _ROUNDING * np.sqrt((np.diag(structure.stiffness) / np.diag(structure.mass)).max())
-    squares[squares <= (_ALL_BELOW * 2.0 * np.pi * limit) ** 2] = np.inf
-    omission = _omission(amplitudes, squares, full)
-    for share in _SHARES:
-        columns = _columns(omission, share * tolerance)
-        motion = structure.basis @ basis[:, columns]
-        reduction = Reduction(tuple(names[i] for i in columns), motion, limit, 0.0)
-        reduced = replace(structure, reduction=reduction)
-        error = _error(full, _modes(reduced.mass, _at_rest(reduced), np.inf)[0], least)
-        if error <= tolerance:
-            break
-    final = replace(structure, reduction=replace(reduction, error=error))
-    for name in ("mass", "stiffness", "elements"):  # computed for the comparison already
-        final.__dict__[name] = getattr(reduced, name)
-    return final
+    return Parts(structure).reduced(structure.machine, limit, tolerance)
+
+
+class Parts:
+    """Matrices of a machine and its reductions, which another speed does not change."""
+
+    def __init__(self, structure: MachineStructure) -> None:
+        self.whole, self._reduced = structure, dict[bytes, tuple[MachineStructure, Array]]()
+
+    def at(self, machine: Machine) -> MachineStructure:
+        """Structure of the machine at its speed, reduced where it is large."""
+        return self.reduced(machine) if is_large(self.whole) else self.turned(machine)
+
+    def turned(self, machine: Machine, of: MachineStructure | None = None) -> MachineStructure:
+        """Structure of the machine at its speed, not reduced, or that with its matrices."""
+        structure = of or self.whole
+        for name in ("mass", "stiffness", "damping", "force"):
+            getattr(structure, name)  # those of all
+        turned = copy(structure)
+        vars(turned)["machine"] = machine
+        return turned
+
+    @cached_property
+    def _basis(self) -> tuple[Array, Array, list[str]]:
+        """Basis of Craig and Bampton, squared frequencies and names of its columns."""
+        whole, interface = self.whole, _interface(self.whole)
+        content = whole.mass, whole.stiffness, interface
+        basis, squares = _bases.get(content, lambda: _craig_bampton(whole, interface))
+        names = [whole.names[i] for i in np.flatnonzero(interface)]
+        names += [f"mode {j + 1}_q" for j in range(whole.size - len(names))]
+        return basis, squares, names
+
+    def _with_columns(self, columns: Index, limit: float) -> tuple[MachineStructure, Array]:
+        """Structure with these columns of the basis, and its natural frequencies."""
+        key = columns.tobytes()
+        if key not in self._reduced:
+            basis, _, names = self._basis
+            motion = self.whole.basis @ basis[:, columns]
+            reduction = Reduction(tuple(names[i] for i in columns), motion, limit, 0.0)
+            reduced = replace(self.whole, reduction=reduction)
+            self._reduced[key] = reduced, _modes(reduced.mass, _at_rest(reduced), np.inf)[0]
+        return self._reduced[key]
+
+    def reduced(
+        self, machine: Machine, limit: float | None = None, tolerance: float = _TOLERANCE
+    ) -> MachineStructure:
+        """Structure of the machine at its speed, see :func:`reduce_structure`."""
+        limit = default_limit(machine) if limit is None else limit
+        whole, (basis, squares, _) = self.whole, self._basis
+        squares, (full, amplitudes) = squares.copy(), _natural_modes(whole, limit, basis)
+        least = _ROUNDING * np.sqrt((np.diag(whole.stiffness) / np.diag(whole.mass)).max())
+        squares[squares <= (_ALL_BELOW * 2.0 * np.pi * limit) ** 2] = np.inf
+        omission = _omission(amplitudes, squares, full)
+        for share in _SHARES:
+            columns = _columns(omission, share * tolerance)
+            structure, frequency = self._with_columns(columns, limit)
+            error = _error(full, frequency, least)
+            if error <= tolerance:
+                break
+        final = self.turned(machine, structure)
+        assert structure.reduction is not None
+        vars(final)["reduction"] = replace(structure.reduction, limit=limit, error=error)
+        return final
 
 
 def _interface(structure: MachineStructure) -> Mask:

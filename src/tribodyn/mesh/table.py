@@ -71,7 +71,7 @@ class MeshTable(MeshColumns):
         """Secant stiffness of the teeth of all pairs together, without oil films (n,) [N/m]."""
         return whole_stiffness(self.tooth_stiffness, *teeth_shares(self))
 
-    @property
+    @cached_property
     def contact_ratio_under_load(self) -> float:
         """Mean number of tooth pairs that carry load over the mesh cycle, oil films left out.
 

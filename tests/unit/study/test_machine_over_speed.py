@@ -10,6 +10,7 @@ import tribodyn as td
 from tribodyn.mesh.build import _cached_teeth
 from tribodyn.plot import FIGURES
 from tribodyn.study import read_case
+from tribodyn.study.studies.sweep import points_under
 
 #: The same machine with computed teeth: spur gears of constant friction.
 TEETH = (
@@ -49,6 +50,27 @@ def test_a_sweep_of_any_key_has_the_figures_of_single_runs(case):
         assert sweep[name][0, 1] == pytest.approx(value, rel=1e-7, abs=1e-12), name
     peak = sweep["meshes.first.mean_mesh_force"]
     assert peak[:, 1] / peak[:, 0] == pytest.approx([1.2, 1.2])
+
+
+@pytest.mark.slow
+@pytest.mark.filterwarnings("ignore:.friction-range")
+@pytest.mark.parametrize("name", ["two-stage-helical", "planetary-stage"])
+def test_a_speed_has_the_figures_of_a_run_of_its_own_in_any_order(name):
+    """Balance and matrices at rest are shared by speeds of one torque, those of others are not."""
+    case, single = td.load_case(name), {}
+    torque, speed = case.operating_point.torque, case.operating_point.speed
+    changes = [
+        {"operation.speed": float(a * speed), "operation.torque": float(b * torque)}
+        for a, b in ((1.3, 1.0), (0.3, 1.0), (0.3, 0.8), (1.3, 0.8))
+    ]
+    for number, change in enumerate(changes):
+        fresh = td.load_case(name).replace({**change, "load_cases": None})
+        single[number] = td.run(fresh).summary()
+    for order in ((0, 1, 2, 3), (3, 0, 2, 1)):
+        points = points_under(case, [changes[number] for number in order])
+        for number, point in zip(order, points, strict=True):
+            for key, value in single[number].items():
+                assert point.figures[key] == pytest.approx(value, rel=1e-12, abs=1e-18), key
 
 
 @pytest.mark.parametrize(

@@ -24,6 +24,7 @@ from tribodyn.machine import (
     Shaft,
 )
 from tribodyn.machine.plane_law import with_exchanged_gears
+from tribodyn.machine.static.at_rest import AtRest
 from tribodyn.study.case.case import Case
 from tribodyn.study.case.pair import PairCase
 from tribodyn.study.case.provenance import Assumption, reason_faults
@@ -123,8 +124,7 @@ class MachineCase(Case):
         problems += misspelt
         ready = completed(self.data)
         tables: Any = self._read_tables(ready, problems)
-        self.title: str = tables.title or self.kind
-        self.origin: str | None = tables.origin
+        self.title, self.origin = str(tables.title or self.kind), tables.origin
         groups = {name: parts_of(tables, name) for name in (*GROUPS, "planets", "load_cases")}
         self._blanks, widths = read_blanks(groups, problems)
         stages = read_stages(groups["planets"], groups["gears"], problems)
@@ -139,6 +139,7 @@ class MachineCase(Case):
         self._pairs: dict[str, PairCase] = {}
         self._teeth: dict[tuple[object, ...], tuple[PairCase, MeshInputs]] = {}
         self._machines: dict[tuple[float, float], Machine] = {}
+        self._at_rest = AtRest()
         self._mesh_tables = each_part(groups["meshes"], self._read_mesh, problems)
         if not groups["meshes"] and "planets" not in self.data:
             remedy = 'Add [meshes.NAME] with gears = ["z1", "z2"] and normal_module'
@@ -218,7 +219,7 @@ class MachineCase(Case):
 
     def __getstate__(self) -> dict[str, Any]:
         """Return the state without what is cached for further loads."""
-        return {**vars(self), "_teeth": {}, "_machines": {}}
+        return {**vars(self), "_teeth": {}, "_machines": {}, "_at_rest": AtRest()}
 
     def _add_forms(self) -> None:
         """Set tooth forms and densities of the gears whose teeth are computed."""

@@ -325,7 +325,9 @@ def take_loads(case: MachineCase, before: MachineCase, numbers: Mapping[str, flo
     loads = read_loads(case.data, tables, parts_of(tables, "load_cases"), problems)
     if loads is None or problems:
         return False
-    vars(case).update(loads._asdict(), _teeth=before._teeth, _machines=dict(before._machines))
+    machines = dict(before._machines)
+    shared = {"_teeth": before._teeth, "_machines": machines, "_at_rest": before._at_rest}
+    vars(case).update(loads._asdict(), **shared)
     try:
         check_loads(case)
     except InputError:  # whose message says what was replaced

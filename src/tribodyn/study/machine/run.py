@@ -23,9 +23,6 @@ from tribodyn.interrupt import in_threads, processors, single_blas_thread
 from tribodyn.machine import (
     MachineStructure,
     face_laws,
-    machine_structure,
-    reduce_structure,
-    static_balance,
 )
 from tribodyn.machine import system as system_of
 from tribodyn.progress import SILENT, Progress
@@ -457,7 +454,7 @@ def _static(
     machine = case.machine(load, **(laws or {}))
     slopes = {n: m for n, m in (misalignment or {}).items() if not isinstance(m, Misalignment)}
     try:
-        return static_balance(machine, laws=face_laws(machine, slopes))
+        return case._at_rest.balance(machine, face_laws(machine, slopes))
     except (InputError, ComputationError) as error:
         raise type(error)(case._located(error)) from None
 
@@ -467,10 +464,10 @@ def structure_of(case: MachineCase, machine: Machine) -> MachineStructure:
     ratio, limit = case.motion.modal_damping_ratio, case.motion.frequency_limit
     stage = case.stages.get(case.lone_stage or "")
     frame = None if stage is None else stage.table.carrier
-    if limit is not None or frame is not None:
-        structure = MachineStructure(machine, ratio, frame=frame)
-        return structure if limit is None else reduce_structure(structure, limit)
-    return machine_structure(machine, damping_ratio=ratio)
+    parts = case._at_rest.parts(machine, ratio, frame)
+    if limit is not None:
+        return parts.reduced(machine, limit)
+    return parts.at(machine) if frame is None else parts.turned(machine)
 
 
 def _law(inputs: MeshInputs, table: MeshTable, *, rehearsal: bool = False) -> dict[str, Any]:
