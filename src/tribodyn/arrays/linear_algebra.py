@@ -59,12 +59,18 @@ def modes_of(stiffness: Array, mass: Array) -> tuple[Array, Array]:
     return squares, np.linalg.solve(lower.T, columns)
 
 
+#: Residual of an eigenvalue over what is left to a limit.
+_FAR = 0.02
+
+
 def leading_eigenvalues(
-    product: Callable[[Array], Array], start: Array, count: int, accuracy: float, none: float = 0.0
-) -> ComplexArray:
+    product: Callable[[Array], Array], start: Array, count: int, accuracy: float,
+    none: float = 0.0, limit: float = 0.0,
+) -> ComplexArray:  # fmt: skip
     """Eigenvalues of largest size of a linear map of vectors. Source: Arnoldi (1951).
 
-    Residuals are less than a part of their size, or than ``none``, an eigenvalue as good as none.
+    Residuals are less than a part of their size, than ``none``, an eigenvalue as good as none, or
+    than a part of what is left to ``limit``.
     """
     size = start.size
     basis, upper = np.zeros((size + 1, size)), np.zeros((size + 1, size))
@@ -79,7 +85,9 @@ def leading_eigenvalues(
         values, vectors = np.linalg.eig(upper[:k, :k])
         first = np.argsort(-np.abs(values), kind="stable")[:count]
         left = length * np.abs(vectors[-1, first])
-        settled = np.all(left <= np.maximum(accuracy * np.abs(values[first]), none))
+        size_of = np.abs(values[first])
+        enough = np.maximum(np.maximum(accuracy * size_of, none), _FAR * (limit - size_of))
+        settled = np.all(left <= enough)
         if k == size or (k > count and settled):
             break
         basis[k] = vector / (length or 1.0)

@@ -1,5 +1,6 @@
 """Parts of harmonic balance: Krylov solution, receptances, derivative of the residual, sampling."""
 
+from dataclasses import replace
 from types import SimpleNamespace
 
 import numpy as np
@@ -14,7 +15,7 @@ from tribodyn.dynamics.equations.orbit_coordinates import direction_basis
 from tribodyn.dynamics.harmonic.harmonic_balance import prepare
 from tribodyn.dynamics.harmonic.newton import newton, solve_linear
 from tribodyn.dynamics.harmonic.orbit_response import series
-from tribodyn.dynamics.harmonic.tangent_march import TangentMarch
+from tribodyn.dynamics.harmonic.tangent_march import TangentMarch, with_own_motion
 from tribodyn.dynamics.modal.closed_structure import ClosedStructure
 from tribodyn.errors import quiet
 from tribodyn.mesh import phase_grid
@@ -38,7 +39,8 @@ def test_directions_of_few_rows_are_in_the_basis():
     flat = generator.normal(size=(2000, 3)) @ generator.normal(size=(3, 9))
     flat[1234] += 1e-6 * generator.normal(size=9)  # rows between those that are looked at first
     flat[777] = generator.normal(size=9)
-    basis = direction_basis([flat.reshape(500, 4, 9), np.zeros((1, 9))], inverse)[0]
+    parts = [(flat.reshape(500, 4, 9), inverse.T), (np.zeros((1, 9)), inverse.T)]
+    basis = direction_basis(parts)[0]
     rows = flat @ inverse.T
     assert basis.T @ basis == pytest.approx(np.eye(5), abs=1e-12)
     assert rows @ basis @ basis.T == pytest.approx(rows, abs=1e-9)
@@ -50,10 +52,11 @@ def test_rounding_of_a_derivative_is_no_direction():
     # A numerical derivative is exact against the directions, also where it is small itself.
     noise = 1e-11 * np.random.default_rng(3).normal(size=(3000, 9))
     slope = np.roll(wave, 750, axis=0) * moved + noise
-    basis, some = direction_basis([base + wave * moved], np.eye(9), slope)
+    part = base + wave * moved, np.eye(9)
+    basis, some = direction_basis([part], slope)
     assert basis.shape == (9, 2)
-    assert np.linalg.matrix_rank(some, 1e-9) == 2
-    assert direction_basis([base + wave * moved, slope], np.eye(9))[0].shape == (9, 9)
+    assert np.linalg.matrix_rank(np.concatenate(some), 1e-9) == 2
+    assert direction_basis([part, (slope, np.eye(9))])[0].shape == (9, 9)
 
 
 @pytest.mark.parametrize(("gap", "depth", "enough"), [(None, 0.02, True), (0.2, 0.3, False)])
@@ -252,7 +255,49 @@ def test_leading_multiplier_is_that_of_all(seed):
     march = TangentMarch.of(residual, residual.at(np.tile(start, (64 * machine.cycles, 1))))
     modes = np.eye(march._parts[0].size)
     values = np.linalg.eigvals(np.stack([march.moved(row) for row in modes], axis=1))
-    assert march.leading_multiplier() == pytest.approx(np.abs(values).max(), rel=1e-4)
+    largest = np.abs(values).max()
+    assert march.leading_multiplier() == pytest.approx(largest, rel=1e-4)
+    # Of one that is far below a limit that much is certain.
+    assert march.leading_multiplier(largest + 0.5) == pytest.approx(largest, abs=0.02)
+
+
+def test_forces_of_a_step_contain_those_of_their_own_motion():
+    generator = np.random.default_rng(5)
+    direct, tangents = 0.05 * generator.normal(size=(4, 7)), generator.normal(size=(6, 7, 4))
+    closed, motion = with_own_motion(direct, tangents), generator.normal(size=4)
+    for whole, of_step in zip(closed, tangents, strict=True):
+        force = np.linalg.solve(np.eye(7) - of_step @ direct, of_step @ motion)
+        assert whole @ motion == pytest.approx(force, rel=1e-10, abs=1e-12)
+
+
+@pytest.mark.parametrize(("preload", "friction"), [(4.0, True), (0.2, False)])
+def test_directions_over_few_coordinates_have_the_motion_of_all(preload, friction):
+    """Tables of 2 columns over 9 coordinates, against functions of all 9; some teeth separate."""
+    generator = np.random.default_rng(7)
+    grid, onto = phase_grid((0.0,), 64), generator.normal(size=(2, 9))
+    angle = 2.0 * np.pi * grid.phase
+    table = np.stack((1.0 + 0.1 * np.cos(angle), 0.2 * np.sin(angle)), axis=1)
+    narrow = PhaseFunction(grid, table, onto)
+    rub = PhaseFunction(grid, 0.05 * table[:, ::-1].copy(), onto)
+    law = {"damping": 0.02, "gap": 0.1, "error": lambda p: 0.2 * np.cos(2 * np.pi * p)}
+    contact = Contact(narrow, 5.0, friction=rub if friction else None, **law)
+    wide = {name: (lambda p, entry=entry: np.asarray(entry(p)))
+            for name in ("direction", "friction") if (entry := getattr(contact, name))}  # fmt: skip
+    matrices = np.eye(9), 0.4 * np.eye(9), np.diag(np.arange(1.0, 10.0))
+    load = preload * onto[0] / (onto[0] @ onto[0])
+    motions = []
+    for each in (contact, replace(contact, **wide)):
+        system = System(*matrices, load, [each])
+        assert (system._narrow is not None) == (each is contact)
+        motions.append(harmonic_balance(system, 0.21, steps=128))
+    few, every = motions
+    assert few.converged
+    assert (few.contact_force == 0.0).any() == (preload < 1.0)
+    for name in ("position", "velocity", "acceleration", "contact_force"):
+        size = np.abs(getattr(every, name)).max()
+        assert getattr(few, name) == pytest.approx(getattr(every, name), abs=1e-9 * size)
+        fine = getattr(few.fine, name)
+        assert fine == pytest.approx(getattr(every.fine, name), abs=1e-9 * size)
 
 
 def test_a_newton_step_that_is_not_finite_ends_the_search_without_a_warning():

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -15,7 +16,12 @@ from numpy.typing import ArrayLike
 from tribodyn.dynamics.equations.grid import Grid, build_grid, system_events
 from tribodyn.dynamics.equations.lane_parameters import LaneParameters
 from tribodyn.dynamics.equations.motion import has_gap
-from tribodyn.dynamics.equations.nodes import Nodes, coefficient_count, evaluate_nodes
+from tribodyn.dynamics.equations.nodes import (
+    Nodes,
+    coefficient_count,
+    evaluate_nodes,
+    over_few,
+)
 from tribodyn.dynamics.equations.program import Program, build_program, compile_system
 from tribodyn.dynamics.equations.step_limit import (
     largest_rate,
@@ -85,13 +91,16 @@ class Compiled:
         return self.members or (Member(self.system, self.nodes, np.arange(lanes)),)
 
 
-def sample_system(system: System, steps: int) -> Compiled:
+def sample_system(system: System, steps: int, *, narrow: bool = False) -> Compiled:
     """Grid and rows of a system, without a program for lanes and a number of the step."""
+    # narrow: with directions over few coordinates, if they span few
     require_whole("steps", steps)
     grid = build_grid(system_events(system), int(steps) * system.cycles)
     none, mask = np.zeros(0, dtype=np.int64), np.zeros(0, dtype=bool)
     program = Program(none, none, np.zeros(0), grid.width, grid.after_event, np.zeros(0), mask)
-    return Compiled(system, grid, evaluate_nodes(system, grid), program, float("nan"))
+    evaluate = partial(evaluate_nodes, grid=grid)
+    nodes = over_few(system, evaluate) if narrow else evaluate(system)
+    return Compiled(system, grid, nodes, program, float("nan"))
 
 
 def compile_for(

@@ -15,7 +15,7 @@ import numpy as np
 
 from tribodyn.arrays.linear_algebra import times
 from tribodyn.dynamics.equations.grid import Grid, unrepeated
-from tribodyn.dynamics.equations.nodes import Nodes, friction_force, ramp_force
+from tribodyn.dynamics.equations.nodes import Nodes, few_of, friction_force, ramp_force
 from tribodyn.dynamics.equations.system import System
 from tribodyn.types import Array, Index, Mask, Numbers
 
@@ -68,12 +68,15 @@ def _along(direction: Array, vectors: Array) -> Array:
     return np.asarray(np.einsum("...ji,...i->...j", direction, vectors))
 
 
-def _with_parts(matrix: Array, direction: Array, vectors: Array) -> tuple[Array, Array]:
-    """Matrix times vectors (..., n), and their parts along directions; if possible one product."""
-    if (constant := _constant(direction)) is None:
-        return times(vectors, matrix), _along(direction, vectors)
-    products = times(vectors, np.concatenate((matrix, constant)))
-    return products[..., : len(matrix)], products[..., len(matrix) :]
+def _with_parts(
+    matrix: Array, direction: Array, vectors: Array, onto: Array | None
+) -> tuple[Array, Array, Array]:
+    """Matrix times vectors (..., n), their parts along directions, and what these are parts of."""
+    also = _constant(direction) if onto is None else onto
+    if also is None:
+        return times(vectors, matrix), _along(direction, vectors), vectors
+    moved, parts = np.split(times(vectors, np.concatenate((matrix, also))), [len(matrix)], axis=-1)
+    return (moved, parts, vectors) if onto is None else (moved, _along(direction, parts), parts)
 
 
 def _pushed(push: Array, force: Array) -> Array:
@@ -124,11 +127,16 @@ def forces(
     extra: Numbers = 0.0,
 ) -> Forces:
     """Contact forces and accelerations; without ``side`` the sides follow from the compressions."""
-    inverse, (stiffness, damping) = system.inverse_mass, system.over_mass
-    elastic, along = _with_parts(stiffness, rows.direction, q)
-    damped, speed = _with_parts(damping, rows.direction, v)
+    onto, inverse, (stiffness, damping) = (
+        few_of(system, rows),
+        system.inverse_mass,
+        system.over_mass,
+    )
+    pushed = inverse if onto is None else inverse @ onto.T
+    elastic, along, few = _with_parts(stiffness, rows.direction, q, onto)
+    damped, speed, _ = _with_parts(damping, rows.direction, v, onto)
     d = along - scales.error * unrepeated(rows.error, 1)
-    rate = speed + _turning(rows, beat, q, scales.error)
+    rate = speed + _turning(rows, beat, few, scales.error)
     gap = scales.gap * unrepeated(rows.gap, 1)
     if side is None and np.all(d > gap):
         side = np.broadcast_to(1.0, d.shape)
@@ -146,17 +154,17 @@ def forces(
     if scales is _SAME:
         directions = unrepeated(rows.force_direction, 2)
         if len(directions) == 1:
-            total -= _pushed(times(directions, inverse), contact)
+            total -= _pushed(times(directions, pushed), contact)
         else:
-            total -= times(_pushed(directions, contact), inverse)
+            total -= times(_pushed(directions, contact), pushed)
     else:
-        total -= _pushed(times(unrepeated(rows.direction, 2), inverse), contact)
-        rub = times(rows.force_direction - rows.direction, inverse)
+        total -= _pushed(times(unrepeated(rows.direction, 2), pushed), contact)
+        rub = times(rows.force_direction - rows.direction, pushed)
         total = total - scales.friction * _pushed(rub, contact)
     if system.frictions:
         drag = friction_force(system, rows.friction_coefficients, contact)
         drag = _pushed(rows.friction_direction, drag)
-        total = total - scales.friction * times(drag, inverse)
+        total = total - scales.friction * times(drag, pushed)
     return Forces(d, contact, side, total)
 
 
@@ -245,7 +253,7 @@ class WithinSteps:
 
     def __init__(self, system: System, nodes: Nodes, grid: Grid, beat: float, extra: Array) -> None:
         self.system, self.nodes, self.grid = system, nodes, grid
-        self.beat, self.extra = beat, extra
+        self.beat, self.extra, self._onto = beat, extra, few_of(system, nodes)
 
     def duration(self, step: Index) -> Array:
         """Time of whole steps [s]."""
@@ -256,13 +264,18 @@ class WithinSteps:
         rows = rows_within(self.nodes, step, tau)
         return forces(self.system, rows, self.beat, q, v, side, extra=self.extra)
 
+    def _few(self, q: Array) -> Array:
+        """Positions over the coordinates of directions."""
+        return q if self._onto is None else q @ self._onto.T
+
     def contacts(self, step: Index, tau: Array, q: Array) -> tuple[Array, Array]:
         """Compressions and gaps of all contacts at fractions of steps."""
         direction, error, gap = (
             quadratic(rows, step, tau)
             for rows in (self.nodes.direction, self.nodes.error, self.nodes.gap)
         )
-        return compression(self.nodes._replace(direction=direction, error=error), q), gap
+        rows = self.nodes._replace(direction=direction, error=error)
+        return compression(rows, self._few(q)), gap
 
     def contact_of_each(
         self, step: Index, contact: Index
@@ -277,7 +290,7 @@ class WithinSteps:
         def at(tau: Array, q: Array) -> tuple[Array, Array]:
             along, off, play = (quadratic(rows, every, tau) for rows in (direction, error, gap))
             contact_rows = self.nodes._replace(direction=along[:, None], error=off[:, None])
-            return compression(contact_rows, q)[:, 0], play
+            return compression(contact_rows, self._few(q))[:, 0], play
 
         return at
 

@@ -13,7 +13,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from tribodyn.dynamics.equations.entry import varies
+from tribodyn.dynamics.equations.entry import entry_values, varies
 from tribodyn.dynamics.equations.grid import (
     Grid,
     RowEvaluator,
@@ -204,6 +204,21 @@ def evaluate_nodes(system: System, grid: Grid) -> Nodes:
     if grid.width.sum() > 0.99:
         object.__setattr__(system, "_checked", min(widest, system._checked))
     return nodes
+
+
+def over_few(system: System, evaluate: Callable[[System], Nodes]) -> Nodes:
+    """Entries whose directions are over the few coordinates that they span, or over all."""
+    if system._narrow is None:
+        return evaluate(system)
+    nodes = evaluate(system._narrow[0])
+    force = entry_values("force", system.force, np.zeros(1), system.size)[0]
+    return nodes._replace(force=_one_row(force, nodes.phase.shape))
+
+
+def few_of(system: System, nodes: Nodes) -> Array | None:
+    """Coordinates over which the directions of entries are (c, n); None where these are all."""
+    narrow = system._narrow if nodes.direction.shape[-1] != system.size else None
+    return None if narrow is None else narrow[1]
 
 
 def evaluate_rows(system: System, rows: RowEvaluator) -> Nodes:

@@ -25,6 +25,7 @@ from tribodyn.dynamics.equations.motion import compression, forces, has_gap
 from tribodyn.dynamics.equations.nodes import (
     Nodes,
     carried_load,
+    few_of,
     friction_secant,
     lowest_of_each_law,
     push_with_friction,
@@ -144,39 +145,54 @@ def orbit_coordinates(compiled: Compiled, mesh_frequency: float) -> OrbitCoordin
 
 def structure_coordinates(compiled: Sampled) -> OrbitCoordinates:
     """Reduced coordinates of a system at 1 rad/s."""
-    system = compiled.system
-    mass, stiffness, damping = (
-        np.asarray(getattr(system, name)) for name in ("mass", "stiffness", "rate_matrix")
-    )
-    along, used = _along(compiled, np.linalg.inv(np.linalg.cholesky(mass)))
-    if len(used) > system.size:
-        used = np.asarray(np.linalg.qr(used, mode="r"))  # of the same lengths
-    arrays = (mass, stiffness, damping, used)
-    return _coordinates_cache.get(arrays, lambda: _coordinates(*arrays, along))
+    system, nodes = compiled.system, compiled.nodes
+    onto = few_of(system, nodes)
+    matrices = np.asarray(system.mass), np.asarray(system.stiffness)
+    content = *matrices, *(unrepeated(part, 2) for part in (nodes.direction, nodes.direction_slope))
+    content = *content, np.array([_cycles(system)]), *([] if onto is None else [onto])
+    shared, held = _coordinates_cache.get(content, lambda: _coordinates(compiled, *matrices))
+    moving = _row_space([*held, shared.inverse @ system.rate_matrix @ shared.inverse.T])
+    return replace(shared, moving=moving, free=_complement(moving))
 
 
 def _along(compiled: Sampled, inverse: Array) -> tuple[Array, Array]:
     """Basis (n, r) in which contacts are compressed, and directions with the same span."""
-    counts = [each.cycles for each in compiled.system.contacts]
-    cycles = max((count for count in counts if isinstance(count, int)), default=1)
-    nodes = compiled.nodes
-    return direction_basis([nodes.direction], inverse, nodes.direction_slope, cycles)
+    nodes, onto = compiled.nodes, _over_mass(compiled, inverse)
+    parts = [(nodes.direction, onto)], nodes.direction_slope, _cycles(compiled.system)
+    basis, rows = direction_basis(*parts)
+    used, few = np.concatenate(rows), few_of(compiled.system, nodes)
+    return basis, used if few is None else used @ few
 
 
-#: Coordinates of the last systems at 1 rad/s: a study builds the same structure many times.
-_coordinates_cache: Memo[OrbitCoordinates] = Memo(8)
+def _cycles(system: System) -> int:
+    """Most cycles of a contact on one clock."""
+    counts = [each.cycles for each in system.contacts]
+    return max((count for count in counts if isinstance(count, int)), default=1)
+
+
+def _over_mass(compiled: Sampled, inverse: Array) -> Array:
+    """Directions of the contacts in coordinates of unit mass (c, n)."""
+    few = few_of(compiled.system, compiled.nodes)
+    return inverse.T if few is None else few @ inverse.T
+
+
+#: Coordinates of the last systems at 1 rad/s without their dampers and gyroscopic moments: a study
+#: builds the same structure many times, at many speeds.
+_coordinates_cache: Memo[tuple[OrbitCoordinates, list[Array]]] = Memo(4)
 
 
 def _coordinates(
-    mass: Array, stiffness: Array, damping: Array, used: Array, along: Array
-) -> OrbitCoordinates:
+    compiled: Sampled, mass: Array, stiffness: Array
+) -> tuple[OrbitCoordinates, list[Array]]:
+    """Coordinates of a system without dampers, and the rows of its springs and contacts."""
     lower = np.asarray(np.linalg.cholesky(mass), dtype=float)
     inverse = np.linalg.inv(lower)
-    used = used @ inverse.T
-    spring, damper = inverse @ stiffness @ inverse.T, inverse @ damping @ inverse.T
-    elastic = _row_space([spring, used])
-    moving = _row_space([spring, used, damper])
-    return OrbitCoordinates(lower, elastic, moving, _complement(moving), 1.0, along)
+    along, used = _along(compiled, inverse)
+    if len(used) > len(mass):
+        used = np.asarray(np.linalg.qr(used, mode="r"))  # of the same lengths
+    held = [inverse @ stiffness @ inverse.T, used @ inverse.T]
+    elastic = _row_space(held)
+    return OrbitCoordinates(lower, elastic, elastic, elastic[:, :0], 1.0, along), held
 
 
 def warn_of_unbalanced(compiled: Compiled, coordinates: OrbitCoordinates) -> None:
@@ -211,16 +227,17 @@ def warn_of_unbalanced(compiled: Compiled, coordinates: OrbitCoordinates) -> Non
 
 def refuse_disconnected(compiled: Compiled) -> None:
     """Refuse a coordinate without a spring, damper or contact."""
-    system, nodes = compiled.system, compiled.nodes
+    system, nodes, few = compiled.system, compiled.nodes, few_of(compiled.system, compiled.nodes)
     connected = np.zeros(system.size, dtype=bool)
     for name in ("stiffness", "damping"):
         matrix = np.asarray(getattr(system, name))
         connected |= np.any(matrix != 0.0, axis=0) | np.any(matrix != 0.0, axis=1)
     coupled = np.asarray(system.mass) - np.diag(np.diag(np.asarray(system.mass)))
     connected |= np.any(coupled != 0.0, axis=0)
-    for part in (nodes.direction, nodes.direction_slope, nodes.force_direction):
-        connected |= np.any(unrepeated(part, 2) != 0.0, axis=(0, 1, 2))
-    connected |= np.any(nodes.friction_direction != 0.0, axis=(0, 1, 2))
+    pushes = nodes.force_direction, nodes.friction_direction
+    for part in (nodes.direction, nodes.direction_slope, *pushes):
+        moved = np.any(unrepeated(part, 2) != 0.0, axis=(0, 1, 2))
+        connected |= moved if few is None else np.any(few[moved], axis=0)
     if connected.all() or not connected.any():
         return
     names = [system.names[int(i)] for i in np.flatnonzero(~connected)]
@@ -235,34 +252,36 @@ def refuse_disconnected(compiled: Compiled) -> None:
 
 
 def direction_basis(
-    parts: Sequence[Array], inverse: Array, slope: Array | None = None, cycles: int = 1
-) -> tuple[Array, Array]:
-    """Basis (n, r) of directions (..., n), and some of them (m, n) that have the same span."""
-    # inverse: of the lower factor of the mass matrix, in whose metric the basis is orthonormal
+    parts: Sequence[tuple[Array, Array]], slope: Array | None = None, cycles: int = 1
+) -> tuple[Array, list[Array]]:
+    """Basis (n, r) of directions (..., c), and some of them (m, c) that have the same span."""
+    # parts: with the matrix (c, n) into the metric of the mass, in which the basis is orthonormal
     # slope: numerical derivatives of the first part over so many cycles, exact against its length
-    size = len(inverse)
-    rows = [unrepeated(part, 1).reshape(-1, size) for part in parts]
-    least = [0.0] * len(rows)
+    rows = [unrepeated(part, 1).reshape(-1, len(matrix)) for part, matrix in parts]
+    into, least = [matrix for _, matrix in parts], [0.0] * len(parts)
+    size = into[0].shape[1]
     if slope is not None:
-        lengths = np.linalg.norm(rows[0][::_SAMPLED] @ inverse.T, axis=1)
-        rows.append(unrepeated(slope, 1).reshape(-1, size))
+        lengths = np.linalg.norm(rows[0][::_SAMPLED] @ into[0], axis=1)
+        rows.append(unrepeated(slope, 1).reshape(-1, len(into[0])))
+        into.append(into[0])
         least.append(cycles * float(lengths.max(initial=0.0)))
     some = [part[::_SAMPLED] for part in rows]
-    basis = _span([_counted(*each, inverse) for each in zip(some, least, strict=True)])
+    basis = _span([_counted(*each) for each in zip(some, least, into, strict=True)])
     # Most rows repeat what some span; components along random directions show those that do not.
     random = np.random.default_rng(0).standard_normal((size, _PROBES)) / np.sqrt(_PROBES)
-    probes = inverse.T @ np.concatenate((random, random - basis @ (basis.T @ random)), axis=1)
+    probes = np.concatenate((random, random - basis @ (basis.T @ random)), axis=1)
     outside = []
-    for part, short in zip(rows, least, strict=True):
-        length, left = np.linalg.norm((part @ probes).reshape(-1, 2, _PROBES), axis=2).T
+    for part, short, matrix in zip(rows, least, into, strict=True):
+        parts_along = (part @ (matrix @ probes)).reshape(-1, 2, _PROBES)
+        length, left = np.linalg.norm(parts_along, axis=2).T
         outside.append(part[left > _DEPENDENT * np.maximum(length, short)])
-    others = [_counted(*each, inverse) for each in zip(outside, least, strict=True)]
-    return _span([basis.T, *others]), np.concatenate((*some, *outside))
+    others = [_counted(*each) for each in zip(outside, least, into, strict=True)]
+    return _span([basis.T, *others]), [*some, *outside]
 
 
-def _counted(rows: Array, least: float, inverse: Array) -> Array:
+def _counted(rows: Array, least: float, into: Array) -> Array:
     """Rows in the mass metric, each over its length, or over the least one that counts fully."""
-    rows = rows @ inverse.T
+    rows = rows @ into
     length = np.maximum(np.linalg.norm(rows, axis=1), least)
     return np.asarray(rows[length > 0.0] / length[length > 0.0, None])
 
@@ -335,13 +354,14 @@ class OverBases:
         else:  # of a part of the contacts
             inverse = coordinates.inverse
             along = _along(compiled, inverse)[0]
-        pushes = [nodes.force_direction, nodes.friction_direction, nodes.force[..., None, :]]
-        pushes += [] if extra is None else [extra]
+        onto, of_loads = _over_mass(compiled, inverse), [nodes.force[..., None, :]]
+        of_loads += [] if extra is None else [extra]
         if system.balance is not None:
-            pushes.append(np.asarray(system.balance)[None])
-        push = direction_basis(pushes, inverse)[0]
+            of_loads.append(np.asarray(system.balance)[None])
+        pushes = [(part, onto) for part in (nodes.force_direction, nodes.friction_direction)]
+        push = direction_basis([*pushes, *((part, inverse.T) for part in of_loads)])[0]
         into = {"direction": along, "force_direction": push, "friction_direction": push}
-        parts = {n: _components(getattr(nodes, n), inverse.T @ b) for n, b in into.items()}
+        parts = {n: _components(getattr(nodes, n), onto @ b) for n, b in into.items()}
         return cls(system, nodes._replace(**parts), coordinates, along, push)
 
     @property
@@ -360,9 +380,16 @@ def _components(directions: Array, into: Array) -> Array:
 
 def _compressed(compiled: Sampled, position: Array) -> Array:
     """Compression of every contact at a position (n,)."""
+    bases = _bases(compiled)
+    return compression(compiled.nodes, position if bases is None else position @ bases[0])
+
+
+def _bases(compiled: Sampled) -> tuple[Array, Array] | None:
+    """Bases of compressions and pushes over which directions are, if these are not plain."""
     if isinstance(compiled, OverBases):
-        position = position @ compiled.bases[0]
-    return compression(compiled.nodes, position)
+        return compiled.bases
+    few = few_of(compiled.system, compiled.nodes)
+    return None if few is None else (few.T, few.T)
 
 
 def static_start(compiled: Sampled) -> Array:
@@ -459,7 +486,7 @@ def _equilibrium(compiled: Sampled, carrying: Array, gap: Array) -> Array:
         nodes = nodes._replace(gap=pressed / np.where(carrying > 0.0, carrying, 1.0))
     else:
         nodes, carrying = nodes._replace(gap=gap[..., 0]), carrying[..., 0]
-    bases = compiled.bases if isinstance(compiled, OverBases) else None
+    bases = _bases(compiled)
     position = balanced_position(system, nodes, carrying, nodes.force_direction, bases)
     for _ in range(_ROUNDS if system.frictions else 0):
         load = carried_load(system, carrying * (_compressed(compiled, position) - nodes.gap))

@@ -24,6 +24,8 @@ if TYPE_CHECKING:
 
 #: Largest ratio of two frequencies.
 _RATIO = 1e5
+#: Entries that are directions.
+_DIRECTED = ("direction", "friction")
 #: Mesh cycles over one clock, or over each independent phase.
 Cycles = int | tuple[int, ...]
 
@@ -158,6 +160,37 @@ def narrower(entry: object) -> tuple[Entry, Array] | None:
         return None
     narrow = replace(table, onto=None)
     return (ClockEntry(narrow, cycles, offset) if isinstance(entry, ClockEntry) else narrow), onto
+
+
+def narrowed(system: System) -> tuple[System, Array] | None:
+    """Contacts over the few coordinates (c, n) of their tables, without a structure."""
+    # None where a direction or a load is no such table, or there are few coordinates anyway.
+    parts = [*system.contacts, *system.frictions]
+    found = [getattr(part, name, None) for part in parts for name in _DIRECTED]
+    entries = [entry for entry in found if entry is not None]
+    tables = [
+        each for each in entries if table_of(each) and getattr(each, "onto", None) is not None
+    ]
+    if len(tables) < len(entries) or callable(system.force):
+        return None
+    matrices = {id(each.onto): each.onto for each in tables}
+    ends = np.cumsum([0, *map(len, matrices.values())])
+    if not 0 < 2 * ends[-1] <= system.size:
+        return None
+    places = dict(zip(matrices, np.split(np.eye(ends[-1]), ends[1:-1]), strict=True))
+    moved = {id(each): replace(each, onto=places[id(each.onto)]) for each in entries}
+
+    def over(part: T) -> T:
+        changes = {n: moved.get(id(getattr(part, n, None))) for n in _DIRECTED if hasattr(part, n)}
+        return replace(part, **changes)
+
+    still = np.zeros((ends[-1], ends[-1]))
+    narrow = replace(
+        system, mass=np.eye(ends[-1]), damping=still, stiffness=still, force=still[0], names=(),
+        balance=None, gyroscopic=None, contacts=tuple(map(over, system.contacts)),
+        frictions=tuple(map(over, system.frictions)),
+    )  # fmt: skip
+    return narrow, np.concatenate([*matrices.values()])
 
 
 def same_entry(first: object, second: object) -> bool:

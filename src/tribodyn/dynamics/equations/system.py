@@ -24,6 +24,7 @@ from tribodyn.dynamics.equations.phases import (
     Cycles,
     Turning,
     count_phases,
+    narrowed,
     on_clock,
     on_one_clock,
     read_cycles,
@@ -371,6 +372,11 @@ class System:
     def cycles(self) -> int:
         """Mesh cycles of the fastest contact in one period of the clock."""
         return max((each.cycles * each.period for each in on_one_clock(self)), default=1)
+
+    @cached_property
+    def _narrow(self) -> tuple[System, Array] | None:
+        """The same contacts over fewer coordinates (c, n), where their directions span few."""
+        return narrowed(self)
 
     @cached_property
     def _damped_in_gap(self) -> Mask:

@@ -80,24 +80,25 @@ class Prepared:
     grids: dict[int, Compiled]
     samples: dict[int, ContactEquations] = field(default_factory=dict)
 
-    def residual(self, steps: int, frequency: float) -> ClockResidual:
-        """Residual on a number of equal steps."""
+    def residual(
+        self, steps: int, frequency: float, finer: ClockResidual | None = None
+    ) -> ClockResidual:
+        """Residual on a number of equal steps, or on half the steps of a finer one."""
         if steps not in self.samples:
-            finer = self.samples.get(2 * steps)
+            twice = self.samples.get(2 * steps)
             template = next(iter(self.samples.values()), None)
             self.samples[steps] = (
                 contact_equations(self.system, self.structure, steps, template)
-                if finer is None
-                else finer.coarser()
+                if twice is None
+                else twice.coarser()
             )
-        return ClockResidual(
-            self.structure, self.samples[steps], frequency, self.closed, self.equilibrium.floating
-        )
+        rest = self.closed, self.equilibrium.floating
+        return ClockResidual(self.structure, self.samples[steps], frequency, *rest, finer)
 
     def grid(self, steps: int) -> Compiled:
         """Grid of a response with a number of steps per cycle of the fastest mesh."""
         if steps not in self.grids:
-            self.grids[steps] = sample_system(self.system, steps)
+            self.grids[steps] = sample_system(self.system, steps, narrow=True)
         return self.grids[steps]
 
 
@@ -107,7 +108,7 @@ def prepare(system: System, steps: int = 0) -> Prepared:
         if reference() is system:
             return prepared
     steps = max(2 * _FIRST, steps, -(-2 * len(system_events(system)) // system.cycles))
-    compiled = sample_system(system, steps)
+    compiled = sample_system(system, steps, narrow=True)
     refuse_disconnected(compiled)
     narrow = OverBases.of(compiled)
     warn_of_unbalanced(compiled, narrow.coordinates)
@@ -241,7 +242,7 @@ def _on_clock(
         raise InputError(what, "System.contacts", "Harmonic balance acts at contacts", remedy)
     samples = 2 * fast_length(-(-count * system.cycles // 2))  # an even number
     finer = prepared.residual(2 * samples, frequency)
-    residual = prepared.residual(samples, frequency)  # every other row of the finer one
+    residual = prepared.residual(samples, frequency, finer)
     solution = _solve(prepared, residual, _start(prepared, residual, start), tolerance)
     while True:
         y = refined(solution.state.y, 2 * samples)
@@ -289,7 +290,8 @@ def _assessed(
     what = "Floquet multiplier"
     if not exactly:
         linear = TangentMarch.of(residual, solution.state, _PER_CYCLE * prepared.system.cycles)
-        warn_of_growth(what, linear.leading_multiplier(), 1.0 + _NEUTRAL)
+        limit = 1.0 + _NEUTRAL
+        warn_of_growth(what, linear.leading_multiplier(limit), limit)
         return np.zeros(0, dtype=complex)
     state, torque = starting_state(residual, solution.state)
     motion = _marching(prepared, residual)

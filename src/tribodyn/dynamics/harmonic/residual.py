@@ -47,9 +47,10 @@ class OnGrid(NamedTuple):
     def of(
         cls, structure: Any, grid: PhaseGrid, contacts: PhaseContacts | ContactEquations,
         loaded: ComplexArray, members: Index, closed: Array, floating: Mask,
+        receptances: ComplexArray | None = None,
     ) -> OnGrid:  # fmt: skip
         """Contacts with the receptances at the lines of their grid."""
-        receptances = structure.receptances(grid.omega)
+        receptances = structure.receptances(grid.omega) if receptances is None else receptances
         receptances[grid.unpaired] = 0.0
         slope = np.where(grid.unpaired, 0.0, 1j * grid.omega)[:, None]
         return cls(structure, grid, contacts, receptances, slope, loaded, members, closed, floating)
@@ -227,15 +228,18 @@ class ClockResidual(Residual):
 
     def __init__(
         self, structure: ClosedStructure, contacts: ContactEquations, frequency: float,
-        closed: Array, floating: Mask,
+        closed: Array, floating: Mask, finer: ClockResidual | None = None,
     ) -> None:  # fmt: skip
         grid = PhaseGrid((contacts.steps,), np.array([frequency]))
-        structure.refuse_resonance(grid.omega)
+        known = None if finer is None else finer.parts[0].receptances[: grid.omega.size].copy()
+        if finer is None:
+            structure.refuse_resonance(grid.omega)
         still, members = np.zeros((1, structure.along.shape[1]), complex), np.arange(len(closed))
         self.structure, self.contacts, self.frequency = structure, contacts, frequency
         self.plain = len(structure.matrix) >= _LARGE
         contacts = contacts.turning(frequency)
-        super().__init__([OnGrid.of(structure, grid, contacts, still, members, closed, floating)])
+        places = still, members, closed, floating
+        super().__init__([OnGrid.of(structure, grid, contacts, *places, known)])
 
     @cached_property
     def omega(self) -> Array:

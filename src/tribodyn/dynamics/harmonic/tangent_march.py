@@ -56,13 +56,14 @@ class TangentMarch:
         pushed = decay[:, None] * after + before
         settling = math.log(1.0 / _LEFT) / max(structure.decay, 1e-300)
         self._lead = int(min(settling / step, len(tangents)))
+        direct = np.ascontiguousarray((signals @ after).real)
         self._parts = (
             np.stack((decay.real, decay.imag)),
             np.ascontiguousarray(np.concatenate((signals.real, -signals.imag), axis=1)),
             np.ascontiguousarray(np.concatenate((pushed.real, pushed.imag)).T),
-            np.ascontiguousarray((signals @ after).real),
+            direct,
         )
-        self._tangents = tangents
+        self._tangents = with_own_motion(direct, np.ascontiguousarray(tangents))
 
     @classmethod
     def of(cls, residual: ClockResidual, state: State, fewest: int | None = None) -> TangentMarch:
@@ -86,11 +87,11 @@ class TangentMarch:
         march_tangent(*self._parts, tangents, nothing, end, 0)
         return end
 
-    def leading_multiplier(self) -> float:
-        """Size of the largest Floquet multiplier, to the second order of the step."""
+    def leading_multiplier(self, limit: float = 0.0) -> float:
+        """Size of the largest Floquet multiplier, roughly if it is far below a limit."""
         size = self._parts[0].size
         start = np.random.default_rng(0).standard_normal(size)
-        values = leading_eigenvalues(self.moved, start, 1, _ACCURATE, _FORGOTTEN)
+        values = leading_eigenvalues(self.moved, start, 1, _ACCURATE, _FORGOTTEN, limit)
         return float(abs(values[0]))
 
 
@@ -124,10 +125,11 @@ def march_tangent(
     z: Array, lead: int,
 ) -> Array:  # fmt: skip
     """Motion at the contacts (steps, r), after ``lead`` samples; modes ``z`` go to the end."""
+    # tangents: those of with_own_motion
     steps, wide = right.shape
     m, s, r = decay.shape[1], push.shape[0], wide // 2
     motion = np.zeros((steps, r))
-    signal, force, a = np.empty(wide), np.empty(s), np.empty((s, s))
+    signal, force = np.empty(wide), np.empty(s)
     for step in range(steps - lead, 2 * steps):
         row = step % steps
         for o in range(wide):
@@ -140,21 +142,6 @@ def march_tangent(
             for o in range(wide):
                 total += tangents[row, j, o] * (signal[o] + right[row, o])
             force[j] = total
-            for i in range(s):
-                total = 1.0 if i == j else 0.0
-                for o in range(wide):
-                    total -= tangents[row, j, o] * direct[o, i]
-                a[j, i] = total
-        # Forces change motions within a step little: the matrix is near the unit matrix.
-        for k in range(s):
-            for j in range(s):
-                if j != k:
-                    factor = a[j, k] / a[k, k]
-                    for i in range(k, s):
-                        a[j, i] -= factor * a[k, i]
-                    force[j] -= factor * force[k]
-        for j in range(s):
-            force[j] /= a[j, j]
         for o in range(r):
             total = signal[o]
             for j in range(s):
@@ -168,3 +155,30 @@ def march_tangent(
             for i in range(2 * m):
                 z[i] += push[j, i] * force[j]
     return motion
+
+
+@cached_njit(_DIGEST, "the linearized equations of long periods", "ten seconds", **_OPTIONS)
+def with_own_motion(direct: Array, tangents: Array) -> Array:
+    """Forces (steps, s, 2 r) per motion and rate of which the forces of a step are no part yet."""
+    steps, s, wide = tangents.shape
+    closed, a = tangents.copy(), np.empty((wide, wide))
+    for row in range(steps):
+        for o in range(wide):
+            for i in range(wide):
+                total = 1.0 if o == i else 0.0
+                for j in range(s):
+                    total -= direct[o, j] * tangents[row, j, i]
+                a[o, i] = total
+        # Forces change motions within a step little: the matrix is near the unit matrix.
+        for k in range(wide):
+            for i in range(wide):
+                if i != k:
+                    factor = a[k, i] / a[k, k]
+                    for o in range(k, wide):
+                        a[o, i] -= factor * a[o, k]
+                    for j in range(s):
+                        closed[row, j, i] -= factor * closed[row, j, k]
+        for k in range(wide):
+            for j in range(s):
+                closed[row, j, k] /= a[k, k]
+    return closed

@@ -66,9 +66,13 @@ class ClosedStructure:
     def modes(self) -> tuple[ComplexArray, ComplexArray, ComplexArray] | None:
         """Eigenvalues, right modes and left modes; None if they do not span all motions."""
         values, right = np.linalg.eig(self.matrix)
-        if not np.linalg.cond(right, 1) < _ILL_CONDITIONED:
+        try:
+            left = np.linalg.inv(right)
+        except np.linalg.LinAlgError:
             return None
-        return values.astype(complex), right.astype(complex), np.linalg.inv(right).astype(complex)
+        if not np.linalg.norm(right, 1) * np.linalg.norm(left, 1) < _ILL_CONDITIONED:
+            return None
+        return values.astype(complex), right.astype(complex), left.astype(complex)
 
     @cached_property
     def rate(self) -> float:

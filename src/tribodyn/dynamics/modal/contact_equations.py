@@ -10,6 +10,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
+from functools import partial
 from typing import NamedTuple
 
 import numpy as np
@@ -20,9 +21,11 @@ from tribodyn.dynamics.equations.nodes import (
     Nodes,
     carried_load,
     evaluate_rows,
+    few_of,
     friction_force,
     friction_tangent,
     lowest_of_each_law,
+    over_few,
     springs,
 )
 from tribodyn.dynamics.equations.orbit_coordinates import OverBases, Rest, at_rest, side_of
@@ -322,33 +325,40 @@ def contact_equations(
     """Sample the contacts of a system at ``steps`` equal steps of the clock."""
     # template: on other steps, with the same events.
     every = system_events(system)
-    nodes = evaluate_rows(system, PointEvaluator(np.arange(steps) / steps, every))
     inverse, bases = structure.coordinates.inverse, (structure.along, structure.push)
-    into = [inverse.T @ basis for basis in bases]
+    along, push = (inverse.T @ basis for basis in bases)
+
+    def at_points(phase: Array, *, before: bool = False) -> Nodes:
+        rows = PointEvaluator(phase, every, before=before)
+        return over_few(system, partial(evaluate_rows, rows=rows))
+
+    nodes = at_points(np.arange(steps) / steps)
+    onto = few_of(system, nodes)
+    at = project_rows(nodes, along, push, onto)
     if template is not None:
-        return replace(template, rows=project_rows(nodes, *into), steps=steps)
+        return replace(template, rows=at, steps=steps)
     points = np.array(every)
-    before, after = (
-        evaluate_rows(system, PointEvaluator(points, every, before=side)) for side in (True, False)
-    )
+    before, after = (at_points(points, before=side) for side in (True, False))
     jumping = jumping_events(before, after, nodes)
     left, right = (
-        project_rows(Nodes(*(values[jumping] for values in part)), *into)
+        project_rows(Nodes(*(values[jumping] for values in part)), along, push, onto)
         for part in (before, after)
     )
-    at = project_rows(nodes, *into)
     return ContactEquations(system, with_dead_zone(nodes), at, left, right, points[jumping], steps)
 
 
-def project_rows(nodes: Nodes, along: Array, push: Array) -> Rows:
+def project_rows(nodes: Nodes, along: Array, push: Array, onto: Array | None = None) -> Rows:
     """Entries (p, 1, ...) with directions by their components along the columns of two bases."""
+    # onto: coordinates over which the directions are (c, n)
+    load = push
+    along, push = (base if onto is None else onto @ base for base in (along, push))
     return Rows(
         Nodes(*(values[:, 0] for values in nodes)),
         _distinct(nodes.direction) @ along,
         _distinct(nodes.direction_slope) @ along,
         _distinct(nodes.force_direction) @ push,
         _distinct(nodes.friction_direction) @ push,
-        _distinct(nodes.force) @ push,
+        _distinct(nodes.force) @ load,
         *(values[:, 0] for values in springs(nodes)),
     )
 
