@@ -186,7 +186,8 @@ class Machine:
         """
         other = copy(self)
         # Bearings that hold the same shafts carry the same power.
-        for name in _OF_LOADS if operation or groups.keys() - {"bearings"} else ():
+        same = operation is None and sharing is None and groups.keys() <= {"bearings"}
+        for name in () if same else _OF_LOADS:
             vars(other).pop(name, None)
         vars(other)["operation"] = operation or self.operation
         vars(other)["_sharing"] = self._sharing if sharing is None else sharing

@@ -60,4 +60,6 @@ def _numbers(machine: Machine, numbers: Sequence[ArrayLike]) -> tuple[Array]:
     """Numbers of a machine, with its torque and the sense in which it turns."""
     run, carried = machine.operation, any(part.carrier for part in machine.bearings.values())
     turning = run.speed if carried else np.sign(run.speed)  # planets pull outwards
-    return (np.concatenate([np.ravel(each) for each in (run.torque, turning, *numbers)]),)
+    shares = [machine._sharing.get(name, np.inf) for name in machine.meshes]
+    every = run.torque, turning, *shares, *numbers
+    return (np.concatenate([np.ravel(each) for each in every]),)

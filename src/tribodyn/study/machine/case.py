@@ -122,8 +122,7 @@ class MachineCase(Case):
     def __init__(self, source: Source | None = None, /, **data: Any) -> None:
         stated, faults, misspelt, problems, typed_keys = self._take(source, data)
         problems += misspelt
-        ready = completed(self.data)
-        tables: Any = self._read_tables(ready, problems)
+        tables: Any = self._read_tables(completed(self.data), problems)
         self.title, self.origin = str(tables.title or self.kind), tables.origin
         groups = {name: parts_of(tables, name) for name in (*GROUPS, "planets", "load_cases")}
         self._blanks, widths = read_blanks(groups, problems)

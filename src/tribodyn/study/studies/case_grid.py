@@ -186,7 +186,7 @@ def of_one_size(case: AnyCase, over: str, values: Sequence[float]) -> AnyCase:
     structure = MachineStructure(machine)
     if not is_large(structure):
         return case
-    return case.replace({"dynamics.frequency_limit": default_limit(structure)})
+    return case.replace({"dynamics.frequency_limit": default_limit(machine)})
 
 
 def moving_members(
