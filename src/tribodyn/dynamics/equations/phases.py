@@ -181,8 +181,8 @@ def narrowed(system: System) -> tuple[System, Array] | None:
     moved = {id(each): replace(each, onto=places[id(each.onto)]) for each in entries}
 
     def over(part: T) -> T:
-        changes = {n: moved.get(id(getattr(part, n, None))) for n in _DIRECTED if hasattr(part, n)}
-        return replace(part, **changes)
+        own = ((name, getattr(part, name, None)) for name in _DIRECTED)
+        return replace(part, **{name: moved[id(each)] for name, each in own if each is not None})
 
     still = np.zeros((ends[-1], ends[-1]))
     narrow = replace(
