@@ -31,6 +31,7 @@ from tribodyn.dynamics.harmonic.phase_grid import (
     first_sizes,
     most_points,
     points_of,
+    read_points,
     time_of_grids,
     whose,
 )
@@ -50,7 +51,6 @@ from tribodyn.dynamics.harmonic.radial_clearance import REMEDY, RadialClearance,
 from tribodyn.dynamics.modal.closed_structure import ClosedStructure
 from tribodyn.dynamics.modal.contact_equations import close_contacts, components
 from tribodyn.errors import ComputationError, InputError, warn
-from tribodyn.nomenclature import require_whole
 from tribodyn.types import Array, Index, Mask
 
 #: Points over a phase with which a motion is tried to be found at last.
@@ -340,7 +340,11 @@ def phase_balance(
         remedy = "Give the Response of another frequency of the same system, or leave it out"
         raise InputError(what, "start", why, remedy)
     search = _Search.of(system, frequency, supports)
-    points = _first_points(search) if steps is None else _read_steps(steps, search)
+    points = (
+        _first_points(search)
+        if steps is None
+        else read_points(steps, frequency.size, len(search.parts))
+    )
     _refuse_large(search, points)
     points, residual, solution = search.first(points, start, tolerance, steps is None)
     limit, errors = tolerance, np.full(np.shape(points), np.nan)
@@ -445,17 +449,6 @@ def _first_points(search: _Search) -> Points:
     points = points_of(followers, np.maximum(force, lead))
     ends = np.cumsum([part.members.size for part in search.parts])[:-1]
     return tuple(tuple(each.max(axis=0).tolist()) for each in np.split(points, ends))
-
-
-def _read_steps(steps: Any, search: _Search) -> Points:
-    """Points over each phase: one whole number for all, or one for each."""
-    counts: Index = np.atleast_1d(np.asarray(steps))
-    phases = search.rows.frequency.size
-    if counts.size not in (1, phases):
-        what, why = f"steps = {steps}", f"There are {phases} phases"
-        raise InputError(what, "steps", why, "Give a whole number for each, or one for all")
-    listed = (require_whole("steps", n, 4) for n in np.broadcast_to(counts, (phases,)).tolist())
-    return (tuple(listed),) * len(search.parts)
 
 
 def _coarse(search: _Search, points: Points, errors: Array, automatic: bool) -> str:

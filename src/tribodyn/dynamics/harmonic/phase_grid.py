@@ -15,6 +15,8 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from tribodyn.errors import InputError
+from tribodyn.nomenclature import require_whole
 from tribodyn.types import Array, ComplexArray, Index, Mask
 
 #: Points over a phase of meshes, and over one that only turns shafts, with which an automatic
@@ -132,6 +134,16 @@ def polynomial_shares(distance: Array) -> Array:
 
 #: Points over each phase of the grids of all parts.
 Points = tuple[tuple[int, ...], ...]
+
+
+def read_points(steps: Any, phases: int, parts: int) -> Points:
+    """Points over each phase of parts: one whole number for all, or one for each."""
+    counts: Index = np.atleast_1d(np.asarray(steps))
+    if counts.size not in (1, phases):
+        what, why = f"steps = {steps}", f"There are {phases} phases"
+        raise InputError(what, "steps", why, "Give a whole number for each, or one for all")
+    listed = (require_whole("steps", n, 4) for n in np.broadcast_to(counts, (phases,)).tolist())
+    return (tuple(listed),) * parts
 
 
 def doubled(points: Points, which: Mask, times: Index | int = 2) -> Points:
