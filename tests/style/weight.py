@@ -155,7 +155,7 @@ LINES: dict[str, int] = {
     "arrays": 201,
     "cases": 1360,
     "checkpoints": 142,
-    "cli": 2762,
+    "cli": 2763,
     "compiled": 238,
     "contact": 398,
     "cookbook": 102,
@@ -196,7 +196,7 @@ LINES: dict[str, int] = {
     "variants": 1030,
 }
 #: Modules of the package, and its annotations without a type.
-FILES, ANY = 685, 1205
+FILES, ANY = 685, 1204
 
 _NO_CODE = {
     tokenize.COMMENT, tokenize.NL, tokenize.NEWLINE, tokenize.INDENT, tokenize.DEDENT,

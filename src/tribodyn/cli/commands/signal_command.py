@@ -18,6 +18,7 @@ from tribodyn.nomenclature import GEARS
 if TYPE_CHECKING:
     from tribodyn.measurement import Recording, SignalAnalysis
     from tribodyn.study import RecordingVerdict
+    from tribodyn.study.machine.case import AnyCase
 
 Text = str | None
 _TEETH = "Write --teeth 29, or --teeth 29/67 with the mate, or name the case with --case"
@@ -404,7 +405,7 @@ def _teeth_and_speed(turning: Shaft) -> tuple[int | None, int | None, float | No
     return teeth, mates.pop() if len(mates) == 1 else None, float(speed or of_case)
 
 
-def gear_on(case: Any, shaft: str | None) -> str | None:
+def gear_on(case: AnyCase, shaft: str | None) -> str | None:
     """Gear on a shaft, the input by default, whose mesh repeats with whole parts of its turn."""
     of_machine = None if case.lumped else case.machine()
     shaft = shaft or (GEARS[0] if of_machine is None else of_machine.operation.input)
