@@ -187,7 +187,7 @@ def harmonic_balance(
 
     Over several phases the unknowns are functions of all of them: a line of the whole numbers k has
     the frequency ``k.f``, so that no common period is needed. ``step_error`` is then the sum of the
-    changes of the motion with twice the points over each phase.
+    largest changes of a compression, over the largest, with twice the points over each phase.
 
     Examples
     --------

@@ -127,9 +127,11 @@ def work_of(system: System, frequency: Any, supports: Sequence[RadialClearance] 
         if again[n, axis]
     )
     springs = 1 + rows.means.nodes.ramp_gap.shape[-1]
+    columns = [part.along.shape[1] / part.members.size for part in search.parts]
     steps = solution.newton + 1  # one more has the accuracy of a motion
     products = solution.krylov * steps // max(solution.newton, 1)
-    return Work(kind, system.size, steps, products, springs, search.structure.decay, changes)
+    wide = tuple(zip(rates, columns, strict=True))
+    return Work(kind, system.size, steps, products, springs, search.structure.decay, changes, wide)
 
 
 def phase_cost(
@@ -137,18 +139,18 @@ def phase_cost(
     mesh: int | None = None, work: Work | None = None,
 ) -> tuple[int, float, float, float]:  # fmt: skip
     """Unknowns, memory [byte], and times [s] if the motion is found, and at most if it is not."""
-    followers = [Follower(*each) for each in fields]
+    phases, work, rates = len(frequency), work or Work(), np.asarray(frequency, dtype=float)
+    followers = [work.wide(Follower(*each), rates) for each in fields]
     grids = first_sizes(followers, orders, mesh)
     parts = [each.contacts * size for each, size in zip(followers, grids, strict=True)]
     first = sum(parts)
-    phases, work = len(frequency), work or Work()
     rings = work.kind == "ringing"
     largest = min(max(AHEAD * first, 2**14), _LARGE) if rings else min(2 * first, _MOST)
     unknowns = max(first, largest) if mesh is None else first
     # The largest part is looked at with twice its points, and with more where its forces jump.
     part = unknowns * max(parts) / first
     ahead = min(AHEAD * part, _LARGE) if work.kind not in ("steady", "smooth") else 0.0
-    memory, rates = 1e8 + 1.2e8 * phases, np.asarray(frequency, dtype=float)
+    memory = 1e8 + 1.2e8 * phases
     marched, products = time_of_march(followers, rates, work), _products_in_vain(first)
     if mesh is not None:
         seconds = 0.1 + _STATED * unknowns
@@ -392,8 +394,7 @@ def phase_balance(
 
 def _refuse_large(search: _Search, points: Points) -> None:
     """Refuse grids that do not fit in the memory of this machine."""
-    limit = machine_memory()
-    size = search.size(points)
+    limit, size = machine_memory(), search.size(points)
     if size * _BYTES > limit:
         counts = " x ".join(map(str, most_points(points)))
         what = f"{counts} points over the phases are {size:.3g} unknowns"
@@ -411,8 +412,7 @@ def _integrated(
     """Motion over time from one that is no solution, with a warning."""
     text, worst = _not_converged(search, residual, solution, tolerance)
     text += ". "
-    meshes = search.rows.meshes
-    slowest = min(meshes, key=lambda mesh: abs(search.rows.rate(mesh.cycles)))
+    slowest = min(search.rows.meshes, key=lambda mesh: abs(search.rows.rate(mesh.cycles)))
     label = contact_label(search.rows.system, int(slowest.contacts[0]))
     if search.rows.supports:
         what = f"no motion in the clearances of {len(search.rows.supports)} supports is found"

@@ -225,6 +225,14 @@ class Work(NamedTuple):
     #: Frequency of a mesh, that of the mesh or the shaft over whose phase there are more points
     #: [Hz], change of the motion with them, and how many times as many they are.
     changes: tuple[tuple[float, float, float, int], ...] = ()
+    #: Frequency of a mesh [Hz], and unknowns at a point of each contact, as where loads move along.
+    columns: tuple[tuple[float, float], ...] = ()
+
+    def wide(self, follower: Follower, frequency: Array) -> Follower:
+        """A follower with so many contacts as it has unknowns at a point."""
+        rate = abs(float(np.asarray(follower.cycles) @ frequency)) * follower.period
+        near = min(self.columns, key=lambda each: abs(each[0] - rate), default=(rate, 1.0))
+        return follower._replace(contacts=round(follower.contacts * near[1]))
 
     def change(self, mesh: float, over: float) -> tuple[float, int]:
         """Change of a mesh with so many times the points over a phase."""

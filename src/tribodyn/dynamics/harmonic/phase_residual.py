@@ -130,10 +130,10 @@ class PhaseResidual(Residual):
         ])  # fmt: skip
 
     def extent(self, y: Array) -> float:
-        """Size of the largest compressions in a motion, of all contacts together."""
+        """Size of the largest compression in a motion."""
         pairs = zip(self.parts, self.split(y), strict=True)
         each = (piece @ part.structure.compressions.T for part, piece in pairs)
-        return float(np.linalg.norm([np.linalg.norm(d, axis=1).max(initial=0.0) for d in each]))
+        return float(max(np.abs(compression).max(initial=0.0) for compression in each))
 
     def accuracy(self, norms: list[float]) -> float:
         """Accuracy of the linear solution after steps that left residuals of these norms."""
@@ -142,7 +142,7 @@ class PhaseResidual(Residual):
         return float(np.clip(0.9 * fell**2, LINEAR, _LOOSE))
 
     def change(self, coarser: PhaseResidual, state: State, number: int) -> float:
-        """Estimate the largest change of the compressions with more points of one part."""
+        """Estimate the largest change of a compression with more points of one part."""
         part, old, states = self.parts[number], coarser.parts[number], state.each
         forces: list[Array | None] = [each.force for each in states]
         before = forces[number] = old.grid.refined(states[number].force, part.grid)
@@ -155,15 +155,16 @@ class PhaseResidual(Residual):
         driven[number] = part.grid.refined(further, old.grid)
         right = coarser.joined(coarser.responses(driven))
         felt = coarser.split(coarser.nearly(state)(right) - right)
-        moved = []
+        largest = 0.0
         for n, other in enumerate(coarser.parts):
             gains = part.receptances
             if n != number:
                 gains = other.structure.receptances(part.grid.omega, part.structure.push)
             motion = part.grid.values((gains @ lines[..., None])[..., 0])
             motion += other.grid.refined(felt[n], part.grid)
-            moved.append(motion @ other.structure.compressions.T)
-        return float(np.linalg.norm(np.concatenate(moved, axis=1), axis=1).max())
+            compression = motion @ other.structure.compressions.T
+            largest = max(largest, float(np.abs(compression).max(initial=0.0)))
+        return largest
 
     def inverses_at(self, state: State) -> list[MeshwiseInverse]:
         """Approximate inverse of the derivative for each part alone, as long as it serves."""
