@@ -78,6 +78,13 @@ def test_check_states_the_period_and_its_cost() -> None:
     assert float(re.findall(r"its teeth take about (\S+) s", text)[0]) > 3.0
 
 
+def test_check_states_it_of_rolling_bearings_at_their_loads() -> None:
+    fault = {f"faults.axis.{key}": value for key, value in {**AXIS, "gear": "z1"}.items()}
+    case = td.load_case("hypoid-axle").replace(fault)
+    (text,) = rehearse_faults(case, rehearse_machine(case))
+    assert "The motion repeats after 10 mesh cycles (0.02 s)" in text
+
+
 def test_what_exceeds_the_memory_is_refused_before_the_run(monkeypatch: Any) -> None:
     case = idler()
     cost = fault_cost(case, case.machine())

@@ -351,8 +351,7 @@ def phase_balance(
     points, residual, solution = search.first(points, start, tolerance, steps is None)
     limit, errors = tolerance, np.full(np.shape(points), np.nan)
     converged_motion = points, residual, solution, errors
-    jumps = any(mesh.jumps.size for part in search.parts for mesh in part.rows.meshes)
-    smooth = not (jumps or any(each.law.open.any() for each in solution.state.each))
+    smooth = not residual.bends(solution.state)
     poor, before = np.zeros(np.shape(points), dtype=bool), np.zeros(np.shape(points))
     while solution.error <= limit:
         # Parts with few points over a phase feel new lines of those that have more.

@@ -279,6 +279,11 @@ class PhaseContacts(ContactLaw):
         joined = (np.concatenate(part) for part in zip(*crossings, strict=True))
         return _joined(laws), _Crossings(*joined)
 
+    def bend(self, y: Array, rate: Array) -> bool:
+        """Whether forces jump, or change their slope, along a motion (p, r) and its rate."""
+        still = np.zeros(len(self.dead))
+        return self.jumps.line.size > 0 or self._opens(self.law(self.rows, 1.0, y, rate, still))
+
     def _opens(self, law: Law) -> bool:
         """Whether a flank comes to another side of its dead zone."""
         gap = self.rows.gap

@@ -129,6 +129,13 @@ class PhaseResidual(Residual):
             for part, other, piece in zip(self.parts, finer.parts, self.split(y), strict=True)
         ])  # fmt: skip
 
+    def bends(self, state: State) -> bool:
+        """Whether forces jump, or change their slope, along a motion."""
+        return any(
+            isinstance(part.contacts, PhaseContacts) and part.contacts.bend(each.y, each.rate)
+            for part, each in zip(self.parts, state.each, strict=True)
+        )
+
     def extent(self, y: Array) -> float:
         """Size of the largest compression in a motion."""
         pairs = zip(self.parts, self.split(y), strict=True)

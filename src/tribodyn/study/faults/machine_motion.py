@@ -66,17 +66,19 @@ def rehearse_faults(case: MachineCase, state: Balanced) -> list[str]:
     """Costs of the motions; refuse faulty teeth that cannot run, and what takes too much."""
     with collected():
         check_motion(case)  # refuses what takes too much, before teeth are computed
-    machine, structure = state.machine, state.structure(case)
+    structure = faulty_structure = state.structure(case)
     teeth = {n: f for n, f in case.faults.items() if f.gear and f.kind != "crack"}  # elements
     if teeth:
         cracked = [f"faults.{name}" for name in case.faults if name not in teeth]
         plain = case.replace(dict.fromkeys(cracked)) if cracked else case
-        machine = turning_machine(plain, state)
+        meshes = turning_machine(plain, state).meshes
+        machine = structure.machine._with(meshes=meshes)
+        faulty_structure = replace(structure, machine=machine)
     sound = faulty = None
     if over_phases(case.solver, state.machine):
         sound = _work(structure)
     if case.faults:
-        faulty = _work(replace(structure, machine=machine), excitations_of(case))
+        faulty = _work(faulty_structure, excitations_of(case))
     return check_motion(case, sound, faulty, _time_of_teeth(case, state))
 
 
