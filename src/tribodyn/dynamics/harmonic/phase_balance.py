@@ -101,8 +101,12 @@ def work_of(system: System, frequency: Any, supports: Sequence[RadialClearance] 
         sizes = np.where(search.followed(), points, np.minimum(points, _FEW)).tolist()
         points = tuple(map(tuple, sizes))
     residual = search.residual(points)
+    rows, firsts = search.rows, [part.rows.meshes[0] for part in search.parts]
+    rates = [abs(rows.rate(mesh.cycles)) * mesh.period for mesh in firsts]
+    columns = [part.along.shape[1] / part.members.size for part in search.parts]
+    wide = tuple(zip(rates, columns, strict=True))
     if residual.ends[-1] > _TRIAL:
-        return Work("broken", system.size)
+        return Work("broken", system.size, columns=wide)
     solution = solved(residual, search.linear(residual), 1e-4)
     state = solution.state
     again = np.full(np.shape(points), whole)  # few points tell nothing of those over other phases
@@ -118,8 +122,6 @@ def work_of(system: System, frequency: Any, supports: Sequence[RadialClearance] 
         kind = "open"
     elif any(cells):
         kind = "ringing" if (times > 2).any() else "broken"
-    rows, firsts = search.rows, [part.rows.meshes[0] for part in search.parts]
-    rates = [abs(rows.rate(mesh.cycles)) * mesh.period for mesh in firsts]
     over = whose(rows.frequency, [part.axis for part in search.parts], rates)
     changes = tuple(
         (rates[n], float(over[axis]), float(errors[n, axis]), int(times[n, axis]))
@@ -127,10 +129,8 @@ def work_of(system: System, frequency: Any, supports: Sequence[RadialClearance] 
         if again[n, axis]
     )
     springs = 1 + rows.means.nodes.ramp_gap.shape[-1]
-    columns = [part.along.shape[1] / part.members.size for part in search.parts]
     steps = solution.newton + 1  # one more has the accuracy of a motion
     products = solution.krylov * steps // max(solution.newton, 1)
-    wide = tuple(zip(rates, columns, strict=True))
     return Work(kind, system.size, steps, products, springs, search.structure.decay, changes, wide)
 
 

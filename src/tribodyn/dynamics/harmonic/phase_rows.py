@@ -36,8 +36,9 @@ from tribodyn.types import Array, Index
 _SAME, _CLOSED = 1e-12, 1e-6
 #: Most mesh phases whose entries are cached.
 _CACHED = 512
-#: Steps of a mesh cycle on which entries are searched for jumps and averaged.
-_STEPS = 128
+#: Steps of a mesh cycle on which entries are averaged, at least where teeth differ over many
+#: cycles, and the most of all.
+_STEPS, _FEWEST, _MOST = 128, 8, 2**15
 #: Points over each phase at which external forces and the size of entries are sampled.
 _SAMPLED = 8
 #: Fields that have a column for each contact, or for each friction.
@@ -138,7 +139,7 @@ class PhaseRows:
             axes = frozenset() if of_support else frozenset(np.flatnonzero(followed).tolist())
             meshes.append(_mesh(still, cycles, offset, numbers, axes))
         mean = replace(still, force=sampled_forces(system).mean(axis=0))
-        means = sample_system(mean, _STEPS)
+        means = sample_system(mean, min(_STEPS, max(_FEWEST, _MOST // mean.cycles)))
         return cls(system, frequency, tuple(meshes), means, tuple(supports))
 
     def some(self, meshes: Sequence[Mesh]) -> PhaseRows:
