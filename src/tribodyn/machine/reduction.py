@@ -142,15 +142,15 @@ class Parts:
     """Matrices of a machine and its reductions, which another speed does not change."""
 
     def __init__(self, structure: MachineStructure) -> None:
-        self.whole, self._reduced = structure, dict[bytes, tuple[MachineStructure, Array]]()
+        self.unreduced, self._reduced = structure, dict[bytes, tuple[MachineStructure, Array]]()
 
     def at(self, machine: Machine) -> MachineStructure:
         """Structure of the machine at its speed, reduced where it is large."""
-        return self.reduced(machine) if is_large(self.whole) else self.turned(machine)
+        return self.reduced(machine) if is_large(self.unreduced) else self.turned(machine)
 
     def turned(self, machine: Machine, of: MachineStructure | None = None) -> MachineStructure:
         """Structure of the machine at its speed, not reduced, or that with its matrices."""
-        structure = of or self.whole
+        structure = of or self.unreduced
         for name in ("mass", "stiffness", "damping", "force"):
             getattr(structure, name)  # those of all
         turned = copy(structure)
@@ -160,11 +160,11 @@ class Parts:
     @cached_property
     def _basis(self) -> tuple[Array, Array, list[str]]:
         """Basis of Craig and Bampton, squared frequencies and names of its columns."""
-        whole, interface = self.whole, _interface(self.whole)
-        content = whole.mass, whole.stiffness, interface
-        basis, squares = _bases.get(content, lambda: _craig_bampton(whole, interface))
-        names = [whole.names[i] for i in np.flatnonzero(interface)]
-        names += [f"mode {j + 1}_q" for j in range(whole.size - len(names))]
+        unreduced, interface = self.unreduced, _interface(self.unreduced)
+        content = unreduced.mass, unreduced.stiffness, interface
+        basis, squares = _bases.get(content, lambda: _craig_bampton(unreduced, interface))
+        names = [unreduced.names[i] for i in np.flatnonzero(interface)]
+        names += [f"mode {j + 1}_q" for j in range(unreduced.size - len(names))]
         return basis, squares, names
 
     def _with_columns(self, columns: Index, limit: float) -> tuple[MachineStructure, Array]:
@@ -172,9 +172,9 @@ class Parts:
         key = columns.tobytes()
         if key not in self._reduced:
             basis, _, names = self._basis
-            motion = self.whole.basis @ basis[:, columns]
+            motion = self.unreduced.basis @ basis[:, columns]
             reduction = Reduction(tuple(names[i] for i in columns), motion, limit, 0.0)
-            reduced = replace(self.whole, reduction=reduction)
+            reduced = replace(self.unreduced, reduction=reduction)
             self._reduced[key] = reduced, _modes(reduced.mass, _at_rest(reduced), np.inf)[0]
         return self._reduced[key]
 
@@ -183,9 +183,9 @@ class Parts:
     ) -> MachineStructure:
         """Structure of the machine at its speed, see :func:`reduce_structure`."""
         limit = default_limit(machine) if limit is None else limit
-        whole, (basis, squares, _) = self.whole, self._basis
-        squares, (full, amplitudes) = squares.copy(), _natural_modes(whole, limit, basis)
-        least = _ROUNDING * np.sqrt((np.diag(whole.stiffness) / np.diag(whole.mass)).max())
+        unreduced, (basis, squares, _) = self.unreduced, self._basis
+        squares, (full, amplitudes) = squares.copy(), _natural_modes(unreduced, limit, basis)
+        least = _ROUNDING * np.sqrt((np.diag(unreduced.stiffness) / np.diag(unreduced.mass)).max())
         squares[squares <= (_ALL_BELOW * 2.0 * np.pi * limit) ** 2] = np.inf
         omission = _omission(amplitudes, squares, full)
         for share in _SHARES:

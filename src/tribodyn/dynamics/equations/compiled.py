@@ -20,7 +20,7 @@ from tribodyn.dynamics.equations.nodes import (
     Nodes,
     coefficient_count,
     evaluate_nodes,
-    over_few,
+    over_spanned,
 )
 from tribodyn.dynamics.equations.program import Program, build_program, compile_system
 from tribodyn.dynamics.equations.step_limit import (
@@ -99,7 +99,7 @@ def sample_system(system: System, steps: int, *, narrow: bool = False) -> Compil
     none, mask = np.zeros(0, dtype=np.int64), np.zeros(0, dtype=bool)
     program = Program(none, none, np.zeros(0), grid.width, grid.after_event, np.zeros(0), mask)
     evaluate = partial(evaluate_nodes, grid=grid)
-    nodes = over_few(system, evaluate) if narrow else evaluate(system)
+    nodes = over_spanned(system, evaluate) if narrow else evaluate(system)
     return Compiled(system, grid, nodes, program, float("nan"))
 
 

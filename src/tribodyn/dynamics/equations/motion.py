@@ -15,7 +15,7 @@ import numpy as np
 
 from tribodyn.arrays.linear_algebra import times
 from tribodyn.dynamics.equations.grid import Grid, unrepeated
-from tribodyn.dynamics.equations.nodes import Nodes, few_of, friction_force, ramp_force
+from tribodyn.dynamics.equations.nodes import Nodes, friction_force, ramp_force, spanned_coordinates
 from tribodyn.dynamics.equations.system import System
 from tribodyn.types import Array, Index, Mask, Numbers
 
@@ -127,16 +127,13 @@ def forces(
     extra: Numbers = 0.0,
 ) -> Forces:
     """Contact forces and accelerations; without ``side`` the sides follow from the compressions."""
-    onto, inverse, (stiffness, damping) = (
-        few_of(system, rows),
-        system.inverse_mass,
-        system.over_mass,
-    )
+    onto, inverse = spanned_coordinates(system, rows), system.inverse_mass
+    stiffness, damping = system.over_mass
     pushed = inverse if onto is None else inverse @ onto.T
-    elastic, along, few = _with_parts(stiffness, rows.direction, q, onto)
+    elastic, along, position = _with_parts(stiffness, rows.direction, q, onto)
     damped, speed, _ = _with_parts(damping, rows.direction, v, onto)
     d = along - scales.error * unrepeated(rows.error, 1)
-    rate = speed + _turning(rows, beat, few, scales.error)
+    rate = speed + _turning(rows, beat, position, scales.error)
     gap = scales.gap * unrepeated(rows.gap, 1)
     if side is None and np.all(d > gap):
         side = np.broadcast_to(1.0, d.shape)
@@ -253,7 +250,7 @@ class WithinSteps:
 
     def __init__(self, system: System, nodes: Nodes, grid: Grid, beat: float, extra: Array) -> None:
         self.system, self.nodes, self.grid = system, nodes, grid
-        self.beat, self.extra, self._onto = beat, extra, few_of(system, nodes)
+        self.beat, self.extra, self._onto = beat, extra, spanned_coordinates(system, nodes)
 
     def duration(self, step: Index) -> Array:
         """Time of whole steps [s]."""

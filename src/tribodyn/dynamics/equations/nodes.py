@@ -206,7 +206,7 @@ def evaluate_nodes(system: System, grid: Grid) -> Nodes:
     return nodes
 
 
-def over_few(system: System, evaluate: Callable[[System], Nodes]) -> Nodes:
+def over_spanned(system: System, evaluate: Callable[[System], Nodes]) -> Nodes:
     """Entries whose directions are over the few coordinates that they span, or over all."""
     if system._narrow is None:
         return evaluate(system)
@@ -215,7 +215,7 @@ def over_few(system: System, evaluate: Callable[[System], Nodes]) -> Nodes:
     return nodes._replace(force=_one_row(force, nodes.phase.shape))
 
 
-def few_of(system: System, nodes: Nodes) -> Array | None:
+def spanned_coordinates(system: System, nodes: Nodes) -> Array | None:
     """Coordinates over which the directions of entries are (c, n); None where these are all."""
     narrow = system._narrow if nodes.direction.shape[-1] != system.size else None
     return None if narrow is None else narrow[1]

@@ -25,10 +25,10 @@ from tribodyn.dynamics.equations.motion import compression, forces, has_gap
 from tribodyn.dynamics.equations.nodes import (
     Nodes,
     carried_load,
-    few_of,
     friction_secant,
     lowest_of_each_law,
     push_with_friction,
+    spanned_coordinates,
     springs,
 )
 from tribodyn.dynamics.equations.system import System
@@ -146,12 +146,12 @@ def orbit_coordinates(compiled: Compiled, mesh_frequency: float) -> OrbitCoordin
 def structure_coordinates(compiled: Sampled) -> OrbitCoordinates:
     """Reduced coordinates of a system at 1 rad/s."""
     system, nodes = compiled.system, compiled.nodes
-    onto = few_of(system, nodes)
+    onto = spanned_coordinates(system, nodes)
     matrices = np.asarray(system.mass), np.asarray(system.stiffness)
     content = *matrices, *(unrepeated(part, 2) for part in (nodes.direction, nodes.direction_slope))
     content = *content, np.array([_cycles(system)]), *([] if onto is None else [onto])
-    shared, held = _coordinates_cache.get(content, lambda: _coordinates(compiled, *matrices))
-    moving = _row_space([*held, shared.inverse @ system.rate_matrix @ shared.inverse.T])
+    shared, restoring = _coordinates_cache.get(content, lambda: _coordinates(compiled, *matrices))
+    moving = _row_space([*restoring, shared.inverse @ system.rate_matrix @ shared.inverse.T])
     return replace(shared, moving=moving, free=_complement(moving))
 
 
@@ -160,8 +160,8 @@ def _along(compiled: Sampled, inverse: Array) -> tuple[Array, Array]:
     nodes, onto = compiled.nodes, _over_mass(compiled, inverse)
     parts = [(nodes.direction, onto)], nodes.direction_slope, _cycles(compiled.system)
     basis, rows = direction_basis(*parts)
-    used, few = np.concatenate(rows), few_of(compiled.system, nodes)
-    return basis, used if few is None else used @ few
+    used, spanned = np.concatenate(rows), spanned_coordinates(compiled.system, nodes)
+    return basis, used if spanned is None else used @ spanned
 
 
 def _cycles(system: System) -> int:
@@ -172,8 +172,8 @@ def _cycles(system: System) -> int:
 
 def _over_mass(compiled: Sampled, inverse: Array) -> Array:
     """Directions of the contacts in coordinates of unit mass (c, n)."""
-    few = few_of(compiled.system, compiled.nodes)
-    return inverse.T if few is None else few @ inverse.T
+    onto = spanned_coordinates(compiled.system, compiled.nodes)
+    return inverse.T if onto is None else onto @ inverse.T
 
 
 #: Coordinates of the last systems at 1 rad/s without their dampers and gyroscopic moments: a study
@@ -190,9 +190,9 @@ def _coordinates(
     along, used = _along(compiled, inverse)
     if len(used) > len(mass):
         used = np.asarray(np.linalg.qr(used, mode="r"))  # of the same lengths
-    held = [inverse @ stiffness @ inverse.T, used @ inverse.T]
-    elastic = _row_space(held)
-    return OrbitCoordinates(lower, elastic, elastic, elastic[:, :0], 1.0, along), held
+    restoring = [inverse @ stiffness @ inverse.T, used @ inverse.T]
+    elastic = _row_space(restoring)
+    return OrbitCoordinates(lower, elastic, elastic, elastic[:, :0], 1.0, along), restoring
 
 
 def warn_of_unbalanced(compiled: Compiled, coordinates: OrbitCoordinates) -> None:
@@ -227,7 +227,8 @@ def warn_of_unbalanced(compiled: Compiled, coordinates: OrbitCoordinates) -> Non
 
 def refuse_disconnected(compiled: Compiled) -> None:
     """Refuse a coordinate without a spring, damper or contact."""
-    system, nodes, few = compiled.system, compiled.nodes, few_of(compiled.system, compiled.nodes)
+    system, nodes = compiled.system, compiled.nodes
+    onto = spanned_coordinates(system, nodes)
     connected = np.zeros(system.size, dtype=bool)
     for name in ("stiffness", "damping"):
         matrix = np.asarray(getattr(system, name))
@@ -237,7 +238,7 @@ def refuse_disconnected(compiled: Compiled) -> None:
     pushes = nodes.force_direction, nodes.friction_direction
     for part in (nodes.direction, nodes.direction_slope, *pushes):
         moved = np.any(unrepeated(part, 2) != 0.0, axis=(0, 1, 2))
-        connected |= moved if few is None else np.any(few[moved], axis=0)
+        connected |= moved if onto is None else np.any(onto[moved], axis=0)
     if connected.all() or not connected.any():
         return
     names = [system.names[int(i)] for i in np.flatnonzero(~connected)]
@@ -388,8 +389,8 @@ def _bases(compiled: Sampled) -> tuple[Array, Array] | None:
     """Bases of compressions and pushes over which directions are, if these are not plain."""
     if isinstance(compiled, OverBases):
         return compiled.bases
-    few = few_of(compiled.system, compiled.nodes)
-    return None if few is None else (few.T, few.T)
+    onto = spanned_coordinates(compiled.system, compiled.nodes)
+    return None if onto is None else (onto.T, onto.T)
 
 
 def static_start(compiled: Sampled) -> Array:

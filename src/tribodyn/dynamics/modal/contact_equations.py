@@ -21,11 +21,11 @@ from tribodyn.dynamics.equations.nodes import (
     Nodes,
     carried_load,
     evaluate_rows,
-    few_of,
     friction_force,
     friction_tangent,
     lowest_of_each_law,
-    over_few,
+    over_spanned,
+    spanned_coordinates,
     springs,
 )
 from tribodyn.dynamics.equations.orbit_coordinates import OverBases, Rest, at_rest, side_of
@@ -330,10 +330,10 @@ def contact_equations(
 
     def at_points(phase: Array, *, before: bool = False) -> Nodes:
         rows = PointEvaluator(phase, every, before=before)
-        return over_few(system, partial(evaluate_rows, rows=rows))
+        return over_spanned(system, partial(evaluate_rows, rows=rows))
 
     nodes = at_points(np.arange(steps) / steps)
-    onto = few_of(system, nodes)
+    onto = spanned_coordinates(system, nodes)
     at = project_rows(nodes, along, push, onto)
     if template is not None:
         return replace(template, rows=at, steps=steps)

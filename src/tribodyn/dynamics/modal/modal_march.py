@@ -17,7 +17,7 @@ from tribodyn.arrays.linear_algebra import leading_eigenvalues
 from tribodyn.dynamics._engine.statistics import Statistics
 from tribodyn.dynamics.equations.compiled import Compiled, compile_lanes, sample_system
 from tribodyn.dynamics.equations.motion import forces, has_gap, with_middles
-from tribodyn.dynamics.equations.nodes import Nodes, few_of, ramp_count, springs
+from tribodyn.dynamics.equations.nodes import Nodes, ramp_count, spanned_coordinates, springs
 from tribodyn.dynamics.equations.orbit_coordinates import OverBases
 from tribodyn.dynamics.equations.system import System, contact_label
 from tribodyn.dynamics.modal.closed_structure import ClosedStructure
@@ -77,7 +77,7 @@ class ModalMotion:
         """Rows of the kernel (steps, 3, row), and which entries count per time (row,)."""
         structure, system = self.structure, self.compiled.system
         inverse = structure.coordinates.inverse.T
-        into_load, onto = inverse @ structure.push, few_of(system, nodes)
+        into_load, onto = inverse @ structure.push, spanned_coordinates(system, nodes)
         few = inverse if onto is None else onto @ inverse
         into_along, into_push = few @ structure.along, few @ structure.push
         stiffness, gap = springs(nodes)

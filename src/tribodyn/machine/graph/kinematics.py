@@ -154,15 +154,15 @@ def kinematics(
     weight |= drive.couplings
     rows: Mapping[str, Mapping[str, float]] = mobility.rows
     loads = mobility.loads(sense * torque, weight, rows)
-    near: dict[str, float] = {}
+    first_loads: dict[str, float] = {}
     if drive.sharing:
-        near = {name: load for name, (load, _) in loads.items()}
+        first_loads = {name: load for name, (load, _) in loads.items()}
         for name, share in drive.sharing.items():
-            near[name] = -share * sense * torque / next(iter(rows[name].values()))
-        loads = mobility.loads(sense * torque, weight, rows, near)
+            first_loads[name] = -share * sense * torque / next(iter(rows[name].values()))
+        loads = mobility.loads(sense * torque, weight, rows, first_loads)
     if efficiency:
         rows = mobility.rows_with_losses(loads, sense, efficiency)
-        loads = mobility.loads(sense * torque, weight, rows, near)
+        loads = mobility.loads(sense * torque, weight, rows, first_loads)
     mesh_loads = {}
     for name, mesh in meshes.items():
         load, shared = loads[name]

@@ -208,9 +208,9 @@ class Mobility:
         torque: float,
         weight: Mapping[str, float],
         rows: Mapping[str, Mapping[str, float]],
-        near: Mapping[str, float] = NOTHING,
+        first_loads: Mapping[str, float] = NOTHING,
     ) -> dict[str, tuple[float, bool]]:
-        """Load per tooth [N*m] of each mesh, shared by stiffness off loads ``near``; if shared."""
+        """Load per tooth [N*m] of each mesh, shared by stiffness off the first loads; if shared."""
         free = [s for s in self.ratios if s not in (*self.drive.fixed, self.drive.output)]
         balance = np.array([[row.get(s, 0) for row in self.rows.values()] for s in free], float)
         balance = balance.reshape(len(free), len(self.rows))
@@ -219,7 +219,7 @@ class Mobility:
         source = np.array([-torque * (s == self.drive.input) for s in free])
         weights = np.array([weight[name] for name in self.rows])
         weights = weights / weights.max()
-        start = np.array([near.get(name, 0.0) for name in self.rows])
+        start = np.array([first_loads.get(name, 0.0) for name in self.rows])
         potential = np.linalg.solve((torques * weights) @ balance.T, source - torques @ start)
         loads = start + weights * (potential @ balance)
         # A load that another distribution with the same torques would change is one of a loop.
