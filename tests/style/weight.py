@@ -160,7 +160,7 @@ LINES: dict[str, int] = {
     "contact": 398,
     "cookbook": 102,
     "drawing": 204,
-    "dynamics": 16057,
+    "dynamics": 16062,
     "ehl": 9327,
     "errors": 221,
     "exchange": 2162,

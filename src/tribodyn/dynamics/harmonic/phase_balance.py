@@ -66,8 +66,8 @@ _ROUGHLY, _LARGE = 9e-3, 2**18
 #: out are those of a natural frequency.
 _RINGS = 2.0
 #: Memory per unknown of a motion on stated points, of one whose points grow, and of one that is
-#: looked at with more points [byte].
-_PLAIN, _BYTES, _LOOKED = 1.5e3, 1.2e3, 6e2
+#: looked at with more points [byte]; copies of the entries along mesh cycles.
+_PLAIN, _BYTES, _LOOKED, _SAMPLES = 1.5e3, 1.2e3, 6e2, 2.5
 #: Least force of a contact on the first grids, over its mean, below which jumps may open it.
 _OPENS = 0.5
 #: Time per unknown of a motion on stated points [s], unknowns of grids up to which a trial motion
@@ -104,11 +104,11 @@ def work_of(system: System, frequency: Any, supports: Sequence[RadialClearance] 
     rows, firsts = search.rows, [part.rows.meshes[0] for part in search.parts]
     rates = [abs(rows.rate(mesh.cycles)) * mesh.period for mesh in firsts]
     columns = [part.along.shape[1] / part.members.size for part in search.parts]
-    wide = tuple(zip(rates, columns, strict=True))
+    widths = tuple(zip(rates, columns, strict=True))
+    untried = Work(size=system.size, columns=widths, samples=_SAMPLES * rows.memory)
     if residual.ends[-1] > _TRIAL:
-        return Work("broken", system.size, columns=wide)
-    solution = solved(residual, search.linear(residual), 1e-4)
-    state = solution.state
+        return untried
+    state = (solution := solved(residual, search.linear(residual), 1e-4)).state
     again = np.full(np.shape(points), whole)  # few points tell nothing of those over other phases
     for number, part in enumerate(search.parts):
         again[number, part.axis] = bool(part.axes)
@@ -131,7 +131,8 @@ def work_of(system: System, frequency: Any, supports: Sequence[RadialClearance] 
     springs = 1 + rows.means.nodes.ramp_gap.shape[-1]
     steps = solution.newton + 1  # one more has the accuracy of a motion
     products = solution.krylov * steps // max(solution.newton, 1)
-    return Work(kind, system.size, steps, products, springs, search.structure.decay, changes, wide)
+    tried = untried._replace(kind=kind, newton=steps, products=products, springs=springs)
+    return tried._replace(decay=search.structure.decay, changes=changes)
 
 
 def phase_cost(
@@ -150,7 +151,7 @@ def phase_cost(
     # The largest part is looked at with twice its points, and with more where its forces jump.
     part = unknowns * max(parts) / first
     ahead = min(AHEAD * part, _LARGE) if work.kind not in ("steady", "smooth") else 0.0
-    memory = 1e8 + 1.2e8 * phases
+    memory = 1e8 + 1.2e8 * phases + work.samples
     marched, products = time_of_march(followers, rates, work), _products_in_vain(first)
     if mesh is not None:
         seconds = 0.1 + _STATED * unknowns

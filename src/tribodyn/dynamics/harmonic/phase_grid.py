@@ -227,6 +227,7 @@ class Work(NamedTuple):
     changes: tuple[tuple[float, float, float, int], ...] = ()
     #: Frequency of a mesh [Hz], and unknowns at a point of each contact, as where loads move along.
     columns: tuple[tuple[float, float], ...] = ()
+    samples: float = 0.0  #: memory of entries along mesh cycles [byte]
 
     def wide(self, follower: Follower, frequency: Array) -> Follower:
         """A follower with so many contacts as it has unknowns at a point."""

@@ -174,6 +174,11 @@ class PhaseRows:
         supports = () if meshes[0].axes else self.supports
         return PhaseRows(alone, self.frequency, numbered, means, supports)
 
+    @property
+    def memory(self) -> int:
+        """That of the entries over one cycle [byte]."""
+        return sum(unrepeated(each, each.ndim - 2).nbytes for each in self.means.nodes)
+
     def force(self, points: Array) -> Array:
         """External force at points (p or 1, n)."""
         return force_at(self.system, points)
