@@ -11,6 +11,7 @@ import numpy as np
 from tribodyn.arrays.linear_algebra import groups_of_equal, modes_of, standard_rotation
 from tribodyn.arrays.memory import Memo
 from tribodyn.errors import InputError, require_between, require_positive
+from tribodyn.machine.bearing import Bearing
 from tribodyn.machine.machine import Machine
 from tribodyn.machine.static.balance import static_balance
 from tribodyn.machine.structure import MachineStructure, Reduction
@@ -44,9 +45,18 @@ def default_limit(machine: Machine) -> float:
     return float(np.clip(2.0 * _HARMONICS * fastest, *_LIMITS))
 
 
-def is_large(structure: MachineStructure) -> bool:
-    """Whether a machine is reduced where nothing is said of it."""
-    return structure.size > _LARGE
+def unreduced_size(machine: Machine) -> int:
+    """Number of coordinates of a machine in full, whatever the stiffness of its bearings."""
+    springs = {
+        name: Bearing(each.shaft, each.position)
+        for name, each in machine.bearings.items() if each.nonlinear
+    }  # fmt: skip
+    return MachineStructure(machine._with(bearings=springs)).size
+
+
+def is_large(size: int) -> bool:
+    """Whether a machine of so many coordinates is reduced where nothing is said of it."""
+    return size > _LARGE
 
 
 def machine_structure(machine: Machine, *, damping_ratio: float = 0.02) -> MachineStructure:
@@ -146,7 +156,7 @@ class Parts:
 
     def at(self, machine: Machine) -> MachineStructure:
         """Structure of the machine at its speed, reduced where it is large."""
-        return self.reduced(machine) if is_large(self.unreduced) else self.turned(machine)
+        return self.reduced(machine) if is_large(self.unreduced.size) else self.turned(machine)
 
     def turned(self, machine: Machine, of: MachineStructure | None = None) -> MachineStructure:
         """Structure of the machine at its speed, not reduced, or that with its matrices."""

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 from tribodyn.arrays.memory import machine_memory
 from tribodyn.errors import ComputationError, ModelWarning, Problem, warn
-from tribodyn.machine import Bearing, MachineStructure
+from tribodyn.machine.reduction import unreduced_size
 from tribodyn.study.case.section import flat_keys
 from tribodyn.study.machine.motion import phase_names
 from tribodyn.study.machine.pair_cases import TeethUnder, inputs_under, read_teeth, teeth_under
@@ -215,12 +215,7 @@ def clock_cost(machine: Machine, memory: float, cycles: int = 0, coordinates: in
     seconds = cycles / (clock.cycles[fastest] * clock.frequency)
     meshes = [m for m in machine.meshes.values() if m.stiffness is None or callable(m.stiffness)]
     contacts = sum(max(len(mesh.contacts), 1) for mesh in meshes)
-    if not coordinates:
-        linear = {
-            name: Bearing(each.shaft, each.position)
-            for name, each in machine.bearings.items() if each.nonlinear
-        }  # fmt: skip
-        coordinates = min(MachineStructure(machine._with(bearings=linear)).size, _FEWEST)
+    coordinates = coordinates or min(unreduced_size(machine), _FEWEST)
     cost = ClockCost(cycles, seconds, contacts, coordinates)
     reason = "the teeth have few common factors"
     remedy = 'Set solver.phases = "auto", which finds the motion without a common period'

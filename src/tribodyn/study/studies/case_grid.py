@@ -12,9 +12,8 @@ import numpy as np
 from tribodyn.checkpoints import Checkpoints
 from tribodyn.errors import Argument, ComputationError, InputError, collected
 from tribodyn.interrupt import STOPPED, refuse_stopped, single_blas_thread, stop_flag
-from tribodyn.machine import MachineStructure
 from tribodyn.machine import system as system_of
-from tribodyn.machine.reduction import default_limit, is_large
+from tribodyn.machine.reduction import default_limit, is_large, unreduced_size
 from tribodyn.machine.static.supports import clearance_supports
 from tribodyn.mesh import MeshTable
 from tribodyn.progress import SILENT, Progress, StageProgress
@@ -183,8 +182,7 @@ def of_one_size(case: AnyCase, over: str, values: Sequence[float]) -> AnyCase:
     if fixed or over != "operation.speed":
         return case
     machine = case.replace({over: float(max(values, key=abs))}).machine()
-    structure = MachineStructure(machine)
-    if not is_large(structure):
+    if not is_large(unreduced_size(machine)):
         return case
     return case.replace({"dynamics.frequency_limit": default_limit(machine)})
 
