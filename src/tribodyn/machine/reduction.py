@@ -143,7 +143,8 @@ def reduce_structure(
     if structure.reduction is not None:
         remedy = "Reduce the structure of the machine itself"
         raise InputError("the structure is reduced already", "argument structure", "", remedy)
-    require_positive("limit", limit or 1.0, "Hz")
+    if limit is not None:
+        require_positive("limit", limit, "Hz")
     require_between("tolerance", tolerance, 1e-9, 1.0, "")
     return Parts(structure).reduced(structure.machine, limit, tolerance)
 

@@ -283,10 +283,10 @@ def compare(
 
 def _at_harmonics(order: Array, size: Array, count: int) -> Array:
     """Sizes of the lines at the orders 1, 2, ..., zero without a line."""
-    whole = np.rint(order)
-    lines = (np.abs(order - whole) < 1e-9) & (whole >= 1) & (whole <= count)
+    number = np.rint(order)
+    lines = (np.abs(order - number) < 1e-9) & (number >= 1) & (number <= count)
     sizes = np.zeros(count)
-    sizes[whole[lines].astype(int) - 1] = size[lines]
+    sizes[number[lines].astype(int) - 1] = size[lines]
     return sizes
 
 

@@ -10,9 +10,9 @@ import pytest
 from tribodyn.dynamics import Contact, System, harmonic_balance
 from tribodyn.dynamics.harmonic import phase_contacts
 from tribodyn.dynamics.harmonic.newton import tangents
-from tribodyn.dynamics.harmonic.phase_balance import _Search
+from tribodyn.dynamics.harmonic.phase_balance import _Search, work_of
 from tribodyn.dynamics.harmonic.phase_contacts import Cut, Pieces
-from tribodyn.dynamics.harmonic.phase_grid import PhaseGrid
+from tribodyn.dynamics.harmonic.phase_grid import Follower, PhaseGrid
 
 
 @pytest.mark.parametrize(("shape", "axis"), [((20, 6), 0), ((5, 16), 1), ((4, 13, 6), 1)])
@@ -111,6 +111,27 @@ def test_forces_do_not_depend_on_the_blocks_in_which_they_are_evaluated(monkeypa
     np.testing.assert_array_equal(blocks.pieces.at.place, whole.pieces.at.place)
     for mine, other in zip(blocks.law.tangent[3:5], whole.law.tangent[3:5], strict=True):
         np.testing.assert_allclose(mine, other, rtol=1e-13)
+
+
+@pytest.mark.parametrize(("contact", "unknowns"), [(jumping(), 1), (swaying(), 2)])
+def test_the_stated_unknowns_are_those_of_the_grid(contact, unknowns):
+    """A contact whose direction changes is compressed by motions of two coordinates."""
+    frequency = np.array([900.0, 91.0])
+    residual, _ = searched(contact)
+    assert residual.ends[-1] == unknowns * 40 * 10
+    work = work_of(residual.parts[0].structure.rows.system, frequency)
+    follower = Follower(3, (1, 0), 1, ((0, 1),))
+    assert work.wide(follower, frequency).contacts == 3 * unknowns
+
+
+def test_teeth_of_many_cycles_are_sampled_on_fewer_steps():
+    contact = Contact([1.0, -1.0], lambda x: 2e8 + 1e7 * np.cos(2 * np.pi * np.asarray(x)), 3e3)
+    memory = []
+    for period in (100, 200, 400, 800):
+        residual, _ = searched(replace(contact, cycles=(1, 0), period=period), (8, 4))
+        memory.append(residual.parts[0].structure.rows.memory)
+    assert memory[1] == pytest.approx(2.0 * memory[0], rel=1e-3)
+    assert memory[3] == pytest.approx(memory[2], rel=0.05)
 
 
 @pytest.mark.parametrize("contact", [jumping(), swaying()], ids=["fixed", "turning"])

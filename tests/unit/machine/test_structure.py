@@ -170,6 +170,9 @@ def test_a_finer_tolerance_keeps_more_modes(full, reduced):
     assert fine.size > reduced.size
     with pytest.raises(InputError, match="reduced already"):
         reduce_structure(fine)
+    for limit in (0.0, -5000.0):
+        with pytest.raises(InputError, match="limit"):
+            reduce_structure(full, limit)
 
 
 def test_statics_of_the_reduced_machine_are_exact(full, reduced):

@@ -88,7 +88,8 @@ def test_check_states_it_of_rolling_bearings_at_their_loads() -> None:
 def test_what_exceeds_the_memory_is_refused_before_the_run(monkeypatch: Any) -> None:
     case = idler()
     cost = fault_cost(case, case.machine())
-    assert cost is not None
+    assert isinstance(cost, ClockCost)
+    assert cost.cycles == 37
     monkeypatch.setattr("tribodyn.study.machine.run.run_load", lambda *_: pytest.fail("computed"))
     with pytest.raises(td.ComputationError, match=r"solver\.memory allows .* after 37 cycles of"):
         td.run(case.replace({"solver.memory": 0.99 * cost.memory}))

@@ -166,8 +166,8 @@ def narrowed(system: System) -> tuple[System, Array] | None:
     """Contacts over the few coordinates (c, n) of their tables, without a structure."""
     # None where a direction or a load is no such table, or there are few coordinates anyway.
     parts = [*system.contacts, *system.frictions]
-    found = [getattr(part, name, None) for part in parts for name in _DIRECTED]
-    entries = [entry for entry in found if entry is not None]
+    directions = [getattr(part, name, None) for part in parts for name in _DIRECTED]
+    entries = [entry for entry in directions if entry is not None]
     tables = [
         each for each in entries if table_of(each) and getattr(each, "onto", None) is not None
     ]
@@ -181,8 +181,9 @@ def narrowed(system: System) -> tuple[System, Array] | None:
     moved = {id(each): replace(each, onto=places[id(each.onto)]) for each in entries}
 
     def over(part: T) -> T:
-        own = ((name, getattr(part, name, None)) for name in _DIRECTED)
-        return replace(part, **{name: moved[id(each)] for name, each in own if each is not None})
+        named = {name: getattr(part, name, None) for name in _DIRECTED}
+        given = {name: moved[id(each)] for name, each in named.items() if each is not None}
+        return replace(part, **given)
 
     still = np.zeros((ends[-1], ends[-1]))
     narrow = replace(

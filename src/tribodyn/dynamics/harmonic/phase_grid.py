@@ -232,8 +232,8 @@ class Work(NamedTuple):
     def wide(self, follower: Follower, frequency: Array) -> Follower:
         """A follower with so many contacts as it has unknowns at a point."""
         rate = abs(float(np.asarray(follower.cycles) @ frequency)) * follower.period
-        near = min(self.columns, key=lambda each: abs(each[0] - rate), default=(rate, 1.0))
-        return follower._replace(contacts=round(follower.contacts * near[1]))
+        closest = min(self.columns, key=lambda each: abs(each[0] - rate), default=(rate, 1.0))
+        return follower._replace(contacts=round(follower.contacts * closest[1]))
 
     def change(self, mesh: float, over: float) -> tuple[float, int]:
         """Change of a mesh with so many times the points over a phase."""

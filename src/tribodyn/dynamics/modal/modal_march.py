@@ -78,8 +78,8 @@ class ModalMotion:
         structure, system = self.structure, self.compiled.system
         inverse = structure.coordinates.inverse.T
         into_load, onto = inverse @ structure.push, spanned_coordinates(system, nodes)
-        few = inverse if onto is None else onto @ inverse
-        into_along, into_push = few @ structure.along, few @ structure.push
+        directed = inverse if onto is None else onto @ inverse
+        into_along, into_push = directed @ structure.along, directed @ structure.push
         stiffness, gap = springs(nodes)
         parts = [
             stiffness,
